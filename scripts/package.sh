@@ -19,8 +19,8 @@
 #
 # What takes how long, in times of a first scripts/build.sh: linux-x64 takes the core and the module of this
 # machine's Python from build/release, where scripts/build.sh made them, and compiles the bindings for each other
-# version: 0.2 each. windows-x64 and macos-arm64 have compilers of their own, so they compile the core, too,
-# once for all versions: 1, and 0.2 for each version; first they fetch and build their tools and libraries. What
+# version: 0.1 each. windows-x64 and macos-arm64 have compilers of their own, so they compile the core, too,
+# once for all versions: 1, and 0.1 for each version; first they fetch and build their tools and libraries. What
 # is compiled stays in build/, and the second time takes seconds.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

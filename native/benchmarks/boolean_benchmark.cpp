@@ -22,7 +22,7 @@
 
 namespace {
 
-using realmodel::booleans::TriangleMesh;
+using realmodel::TriangleView;
 
 using realmodel::booleans::Mesh;
 using realmodel::booleans::sphere;
@@ -67,7 +67,7 @@ void digest(std::uint64_t& value, const Array& array) {
         value = (value ^ bytes[i]) * 0x100000001b3ULL;
 }
 
-void measure(const TriangleMesh& a, const TriangleMesh& b, int threads) {
+void measure(const TriangleView& a, const TriangleView& b, int threads) {
     const auto start = std::chrono::steady_clock::now();
     const auto r = realmodel::booleans::intersect(a, b, {threads});
     const double seconds =

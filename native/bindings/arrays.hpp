@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,11 @@ namespace realmodel::bindings {
 /// C-contiguous array of T; other dtypes and layouts are converted (then, and only then, copied).
 template <class T>
 using Array = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
+
+template <class T>
+std::span<const T> view(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
 
 /// C-contiguous array of int32 made from whole numbers of any width, none of which may be lost:
 /// what NumPy's own conversion would wrap around is refused (see the caster below).

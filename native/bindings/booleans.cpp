@@ -95,8 +95,8 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     const auto view = [](const auto& array) {
         return std::span(array.data(), static_cast<std::size_t>(array.size()));
     };
-    const booleans::TriangleMesh first{view(first_vertices), view(first_triangles)};
-    const booleans::TriangleMesh second{view(second_vertices), view(second_triangles)};
+    const TriangleView first{view(first_vertices), view(first_triangles)};
+    const TriangleView second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;
     return std::make_unique<Refinement>(booleans::intersect(first, second, run(execution)));
 }

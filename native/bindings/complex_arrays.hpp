@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <pybind11/stl.h>
+
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "arrays.hpp"
@@ -22,6 +25,26 @@ inline pybind11::dict complex_arrays(CellComplex& complex) {
     result["cell_block"] = to_array(std::move(complex.cell_block));
     result["volumes"] = to_array(std::move(complex.volumes));
     return result;
+}
+
+/// The arrays, and what is known of how they were built.
+inline pybind11::dict built_arrays(CellComplex&& complex) {
+    pybind11::dict result = complex_arrays(complex);
+    pybind11::list warnings;
+    for (const Warning& w : complex.warnings) {
+        warnings.append(pybind11::make_tuple(w.kind, w.surface, w.items, w.text));
+    }
+    result["warnings"] = warnings;
+    result["decisions"] = complex.decisions;
+    result["exact_decisions"] = complex.exact_decisions;
+    return result;
+}
+
+inline CellKind kind_of(const std::string& cells) {
+    if (cells != "columns" && cells != "blocks") {
+        throw pybind11::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
+    }
+    return cells == "blocks" ? CellKind::kBlocks : CellKind::kColumns;
 }
 
 /// The arrays of a complex that come under these names, kept alive while the view is in use. How

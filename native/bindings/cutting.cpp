@@ -17,11 +17,6 @@ namespace realmodel::bindings {
 
 namespace {
 
-template <class T>
-std::span<const T> view(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
 struct ModelArrays : ComplexArrays {
     explicit ModelArrays(const py::dict& arrays) : ComplexArrays(arrays) {
         complex.blocks = arrays["blocks"].cast<std::size_t>();

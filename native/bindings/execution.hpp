@@ -2,6 +2,7 @@
 #pragma once
 
 #include "realmodel/base/execution.hpp"
+#include "realmodel/base/memory.hpp"
 
 namespace realmodel::bindings {
 
@@ -16,5 +17,13 @@ struct WatchedExecution {
 inline Execution run(WatchedExecution* execution) {
     return execution == nullptr ? Execution{} : Execution{execution->threads, &execution->progress};
 }
+
+/// When the work is done, refused or cancelled, what it had is the system's again.
+struct MemoryGivenBack {
+    MemoryGivenBack() = default;
+    MemoryGivenBack(const MemoryGivenBack&) = delete;
+    MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
+    ~MemoryGivenBack() { give_back_memory(); }
+};
 
 }  // namespace realmodel::bindings

@@ -5,7 +5,6 @@
 #include <pybind11/stl.h>
 
 #include <optional>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -17,11 +16,6 @@
 namespace realmodel::bindings {
 
 using SurfaceArrays = std::pair<Array<double>, Indices>;
-
-template <class T>
-std::span<const T> view(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
 
 inline strata::Rule rule_of(const std::string& name) {
     if (const auto rule = strata::rule_named(name)) return *rule;

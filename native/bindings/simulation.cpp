@@ -48,11 +48,6 @@ std::vector<Length> lengths_of(const std::vector<Size>& sizes) {
     return lengths;
 }
 
-template <class T>
-std::span<const T> view_of(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
 std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices& block_rock,
                                             double edge_length, const std::vector<Size>& sizes,
                                             WatchedExecution* execution) {
@@ -61,7 +56,7 @@ std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices
     const auto lengths = lengths_of<simulation::LineLength>(sizes);
     const py::gil_scoped_release unlocked;
     return std::make_unique<PlanLines>(simulation::plan_lines(
-        arrays.complex, view_of(block_rock), edge_length, lengths, run(execution)));
+        arrays.complex, view(block_rock), edge_length, lengths, run(execution)));
 }
 
 py::list rings_of(const PlanLines& lines) {
@@ -120,7 +115,7 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     LayeredMesh mesh;
     {
         const py::gil_scoped_release unlocked;
-        mesh = simulation::layered_mesh(arrays.complex, view_of(block_rock), lines,
+        mesh = simulation::layered_mesh(arrays.complex, view(block_rock), lines,
                                         {{plan_vertices.begin(), plan_vertices.end()},
                                          {plan_triangles.begin(), plan_triangles.end()}},
                                         {minimum_thickness, layers, layer_thickness, divided},
@@ -151,8 +146,8 @@ py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
     simulation::FilledMesh mesh;
     {
         const py::gil_scoped_release unlocked;
-        mesh = simulation::filled_mesh(arrays.complex, view_of(cell_region), view_of(kept),
-                                       edge_length, tolerance, lengths, run(execution));
+        mesh = simulation::filled_mesh(arrays.complex, view(cell_region), view(kept), edge_length,
+                                       tolerance, lengths, run(execution));
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -178,8 +173,8 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     simulation::CleanedCells cells;
     {
         const py::gil_scoped_release unlocked;
-        cells = simulation::clean_cells(arrays.complex, view_of(surface_kind), tolerance,
-                                        run(execution));
+        cells =
+            simulation::clean_cells(arrays.complex, view(surface_kind), tolerance, run(execution));
     }
     py::dict made = complex_arrays(cells.complex);
     made["cell_origin"] = to_array(std::move(cells.cell_origin));
@@ -198,8 +193,8 @@ describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vert
     simulation::CellDescriptions found;
     {
         const py::gil_scoped_release unlocked;
-        found = simulation::describe_cells({view_of(face_offsets), view_of(face_vertices)},
-                                           view_of(begin), view_of(sides));
+        found = simulation::describe_cells({view(face_offsets), view(face_vertices)}, view(begin),
+                                           view(sides));
     }
     return {to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
             to_array(std::move(found.counts)), to_array(std::move(found.lengths))};
@@ -221,8 +216,8 @@ py::dict ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& f
     simulation::OrderedFaces found;
     {
         const py::gil_scoped_release unlocked;
-        found = simulation::ordered_faces({view_of(face_offsets), view_of(face_vertices)}, both,
-                                          view_of(order));
+        found =
+            simulation::ordered_faces({view(face_offsets), view(face_vertices)}, both, view(order));
     }
     py::dict made;
     made["offsets"] = to_array(std::move(found.offsets));

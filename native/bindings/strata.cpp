@@ -14,7 +14,6 @@
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "execution.hpp"
-#include "realmodel/base/memory.hpp"
 #include "realmodel/strata/cell_components.hpp"
 #include "realmodel/strata/joins.hpp"
 #include "realmodel/strata/stack.hpp"
@@ -27,26 +26,6 @@ namespace realmodel::bindings {
 
 namespace {
 
-py::dict to_dict(CellComplex&& complex) {
-    py::dict result = complex_arrays(complex);
-    py::list warnings;
-    for (const strata::Warning& w : complex.warnings) {
-        warnings.append(py::make_tuple(w.kind, w.surface, w.items, w.text));
-    }
-    result["warnings"] = warnings;
-    result["decisions"] = complex.decisions;
-    result["exact_decisions"] = complex.exact_decisions;
-    return result;
-}
-
-/// When the work is done, refused or cancelled, what it had is the system's again.
-struct MemoryGivenBack {
-    MemoryGivenBack() = default;
-    MemoryGivenBack(const MemoryGivenBack&) = delete;
-    MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
-    ~MemoryGivenBack() { give_back_memory(); }
-};
-
 std::vector<strata::StackInput> views_of(const std::vector<RockArrays>& rocks) {
     std::vector<strata::StackInput> input;
     for (const RockArrays& rock : rocks)
@@ -54,61 +33,17 @@ std::vector<strata::StackInput> views_of(const std::vector<RockArrays>& rocks) {
     return input;
 }
 
-CellKind kind_of(const std::string& cells) {
-    if (cells != "columns" && cells != "blocks") {
-        throw py::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
-    }
-    return cells == "blocks" ? CellKind::kBlocks : CellKind::kColumns;
-}
-
-/// The least corner of a grid, the size of a cell, and of each cell whether it is wanted.
-using WantedArrays =
-    std::tuple<std::array<double, 3>, std::array<double, 3>,
-               py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>>;
-
-std::optional<strata::WantedSpace> space_of(const std::optional<WantedArrays>& wanted,
-                                            CellKind kind) {
-    if (!wanted) return {};
-    const auto& [low, step, cells] = *wanted;
-    if (kind != CellKind::kColumns) throw py::value_error("wanted: of columns alone");
-    if (cells.ndim() != 3 || cells.size() == 0 || cells.shape(2) > 64)
-        throw py::value_error("wanted: (nx, ny, nz), with 64 layers at most");
-    strata::WantedSpace space{low, step, {}, view(cells)};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        space.cells[axis] = static_cast<std::size_t>(cells.shape(static_cast<py::ssize_t>(axis)));
-    return space;
-}
-
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
-                           WatchedExecution* execution,
-                           const std::vector<std::vector<std::size_t>>& emptied,
-                           const std::vector<std::vector<std::uint8_t>>& fills,
-                           const std::optional<WantedArrays>& wanted, bool is_local) {
+                           WatchedExecution* execution) {
     const CellKind kind = kind_of(cells);
-    const std::optional<strata::WantedSpace> space = space_of(wanted, kind);
-    auto input = views_of(rocks);
-    if (!emptied.empty() && (emptied.size() != rocks.size() || kind != CellKind::kColumns))
-        throw py::value_error("emptied: one for each rock mass, of columns alone");
-    if (!fills.empty() && fills.size() != emptied.size())
-        throw py::value_error("fills: one for each rock mass, where some are emptied");
-    for (std::size_t r = 0; r < emptied.size(); ++r) {
-        input[r].emptied = emptied[r];
-        if (!std::ranges::is_sorted(emptied[r]) ||
-            (!emptied[r].empty() && emptied[r].back() >= input[r].surfaces.size()))
-            throw py::value_error("emptied: surfaces, ascending");
-        if (fills.empty() || fills[r].empty()) continue;
-        input[r].fills = fills[r];
-        if (emptied[r].empty() || fills[r].size() != emptied[r].back())
-            throw py::value_error("fills: of each surface before the last emptying");
-    }
+    const auto input = views_of(rocks);
     CellComplex complex;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, run(execution), kind, space ? &*space : nullptr,
-                                            is_local);
+        complex = strata::build_rock_masses(input, run(execution), kind);
     }
-    return to_dict(std::move(complex));
+    return built_arrays(std::move(complex));
 }
 
 py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<double, 4>& window,
@@ -131,7 +66,7 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
             exact += x + ' ' + y + ' ' + z + '\n';
         }
     }
-    py::dict result = to_dict(std::move(tile.complex));
+    py::dict result = built_arrays(std::move(tile.complex));
     result["border_vertices"] = to_array(std::move(numbers));
     result["border_nearest"] = to_array(std::move(nearest), 3);
     result["border_exact"] = py::bytes(exact);
@@ -162,10 +97,7 @@ std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        mesh =
-            columns == 3
-                ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)}, run(execution))
-                : joins.mesh(strata::RegionView{view(vertices), view(triangles)}, run(execution));
+        mesh = joins.mesh({view(vertices), view(triangles)}, columns, run(execution));
     }
     if (!mesh) return std::nullopt;
     return std::tuple(to_array(std::move(mesh->vertices), columns),
@@ -186,8 +118,7 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      const std::optional<SurfaceArrays>& region,
                      std::optional<double> base_elevation, const std::string& cells,
                      WatchedExecution* execution, const std::vector<std::string>& rules) {
-    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, execution, {}, {},
-                             std::nullopt, false);
+    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, execution);
 }
 
 std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices& face_cells,
@@ -218,25 +149,14 @@ Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& ce
 void bind_strata(py::module_& module) {
     module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
                py::arg("cells") = "columns", py::arg("execution") = py::none(),
-               py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
-               py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
-               py::arg("wanted") = std::nullopt, py::arg("is_local") = false,
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
 float64, triangles (T, 3) int32), oldest first; region: None or a triangulation (vertices (R, 2)
 float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None or the height of a
 flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosional). cells:
-"columns" or "blocks" (each connected part of a block one cell); threads: 0 for
-all; emptied: of each rock mass the surfaces, ascending, before which all that is there becomes air,
-and only what was protected stays so (columns, no base elevation); fills: of each rock mass for each
-surface before the last of these 1 where it is the top of a body: then what is below the oldest
-surface stays, but for places at which a body was there first; none: nothing stays; wanted: None, or
-(low (3,), step (3,), cells (nx, ny, nz) uint8), the least corner of a grid, the size of a cell and of
-each whether it is wanted: columns that lie nowhere in these may be left out (nz: 64 at most; what is
-above or below the grid is wanted, beside it is as in the nearest cells). is_local: of columns, edges
-have all vertices that lie on them, so that what is somewhere follows from what is near. Surfaces are counted
-through all rock masses. Returns a dict of arrays: vertices (V, 3)
+"columns" or "blocks" (each connected part of a block one cell). Surfaces are counted through all rock
+masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// structure_parts, join_structured, structure_sides.
+// structure_parts, build_parts, merge_cells, continued_structures, structure_sides,
+// structure_beyond, structure_continuation.
 #include "realmodel/structures/structures.hpp"
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "execution.hpp"
+#include "realmodel/structures/build_parts.hpp"
+#include "realmodel/structures/merge_cells.hpp"
+#include "rock_arrays.hpp"
 
 namespace py = pybind11;
 
@@ -40,15 +47,6 @@ std::vector<structures::Structure> views_of(const std::vector<StructureArrays>& 
     return views;
 }
 
-struct PartArrays : ComplexArrays {
-    explicit PartArrays(const py::dict& arrays) : ComplexArrays(arrays) {
-        complex.blocks = arrays["blocks"].cast<std::size_t>();
-        complex.surfaces = arrays["surfaces"].cast<std::int32_t>();
-        if (arrays["cell_kind"].cast<std::string>() == "blocks")
-            complex.cell_kind = CellKind::kBlocks;
-    }
-};
-
 Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::size_t columns) {
     Array<std::int8_t> array({rows.size(), columns});
     std::int8_t* out = array.mutable_data();
@@ -58,14 +56,13 @@ Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::
 }
 
 std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
-    const py::dict& rock, const std::vector<StructureArrays>& structures,
+    const std::array<std::array<double, 3>, 2>& box, const std::vector<StructureArrays>& structures,
     WatchedExecution* execution) {
-    const PartArrays arrays(rock);
     const auto views = views_of(structures);
     std::vector<structures::Part> parts;
     {
         const py::gil_scoped_release release;
-        parts = structures::parts_of(arrays.complex, views, run(execution));
+        parts = structures::parts_of(box, views, run(execution));
     }
     std::vector<structures::Sides> sides;
     std::vector<std::array<double, 3>> low, high;
@@ -118,35 +115,95 @@ std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArr
     return arrays;
 }
 
-py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides>>& models,
-                         const std::vector<StructureArrays>& structures,
-                         const Array<std::uint8_t>& acts, WatchedExecution* execution,
-                         const std::vector<ContinuedArrays>& continued, double largest) {
-    std::vector<PartArrays> arrays;
-    for (const auto& [model, sides] : models)
-        arrays.emplace_back(model);
-    std::vector<structures::PartModel> parts;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        if (models[m].second.size() != structures.size())
-            throw py::value_error("sides: one for each structure");
-        parts.push_back({arrays[m].complex, models[m].second});
+/// The least corner of a grid, the size of a cell, and of each cell whether it is wanted.
+using WantedArrays = std::tuple<std::array<double, 3>, std::array<double, 3>, Array<std::uint8_t>>;
+
+strata::WantedSpace view_of(const WantedArrays& wanted) {
+    const auto& [low, step, cells] = wanted;
+    if (cells.ndim() != 3 || cells.size() == 0 || cells.shape(2) > 64)
+        throw py::value_error("wanted: (nx, ny, nz), with 64 layers at most");
+    strata::WantedSpace space{low, step, {}, view(cells)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        space.cells[axis] = static_cast<std::size_t>(cells.shape(static_cast<py::ssize_t>(axis)));
+    return space;
+}
+
+/// number, block, triangles
+using PartSurfaceArrays =
+    std::tuple<std::int32_t, std::int32_t, std::optional<Array<std::int64_t>>>;
+/// stack, surfaces, emptied, fills
+using PartStackArrays = std::tuple<RockArrays, std::vector<PartSurfaceArrays>,
+                                   std::vector<std::size_t>, std::vector<std::uint8_t>>;
+/// sides, rocks, wanted
+using PartArrays =
+    std::tuple<structures::Sides, std::vector<PartStackArrays>, std::optional<WantedArrays>>;
+
+structures::PartStack view_of(const PartStackArrays& arrays) {
+    const auto& [rock, surfaces, emptied, fills] = arrays;
+    structures::PartStack own{view_of(rock), {}};
+    own.stack.emptied = emptied;
+    own.stack.fills = fills;
+    for (const auto& [number, block, triangles] : surfaces) {
+        own.surfaces.push_back({number, block, {}});
+        if (triangles) own.surfaces.back().triangles = view(*triangles);
     }
-    const auto views = views_of(structures);
-    std::vector<structures::ContinuedStructure> beyond;
-    for (const ContinuedArrays& own : continued)
-        beyond.push_back(continued_of(own));
-    if (!beyond.empty() && beyond.size() != views.size())
-        throw py::value_error("continued: one for each structure");
+    return own;
+}
+
+structures::PartOfSpace view_of(const PartArrays& arrays) {
+    const auto& [sides, rocks, wanted] = arrays;
+    structures::PartOfSpace part{sides, {}};
+    for (const PartStackArrays& rock : rocks)
+        part.rocks.push_back(view_of(rock));
+    if (wanted) part.wanted = view_of(*wanted);
+    return part;
+}
+
+/// continued, largest
+using PieceArrays = std::pair<std::vector<ContinuedArrays>, double>;
+
+structures::PieceOfWhole piece_of(const PieceArrays& arrays) {
+    structures::PieceOfWhole piece;
+    for (const ContinuedArrays& own : arrays.first)
+        piece.continued.push_back(continued_of(own));
+    piece.largest = arrays.second;
+    return piece;
+}
+
+py::dict build_parts(const std::vector<PartArrays>& parts,
+                     const std::pair<std::int32_t, std::vector<StructureArrays>>& structures,
+                     const Array<std::uint8_t>& acts, const std::string& cells,
+                     WatchedExecution* execution, const std::optional<PieceArrays>& piece) {
+    if (acts.ndim() != 2) throw py::value_error("acts: (S, B)");
+    structures::StructuredInput input;
+    for (const PartArrays& part : parts)
+        input.parts.push_back(view_of(part));
+    input.surfaces = structures.first;
+    input.structures = views_of(structures.second);
+    input.acts = view(acts);
+    input.blocks = static_cast<std::size_t>(acts.shape(1));
+    input.cells = kind_of(cells);
+    if (piece) input.piece = piece_of(*piece);
     structures::Joined joined;
     {
         const py::gil_scoped_release release;
-        joined = structures::join_models(parts, views,
-                                         {acts.data(), static_cast<std::size_t>(acts.size())},
-                                         run(execution), beyond, largest);
+        const MemoryGivenBack at_the_end;
+        joined = structures::build_parts(input, run(execution));
     }
-    py::dict result = complex_arrays(joined.complex);
+    py::dict result = built_arrays(std::move(joined.complex));
     result["cell_part"] = to_array(std::move(joined.cell_part));
     return result;
+}
+
+py::dict merge_cells(const py::dict& complex, const Indices& number, WatchedExecution* execution) {
+    ComplexArrays arrays(complex);
+    arrays.complex.blocks = complex["blocks"].cast<std::size_t>();
+    CellComplex merged;
+    {
+        const py::gil_scoped_release release;
+        merged = structures::merge_cells(arrays.complex, view(number), run(execution).progress);
+    }
+    return complex_arrays(merged);
 }
 
 Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
@@ -198,30 +255,48 @@ Array<double> structure_continuation(const std::vector<StructureArrays>& faults,
 }  // namespace
 
 void bind_structures(py::module_& module) {
-    module.def("structure_parts", &structure_parts, py::arg("rock"), py::arg("structures"),
+    module.def("structure_parts", &structure_parts, py::arg("box"), py::arg("structures"),
                py::arg("execution") = py::none(),
                R"(The parts that faults and bodies divide rock into.
 
-rock: dict of the arrays of docs/dev/geometry.md, "blocks" and "surfaces" (their numbers) and
-"cell_kind". structures: list of (vertices (V, 3) float64, triangles (T, 3) int32, is_body, ends_at:
+box: two corners of a box around the rock. structures: list of (vertices (V, 3) float64, triangles (T, 3) int32, is_body, ends_at:
 numbers of the faults that a fault ends at, dies_out). Returns (sides (P, S) int8: 1 above a fault or
 outside of a body, -1 below or inside, 0 where there is none beyond a fault that it ends at; low
 (P, 3), high (P, 3) float64: a box around each part), each combination of sides once. Raises
 InputError (surface: the number of the structure) and Cancelled.)");
-    module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
-               py::arg("acts"), py::arg("execution") = py::none(),
-               py::arg("continued") = std::vector<ContinuedArrays>(), py::arg("largest") = 0.0,
-               R"(Models of the parts that faults and bodies leave, cut by them and joined.
+    module.def("build_parts", &build_parts, py::arg("parts"), py::arg("structures"),
+               py::arg("acts"), py::arg("cells") = "columns", py::arg("execution") = py::none(),
+               py::arg("piece") = std::nullopt,
+               R"(A model with faults and bodies: the stacks of all parts of space, cut and joined.
 
-models: list of (dict as of structure_parts, sides: one a structure; 0: either). structures: as of
-structure_parts. acts: (S, B) uint8, whether a structure divides a block. continued: of each structure,
-as of continued_structures, or of some of its triangles; empty: it is continued here. largest: the largest
-coordinate of the whole that these models are a piece of, which says how coarse rounding is; 0: theirs
-says. Returns the arrays of a complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
-model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
+parts: list of (sides: one a structure; rocks: one for each rock mass; wanted). rocks: list of (stack: as of
+build_rock_masses, without surfaces where the rock mass is not there; surfaces: of each of its surfaces
+(number: its own in the model, -1 or -2 where there it is none but a wall or a base; block: that of the block
+beneath it, -1: nothing; triangles: None, or (T,) int64, of each triangle the number in the model's surface);
+emptied: the surfaces, ascending, before which all that is there becomes air, and only what was protected
+stays so (no base elevation); fills: for each surface before the last of these 1 where it is the top of a
+body: then what is below the oldest surface stays, but for places at which a body was there first; none:
+nothing stays). wanted: None, or (low (3,), step (3,), cells (nx, ny, nz) uint8), the least corner of a grid,
+the size of a cell and of each whether it is wanted: columns that lie nowhere in these may be left out (nz:
+64 at most; what is above or below the grid is wanted, beside it is as in the nearest cells). structures:
+(how many surfaces there are, which they are counted after; list as of structure_parts). acts: (S, B) uint8,
+whether a structure divides a block. cells: "columns" or "blocks". piece: None, or of a piece of a whole
+model (continued: of each structure, as of continued_structures, or of some of its triangles; empty: it is
+continued here; largest: the largest coordinate of the whole, which says how coarse rounding is). Returns a
+dict as build_rock_masses does, and cell_part (C,) int32, the part of each cell (where cells of several
+became one, the first). Raises InputError (surface: as in the model, structures counted after the surfaces)
+and Cancelled.)");
+    module.def("merge_cells", &merge_cells, py::arg("complex"), py::arg("number"),
+               py::arg("execution") = py::none(),
+               R"(A complex with some of its cells as one, and without others.
+
+complex: dict of the arrays of docs/dev/geometry.md, and "blocks", how many there are. number: (C,) int32, of
+each cell its number in the result, 0, 1, ... in the order in which they come up; -1: it is left out. A new
+cell has the block of the first of its old ones. Faces within a cell and between cells that are left out go;
+faces and vertices keep their order. Returns the arrays of a complex. Raises InputError and Cancelled.)");
     module.def(
         "continued_structures", &continued_structures, py::arg("structures"), py::arg("box"),
-        R"(Faults and bodies with what continues them beyond their borders, as join_structured has it.
+        R"(Faults and bodies with what continues them beyond their borders, as build_parts has it.
 
 structures: as of structure_parts. box: two corners of a box around the rock. Returns of each
 (triangles (K, 3, 3) float64; is_continuation (K,) uint8; kept: the side of each fault that a fault ends

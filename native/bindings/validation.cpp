@@ -50,10 +50,10 @@ py::list to_list(const std::vector<validation::TestResult>& results) {
     return list;
 }
 
-struct ModelArrays : ComplexArrays {
+struct ValidatedModel : ComplexArrays {
     Array<double> block_volume, block_base;
 
-    explicit ModelArrays(const py::dict& model) : ComplexArrays(model) {
+    explicit ValidatedModel(const py::dict& model) : ComplexArrays(model) {
         take(model, "block_volume", block_volume, complex.block_volume);
         take(model, "block_base", block_base, complex.block_base);
         complex.blocks = complex.block_volume.size();
@@ -63,7 +63,7 @@ struct ModelArrays : ComplexArrays {
 };
 
 py::list check_topology(const py::dict& model, WatchedExecution* execution) {
-    const ModelArrays arrays(model);
+    const ValidatedModel arrays(model);
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
@@ -75,7 +75,7 @@ py::list check_topology(const py::dict& model, WatchedExecution* execution) {
 py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
                        const Indices& block_of_surface, std::int64_t places, std::uint64_t seed,
                        WatchedExecution* execution) {
-    const ModelArrays arrays(model);
+    const ValidatedModel arrays(model);
     std::vector<strata::StackInput> input;
     std::size_t surfaces = 0;
     for (const RockArrays& rock : rocks) {

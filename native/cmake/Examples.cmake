@@ -21,3 +21,4 @@ function(add_example name output)
 endfunction()
 
 add_example(two_layers "lower layer 148000\\.0\nupper layer 32000\\.0\n")
+add_example(one_fault "lower layer 98000\\.0\nupper layer 97600\\.0\n")

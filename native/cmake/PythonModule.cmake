@@ -48,6 +48,7 @@ endif()
 
 # What is the same for all of them.
 function(finish_python_module target)
+    build_by_folder(${target})
     target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>) # the zip has them three times; they only pass on
     target_link_libraries(${target} PRIVATE realmodel realmodel_settings realmodel_warnings realmodel_gmp)

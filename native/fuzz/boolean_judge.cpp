@@ -25,7 +25,7 @@ using booleans::Refinement;
 struct Flat {
     std::vector<double> vertices;
     std::vector<std::int32_t> triangles;
-    booleans::TriangleMesh view() const { return {vertices, triangles}; }
+    TriangleView view() const { return {vertices, triangles}; }
 };
 
 Flat flat(const Mesh& mesh) {

@@ -36,8 +36,8 @@ def with_structures(project, threads=1, keep=as_it_is, joins=False):
 
     def task(work):
         inputs, with_arrays = read_inputs(work, project)
-        mesh_inputs(work, inputs, 0.0, 0.1, keep)
-        structures = make_structures(work, with_arrays, inputs, None, 0.1, 1.0, joins, keep)
+        mesh_inputs(work, inputs, keep)
+        structures = make_structures(work, with_arrays, inputs, None, joins, keep)
         return inputs, structures
 
     return run(task, threads=threads)

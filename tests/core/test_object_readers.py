@@ -23,7 +23,7 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.project.project_writer import save_project
-from realmodel.core.readers import objects_in, read_boreholes, read_mesh, read_point_file
+from realmodel.core.readers import UnitNames, objects_in, read_boreholes, read_mesh, read_point_file
 from realmodel.core.readers.contents import column_names, column_values, layer_names
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -184,14 +184,51 @@ def test_intervals_of_a_group_of_drillholes_are_picks_at_their_tops(tmp_path):
                     }
                 }
             )
-    with pytest.raises(InputRefused, match=r"'A': it has no data 'surface'; it has Lithology"):
-        read_boreholes(Boreholes(path))
-    picks = read_boreholes(Boreholes(path, columns={"surface": "lithology"}, units={"xy": "ft"}))
+    with pytest.raises(InputRefused, match=r"'A': it has no data 'Rock'; it has Lithology"):
+        read_boreholes(Boreholes(path, columns={"surface": "Rock"}))
+    picks = read_boreholes(Boreholes(path, units={"xy": "ft"}))
     assert set(picks.points) == {"soil", "clay"}
     along = 2 * np.sqrt(0.5)
     wanted = [[along * 0.3048, 0, 100 - along], [(10 + along) * 0.3048, 0, 100 - along]]
     assert np.allclose(picks.points["clay"], wanted, atol=1e-5)
     assert picks.holes["B"][0].tolist() == [3.048, 0, 100]
+
+    units = UnitNames(["clay", "soil"], ["clay", "soil"])
+    logged = read_boreholes(Boreholes(intervals=path), units=units, plan_step=10.0)
+    (seen,) = logged.observations
+    assert seen.holes.tolist() == ["A"] * 4 + ["B"] * 4
+    assert seen.blocks.tolist() == ["soil", "soil", "clay", "clay"] * 2
+    assert seen.depths.tolist() == [0, 2, 2, 7] * 2
+    assert np.allclose(seen.places[3], [7 * np.sqrt(0.5), 0, 100 - 7 * np.sqrt(0.5)], atol=1e-5)
+    assert logged.left_out == []
+    unknown = read_boreholes(Boreholes(intervals=path), units=UnitNames(["clay"], ["clay"]), plan_step=10.0)
+    assert [(each.kind, each.hole) for each in unknown.left_out] == [("unknown_block", hole) for hole in "AB"]
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_logged_intervals_of_objects_are_those_of_a_table(write, tmp_path, ending):
+    """A model from intervals in a table; its file; and a model from that."""
+    plan = [[0, 0], [100, 0], [100, 100], [0, 100]]
+    collars = write("c.csv", "hole,x,y,z\nA,20,20,30\nB,80,30,30\nC,50,80,30\n")
+    rows = ["A,0,10,soil", "A,10,25,clay", "A,25,30,rock", "B,0,12,soil", "B,12,22,clay", "B,22,30,rock"]
+    rows += ["C,0,8,soil", "C,8,28,clay", "C,28,30,rock"]
+    logged = write("i.csv", "hole,from,to,block\n" + "\n".join(rows) + "\n")
+
+    def model(boreholes):
+        names = (("R", "rock"), ("C", "clay"), ("S", "soil"))
+        surfaces = [Surface(name, method="plane", block=block) for name, block in names]
+        rock = Rock("r", surfaces, plan, edge_length=25.0, base_elevation=-10.0, boreholes=boreholes)
+        return build(Project("x", [rock]))
+
+    first = model(Boreholes(intervals=logged, collars=collars))
+    first.save(file := tmp_path / f"m{ending}")
+    again = model(Boreholes(intervals=file))
+    assert len(again.blocks) == 3
+    assert set(again.project.rocks[0].hole_picks) == {"A", "B", "C"}
+    tops = {surface.name: surface.points for surface in again.project.rocks[0].surfaces}
+    wanted = {surface.name: surface.points for surface in first.project.rocks[0].surfaces}
+    for name in ("R", "C"):
+        assert np.allclose(np.sort(tops[name], axis=0), np.sort(wanted[name], axis=0), atol=1e-6)
 
 
 def test_points_that_name_their_hole_are_picks(model, tmp_path):
@@ -220,6 +257,8 @@ def test_what_is_wrong_is_said_with_what_there_is(model, tmp_path, ending):
     mesh.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
     with pytest.raises(InputRefused, match=r"not a file of objects \(\.omf, \.geoh5\), so it has no 'S0'"):
         read_mesh(MeshFile(mesh, layer="S0"))
+    with pytest.raises(InputRefused, match="it has objects, and the other file is a table"):
+        read_boreholes(Boreholes(path, intervals=mesh))
     with pytest.raises(InputRefused, match="a table, so it has no object 'S0'"):
         read_boreholes(Boreholes(mesh, layer="S0"))
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel._native import InputError, build_rock_masses, build_stack
+from realmodel._native import InputError, build_parts, build_rock_masses, build_stack
 from stacks.case import as_region, as_surface
 
 RISING = [(0, 1, 2), (0, 2, 3)]
@@ -38,19 +38,24 @@ def test_one_layer_on_one_mesh():
     assert as_block["volumes"] == pytest.approx([0, 4])
 
 
+def in_one_part(rock, wanted):
+    """A model of one rock mass whose space no structure divides."""
+    numbers = [(number, number, None) for number in range(len(rock[0]))]
+    parts = [([], [(rock, numbers, [], [])], wanted)]
+    return build_parts(parts, (len(numbers), []), np.empty((0, len(numbers)), np.uint8))
+
+
 def test_columns_where_nothing_is_wanted_are_left_out():
-    rocks = [([square([0] * 4), square([1] * 4), square([3] * 4)], None, None, [])]
+    rock = [square([0] * 4), square([1] * 4), square([3] * 4)], None, None, []
     cells = np.zeros((2, 2, 2), np.uint8)
     wanted = ([0.0, 0.0, 0.0], [1.0, 1.0, 1.5], cells)
     for layers, blocks in (([0, 0], []), ([1, 0], [2, 2, 1, 1]), ([0, 1], [2, 2]), ([1, 1], [2, 2, 1, 1])):
         cells[1] = layers
-        result = build_rock_masses(rocks, wanted=wanted)
+        result = in_one_part(rock, wanted)
         assert result["cell_block"].tolist() == blocks  # each column of the lower layer is below 1.5
         assert walls(result) == {0: 0, 2: 5, 4: 10}[len(blocks)]
-    with pytest.raises(ValueError, match="wanted: of columns alone"):
-        build_rock_masses(rocks, cells="blocks", wanted=wanted)
     with pytest.raises(ValueError, match="64 layers at most"):
-        build_rock_masses(rocks, wanted=(*wanted[:2], np.ones((1, 1, 65), np.uint8)))
+        in_one_part(rock, (*wanted[:2], np.ones((1, 1, 65), np.uint8)))
 
 
 def test_one_layer_with_the_other_diagonal():

@@ -5,9 +5,10 @@ import _thread
 import threading
 import time
 
+import numpy as np
 import pytest
 from realmodel.core import BuildFailed, Cancelled, InputRefused
-from realmodel.core.base.work import POLL_SECONDS, run, start
+from realmodel.core.base.work import POLL_SECONDS, native_module, run, start
 
 ENDLESS = 6000  # steps of 10 ms: a test that takes all of them has failed
 
@@ -125,6 +126,23 @@ def test_a_defect_of_the_native_part_is_told_as_one():
 
     with pytest.raises(BuildFailed, match=r"defect: an edge has no end; please report it"):
         run(lambda work: work.native(broken))
+
+
+@pytest.mark.parametrize(("has_steps", "text"), [(False, "the phase"), (True, "joining the compartments")])
+def test_a_native_call_may_say_what_it_is_doing(has_steps, text):
+    def call(execution):
+        native_module().build_parts([], (0, []), np.empty((0, 0), np.uint8), execution=execution)
+        return work_of_call[0].state()
+
+    def task(work):
+        work_of_call.append(work)
+        with work.phase(0.0, 0.5, "the phase", has_steps):
+            return work.native(call)
+
+    work_of_call = []
+    fraction, told = run(task)
+    assert told == text
+    assert fraction == pytest.approx(0.5)
 
 
 def test_the_last_call_is_the_end():

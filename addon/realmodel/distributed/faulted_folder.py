@@ -65,8 +65,10 @@ def _built(
     def prepared(work: Work):
         with work.phase(0.0, _READ, "reading"):
             inputs, with_arrays = read_inputs(work, project, reader)
-        mesh_inputs(work, inputs, _READ, _MESHED, arrays.keep)
-        structures = make_surfaces(work, with_arrays, inputs, None, _MESHED, 1.0, arrays.keep, joins=False)
+        with work.part(_READ, _MESHED):
+            mesh_inputs(work, inputs, arrays.keep)
+        with work.part(_MESHED, 1.0):
+            structures = make_surfaces(work, with_arrays, inputs, None, arrays.keep, joins=False)
         warnings = [warning for entry in inputs for warning in entry.warnings]
         return Windows(work, inputs, structures, arrays.keep), structures, warnings
 

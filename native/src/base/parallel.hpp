@@ -41,9 +41,14 @@ void run_team(int threads, const Work& work) {
     work(static_cast<std::size_t>(omp_get_thread_num()),
          static_cast<std::size_t>(omp_get_num_threads()));
 }
-#else  // with threads of the C++ library, made anew for every call
+#else  // with threads of the C++ library
 void run_team(int threads, const std::function<void(std::size_t own, std::size_t team)>& work);
 #endif
+
+/// Calls work(own) at once for every own below `threads`, on threads of the C++ library, made anew
+/// for every call. Where there are not so many to be had, this one does the work of several. The
+/// work must not throw.
+void run_threads(int threads, const std::function<void(std::size_t own)>& work);
 
 /// For loops of one thread: asks every 16384 rounds whether the caller wants to stop.
 /// @throws Cancelled
@@ -146,5 +151,15 @@ void parallel_even(std::size_t count, int threads, const Work& work) {
     });
     guard.finish();
 }
+
+/// Calls work(task, execution) for few long tasks that run in parallel themselves, several of them
+/// at once where the threads allow it, each with a share of the threads. Each task goes through a
+/// progress of its own, from 0 to 1, which takes that of the caller on by its part of `share`.
+/// Where tasks throw, what the lowest of them threw leaves the loop; those above it are stopped,
+/// those below it still run.
+/// @param share  of the whole progress: how much all tasks take
+/// @throws Cancelled, or what the work threw
+void parallel_tasks(std::size_t count, const Execution& execution, double share,
+                    const std::function<void(std::size_t task, const Execution& own)>& work);
 
 }  // namespace realmodel

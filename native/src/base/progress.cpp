@@ -2,6 +2,7 @@
 #include "realmodel/base/progress.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -24,10 +25,23 @@ std::size_t whole_characters(const char* text, std::size_t room) {
     return end;
 }
 
+/// Sets what is less to a value; returns by how much.
+double raise_to(std::atomic<double>& number, double value) noexcept {
+    double before = number.load(std::memory_order_relaxed);
+    while (before < value) {
+        if (number.compare_exchange_weak(before, value, std::memory_order_relaxed))
+            return value - before;
+    }
+    return 0;
+}
+
 }  // namespace
 
 void Progress::report(double fraction, const char* text) noexcept {
-    if (!std::isnan(fraction)) fraction_.store(std::clamp(fraction, 0.0, 1.0));
+    if (!std::isnan(fraction)) {
+        fraction_.store(std::clamp(fraction, 0.0, 1.0));
+        take_on_whole(std::clamp(fraction, 0.0, 1.0));
+    }
     if (text == nullptr) return;
     const std::size_t length = whole_characters(text, text_.size() - 1);
     const std::lock_guard lock(text_mutex_);
@@ -41,10 +55,19 @@ void Progress::begin(double start, double end, const char* text) noexcept {
 }
 
 void Progress::advance(double fraction) noexcept {
-    double before = fraction_.load(std::memory_order_relaxed);
-    while (before < fraction &&
-           !fraction_.compare_exchange_weak(before, fraction, std::memory_order_relaxed)) {
+    raise_to(fraction_, fraction);
+    take_on_whole(fraction);
+}
+
+void Progress::take_on_whole(double fraction) noexcept {
+    if (whole_ == nullptr) return;
+    const double step = share_ * raise_to(passed_on_, fraction);
+    if (step == 0) return;
+    double before = whole_->fraction_.load(std::memory_order_relaxed);
+    while (!whole_->fraction_.compare_exchange_weak(before, std::min(1.0, before + step),
+                                                    std::memory_order_relaxed)) {
     }
+    if (whole_->whole_ != nullptr) whole_->take_on_whole(whole_->fraction());
 }
 
 CountedLoop::CountedLoop(Progress* progress, std::size_t rounds, double share) noexcept
@@ -66,7 +89,7 @@ void Progress::cancel() noexcept {
 }
 
 bool Progress::cancelled() const noexcept {
-    return cancelled_.load();
+    return cancelled_.load() || (whole_ != nullptr && whole_->cancelled());
 }
 
 void Progress::check() const {

@@ -173,10 +173,10 @@ void Corners::number_corners() {
 
 void Corners::make_sheets() {
     std::map<std::pair<const void*, const void*>, std::size_t> known;
-    std::vector<const strata::SurfaceView*> distinct;
+    std::vector<const TriangleView*> distinct;
     for (const History& history : histories_) {
         auto& own = sheets_of_.emplace_back();
-        for (const strata::SurfaceView& sheet : history.sheets) {
+        for (const TriangleView& sheet : history.sheets) {
             const auto key =
                 std::pair<const void*, const void*>(sheet.vertices.data(), sheet.triangles.data());
             const auto [entry, is_new] = known.try_emplace(key, distinct.size());

@@ -20,7 +20,7 @@ constexpr double kSame = 1e-6;  // of the heights of a sheet
 
 }  // namespace
 
-SheetHeights::SheetHeights(const strata::SurfaceView& sheet, double near) : near_(near) {
+SheetHeights::SheetHeights(const TriangleView& sheet, double near) : near_(near) {
     add_triangles(sheet);
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const Triangle& triangle : triangles_) {
@@ -47,7 +47,7 @@ SheetHeights::SheetHeights(const strata::SurfaceView& sheet, double near) : near
 }
 
 /// Those that have an area in plan. A border is an edge that is not of two of them.
-void SheetHeights::add_triangles(const strata::SurfaceView& sheet) {
+void SheetHeights::add_triangles(const TriangleView& sheet) {
     struct Edge {
         std::int32_t low, high, triangle, slot;
     };

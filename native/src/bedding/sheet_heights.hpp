@@ -29,7 +29,7 @@ public:
 
     /// @param near  what rounding may move a position by
     /// @throws InputError kind bad_index (items: the triangle)
-    SheetHeights(const strata::SurfaceView& sheet, double near);
+    SheetHeights(const TriangleView& sheet, double near);
 
     Found at(const PlanPosition& position) const;
     /// The height at a border, on the side where another position lies, close by.
@@ -55,7 +55,7 @@ private:
         bool has_border_near(const PlanPosition& p, const std::array<double, 3>& areas,
                              double near) const;
     };
-    void add_triangles(const strata::SurfaceView& sheet);
+    void add_triangles(const TriangleView& sheet);
 
     double near_;
     double same_ = 0;  ///< heights that differ by less are one: a step that nobody sees

@@ -21,7 +21,7 @@ using spatial::BoxTree;
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 8;
+constexpr std::size_t kFacetsAtOnce = 1 << 8;
 
 std::size_t shared_corners(const Corners& a, const Corners& b) {
     return static_cast<std::size_t>(std::count_if(
@@ -76,7 +76,7 @@ bool ExactDivision::is_aside(const Corners& own, const Corners& other,
 void ExactDivision::find_candidates() {
     const std::size_t count = chosen_.size();
     std::vector<Box> boxes(count);
-    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
     });
@@ -85,29 +85,30 @@ void ExactDivision::find_candidates() {
     const std::optional<BoxTree> own =
         all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, execution_.progress);
     const BoxTree& tree = own ? *own : pieces_.tree();
-    std::vector<std::vector<std::array<std::int32_t, 2>>> found((tree.leaf_count() + kChunk - 1) /
-                                                                kChunk);
+    std::vector<std::vector<std::array<std::int32_t, 2>>> found(
+        (tree.leaf_count() + kFacetsAtOnce - 1) / kFacetsAtOnce);
     const auto filter_of = [&](const Corners& c) {
         return exact::SideFilter(pieces_.points.rounded(c[0]), pieces_.points.rounded(c[1]),
                                  pieces_.points.rounded(c[2]));
     };
-    parallel_ranges(tree.leaf_count(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-        auto& pairs = found[begin / kChunk];
-        std::int32_t last = -1;  // the pairs of a piece follow one another
-        std::optional<exact::SideFilter> plane;
-        tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
-            const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
-            const Corners &a = one.corners, &b = other.corners;
-            if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) || has_equal_corners(b) ||
-                shared_corners(a, b) == 3)
-                return;
-            if (i != last) plane.emplace(filter_of(a));
-            last = i;
-            if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
-            const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
-            pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
+    parallel_ranges(
+        tree.leaf_count(), kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
+            auto& pairs = found[begin / kFacetsAtOnce];
+            std::int32_t last = -1;  // the pairs of a piece follow one another
+            std::optional<exact::SideFilter> plane;
+            tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
+                const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
+                const Corners &a = one.corners, &b = other.corners;
+                if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) ||
+                    has_equal_corners(b) || shared_corners(a, b) == 3)
+                    return;
+                if (i != last) plane.emplace(filter_of(a));
+                last = i;
+                if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
+                const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
+                pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
+            });
         });
-    });
     for (const auto& pairs : found)
         candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
     parallel_sort(candidates_, std::less<>(), execution_);
@@ -130,11 +131,11 @@ void ExactDivision::find_meetings() {
             i = triangle_of[index(i)];
     }
     const std::size_t count = candidates_.size();
-    std::vector<std::vector<Meeting>> found((count + kChunk - 1) / kChunk);
-    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<Meeting>> found((count + kFacetsAtOnce - 1) / kFacetsAtOnce);
+    parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
-            if (met && is_contact(*met)) found[begin / kChunk].push_back(*met);
+            if (met && is_contact(*met)) found[begin / kFacetsAtOnce].push_back(*met);
         }
     });
     for (const auto& meetings : found)
@@ -251,11 +252,13 @@ std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
     const auto& regions = arrangement_.regions();
     const std::vector<Copy> copies = coinciding_regions();
     std::vector<std::vector<Corners>> triangles(regions.size());
-    parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t r = begin; r < end; ++r) {
-            if (copies[r].of == static_cast<std::int32_t>(r)) triangles[r] = divided(regions[r]);
-        }
-    });
+    parallel_ranges(regions.size(), kFacetsAtOnce, execution_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t r = begin; r < end; ++r) {
+                            if (copies[r].of == static_cast<std::int32_t>(r))
+                                triangles[r] = divided(regions[r]);
+                        }
+                    });
     SpacePoints& points = pieces_.points;
     std::vector<SpacePointId> vertex(points.size(), kNone);
     const auto make = [&](const Corners& nodes) {

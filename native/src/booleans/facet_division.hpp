@@ -14,6 +14,10 @@ using exact::SpacePoints;
 using Corners = std::array<SpacePointId, 3>;
 using Edge = std::array<SpacePointId, 2>;
 
+inline bool has(const Corners& corners, SpacePointId p) {
+    return corners[0] == p || corners[1] == p || corners[2] == p;
+}
+
 /// A triangle, and points near it that it is to get as vertices.
 struct FacetPoints {
     Corners corners;

@@ -156,7 +156,7 @@ bool is_kept(Operation operation, bool in_first, bool in_second) {
 
 }  // namespace
 
-Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
+Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution) {
     const Parts parts = refine({first, second}, execution);
     if (execution.progress != nullptr) execution.progress->begin(0.8, 0.9, "finding facets");

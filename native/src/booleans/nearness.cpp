@@ -19,10 +19,6 @@ Position along(const Position& a, const Position& b, double t) {
     return moved(a, t, minus(b, a));
 }
 
-bool has(const Corners& corners, SpacePointId p) {
-    return corners[0] == p || corners[1] == p || corners[2] == p;
-}
-
 /// Whether the boxes of two edges are within a distance.
 bool are_boxes_near(const std::array<Position, 2>& e, const std::array<Position, 2>& f,
                     double within) {

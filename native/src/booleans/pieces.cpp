@@ -12,10 +12,10 @@ namespace realmodel::booleans {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 12;
+constexpr std::size_t kPiecesAtOnce = 1 << 12;
 constexpr std::size_t kMany = 1 << 6;  ///< so many pieces of one triangle are found by a tree
 
-void check(const TriangleMesh& mesh, int surface) {
+void check(const TriangleView& mesh, int surface) {
     if (mesh.triangle_count() == 0)
         throw InputError("no_triangles", "the surface has no triangles", surface);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -25,7 +25,7 @@ void check(const TriangleMesh& mesh, int surface) {
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::int32_t v = mesh.triangles[i];
-        if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertex_count())
+        if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size() / 3)
             throw InputError("bad_index", "a triangle has a vertex that is not there", surface,
                              {static_cast<std::int64_t>(i / 3)});
     }
@@ -33,14 +33,14 @@ void check(const TriangleMesh& mesh, int surface) {
 
 }  // namespace
 
-Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution)
+Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
     : progress_(execution.progress) {
     for (std::uint8_t source = 0; source < 2; ++source) {
-        const TriangleMesh& mesh = surfaces[source];
+        const TriangleView& mesh = surfaces[source];
         check(mesh, source);
         checked_number(whole_.size() + mesh.triangle_count(), "triangles");
         second_ = whole_.size();
-        std::vector<SpacePointId> number(mesh.vertex_count(), kNone);
+        std::vector<SpacePointId> number(mesh.vertices.size() / 3, kNone);
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
             poll(execution.progress, t);
             Piece piece;
@@ -61,10 +61,11 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& exe
             largest_ = std::max(largest_, std::abs(x));
     }
     std::vector<spatial::Box> boxes(whole_.size());
-    parallel_ranges(whole_.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            boxes[i] = box(whole_[i].corners);
-    });
+    parallel_ranges(whole_.size(), kPiecesAtOnce, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i)
+                            boxes[i] = box(whole_[i].corners);
+                    });
     tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution.progress);
 }
 

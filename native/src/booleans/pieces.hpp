@@ -32,7 +32,7 @@ struct PieceId {
 class Pieces {
 public:
     /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large
-    Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution);
+    Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
 
     SpacePoints points;
 

@@ -19,7 +19,7 @@ namespace realmodel::booleans {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 10;
+constexpr std::size_t kItemsAtOnce = 1 << 10;
 /// What is nearer than so many units in the last place comes together, kGrowth times as many where
 /// rounds do not settle.
 constexpr double kNearest = 64;
@@ -32,7 +32,7 @@ constexpr int kMostRounds = 40;
 /// nothing meets out of order.
 class Refiner {
 public:
-    Refiner(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution)
+    Refiner(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
         : pieces_(surfaces, execution), execution_(execution) {
         for (std::size_t i = 0; i < pieces_.input_count(); ++i)
             fresh_.push_back(static_cast<std::int32_t>(i));
@@ -99,14 +99,15 @@ bool Refiner::is_flat(const Corners& c) const {
 void Refiner::drop_flat() {
     for (;;) {
         std::vector<std::vector<Corners>> found(fresh_.size());
-        parallel_ranges(fresh_.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                for (const Piece& piece : pieces_.of(fresh_[i])) {
-                    if (piece.is_fresh && is_flat(piece.corners))
-                        found[i].push_back(in_order(piece.corners).first);
-                }
-            }
-        });
+        parallel_ranges(fresh_.size(), kItemsAtOnce, execution_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                                    if (piece.is_fresh && is_flat(piece.corners))
+                                        found[i].push_back(in_order(piece.corners).first);
+                                }
+                            }
+                        });
         std::vector<Corners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             flat.insert(flat.end(), found[i].begin(), found[i].end());
@@ -261,13 +262,14 @@ std::vector<std::uint8_t> Refiner::near_meetings(const ExactDivision& division) 
     const auto& meetings = division.meetings();
     const Nearness nearness(pieces_.points, ulps_);
     std::vector<std::uint8_t> is_near(meetings.size());
-    parallel_ranges(meetings.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            NearParts found;
-            nearness.find(pair_of(division, meetings[i]), found);
-            is_near[i] = found.empty() ? 0 : 1;
-        }
-    });
+    parallel_ranges(meetings.size(), kItemsAtOnce, execution_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            NearParts found;
+                            nearness.find(pair_of(division, meetings[i]), found);
+                            is_near[i] = found.empty() ? 0 : 1;
+                        }
+                    });
     return is_near;
 }
 
@@ -340,7 +342,7 @@ Parts Refiner::result() const {
 
 }  // namespace
 
-Parts refine(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution) {
+Parts refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution) {
     return Refiner(surfaces, execution).run();
 }
 

@@ -59,6 +59,6 @@ struct Parts {
 /// are rounded to coarser and coarser steps, which merges them.
 ///
 /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large, too_close; Cancelled
-Parts refine(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution);
+Parts refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
 
 }  // namespace realmodel::booleans

@@ -18,15 +18,11 @@ namespace realmodel::booleans {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 6, kPairs = 1 << 10;
+constexpr std::size_t kTrianglesAtOnce = 1 << 6, kPairs = 1 << 10;
 
 template <class Item>
 void append(std::vector<Item>& to, const std::vector<Item>& from) {
     to.insert(to.end(), from.begin(), from.end());
-}
-
-bool has(const Corners& corners, SpacePointId p) {
-    return std::find(corners.begin(), corners.end(), p) != corners.end();
 }
 
 /// Pieces of one triangle that have been folded upon each other go, two and two.
@@ -112,18 +108,19 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
     std::vector<std::vector<Corners>> around(std::min(kAtOnce, facets.size()));
     for (std::size_t first = 0; first < facets.size(); first += kAtOnce) {
         const std::size_t count = std::min(kAtOnce, facets.size() - first);
-        parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                auto& own = around[i];
-                own.clear();
-                spatial::Box box = pieces_.box(facets_[facets[first + i]]);
-                box.widen(reach(facets[first + i]));
-                pieces_.find(box, [&own](const Piece& piece) {
-                    own.push_back(in_order(piece.corners).first);
-                });
-                sort_unique(own);
-            }
-        });
+        parallel_ranges(count, kTrianglesAtOnce, execution_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                auto& own = around[i];
+                                own.clear();
+                                spatial::Box box = pieces_.box(facets_[facets[first + i]]);
+                                box.widen(reach(facets[first + i]));
+                                pieces_.find(box, [&own](const Piece& piece) {
+                                    own.push_back(in_order(piece.corners).first);
+                                });
+                                sort_unique(own);
+                            }
+                        });
         for (std::size_t i = 0; i < count; ++i) {
             if (execution_.progress != nullptr) execution_.progress->check();
             const std::int32_t facet = facets[first + i];
@@ -288,12 +285,14 @@ void Snapping::spread_points() {
     for (std::size_t f = 0; f < places_.size(); ++f) {
         if (!places_[f].near.empty()) facets.push_back(static_cast<std::int32_t>(f));
     }
-    std::vector<std::vector<OnEdge>> found((facets.size() + kChunk - 1) / kChunk);
+    std::vector<std::vector<OnEdge>> found((facets.size() + kTrianglesAtOnce - 1) /
+                                           kTrianglesAtOnce);
     for (bool goes_on = true; goes_on;) {
-        parallel_ranges(facets.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                take_points(facets[i], found[begin / kChunk]);
-        });
+        parallel_ranges(facets.size(), kTrianglesAtOnce, execution_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                take_points(facets[i], found[begin / kTrianglesAtOnce]);
+                        });
         std::vector<OnEdge> all;
         for (auto& own : found) {
             append(all, own);
@@ -440,13 +439,15 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
         if (!places_[f].over.empty())
             boxes.push_back(pieces_.box(facets_[static_cast<std::int32_t>(f)]));
     }
-    std::vector<std::vector<std::int32_t>> found((boxes.size() + kChunk - 1) / kChunk);
-    parallel_ranges(boxes.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-        auto& own = found[begin / kChunk];
-        for (std::size_t i = begin; i < end; ++i)
-            pieces_.find_inputs(boxes[i], [&own](std::int32_t input) { own.push_back(input); });
-        sort_unique(own);
-    });
+    std::vector<std::vector<std::int32_t>> found((boxes.size() + kTrianglesAtOnce - 1) /
+                                                 kTrianglesAtOnce);
+    parallel_ranges(
+        boxes.size(), kTrianglesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
+            auto& own = found[begin / kTrianglesAtOnce];
+            for (std::size_t i = begin; i < end; ++i)
+                pieces_.find_inputs(boxes[i], [&own](std::int32_t input) { own.push_back(input); });
+            sort_unique(own);
+        });
     std::vector<std::int32_t> inputs;
     for (const auto& own : found)
         append(inputs, own);

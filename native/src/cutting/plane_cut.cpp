@@ -23,8 +23,8 @@ namespace realmodel::cutting {
 
 namespace {
 
-constexpr std::size_t kFaces = 1 << 14;
-constexpr std::size_t kCells = 1 << 10;
+constexpr std::size_t kFacesAtOnce = 1 << 14;
+constexpr std::size_t kCellsAtOnce = 1 << 10;
 constexpr std::uint8_t kHasAbove = 1, kHasBelow = 2, kCut = kHasAbove | kHasBelow;
 
 /// Vertices this many times farther from the plane than they are precise may be taken to lie on it
@@ -128,7 +128,7 @@ private:
 void PlaneCutter::mark_sides() {
     face_sides_.assign(model_.face_count(), 0);
     parallel_ranges(
-        face_sides_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+        face_sides_.size(), kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) {
                 std::uint8_t found = 0;
                 for (const NodeId v : model_.face(f)) {
@@ -221,15 +221,15 @@ CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
     find_cuts();
-    std::vector<CutPieces> found((model_.face_count() + kFaces - 1) / kFaces);
+    std::vector<CutPieces> found((model_.face_count() + kFacesAtOnce - 1) / kFacesAtOnce);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
     parallel_ranges(
-        model_.face_count(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+        model_.face_count(), kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             FaceSplitter splitter(model_, sides_, *cuts_);
             SplitFace parts;
-            CutPieces& own = found[begin / kFaces];
+            CutPieces& own = found[begin / kFacesAtOnce];
             for (std::size_t f = begin; f < end; ++f) {
                 const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
                 const auto face = model_.face(f);
@@ -283,7 +283,7 @@ void PlaneCutter::cut_cells(bool parts) {
         }
     });
     cell_cuts_.assign(count, {});
-    parallel_ranges(count, kCells, execution_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kCellsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
         CellCutter cutter(model_, sides_, *cuts_, pieces_, plane_);
         for (std::size_t i = begin; i < end; ++i) {
             if (parts) {

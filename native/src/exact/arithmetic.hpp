@@ -42,6 +42,9 @@ inline bool is_known(const mpz_class&) {
 inline int sign_of(const mpz_class& number) {
     return sgn(number);
 }
+inline int sign_of(double value) {
+    return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
+}
 inline double nearest_double(const Int126& num, const Int126& den, int exponent) {
     return nearest_double(num.to_mpz(), den.to_mpz(), exponent);
 }

@@ -11,10 +11,6 @@ namespace realmodel::exact {
 
 namespace {
 
-int sign_of(double value) {
-    return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
-}
-
 VertexId origin_of(const LocalArrangement& scope, PointId id) {
     return scope.is_vertex(id) ? scope.vertex(id)
                                : anchor(scope.shared(), scope.line(scope.point(id).first));

@@ -19,7 +19,7 @@ using Triangle = std::array<std::int32_t, 3>;
 
 constexpr int kMostRounds = 20;
 constexpr std::int32_t kGone = INT32_MIN;  ///< the surface of a triangle that is no longer one
-constexpr double kFlat = 0.87;             ///< cosine between normals: 30 degrees
+constexpr double kFlatCorner = 0.87;       ///< cosine between normals: 30 degrees
 
 template <std::size_t N>
 bool has(const std::array<std::int32_t, N>& corners, std::int32_t v) {
@@ -134,7 +134,7 @@ private:
         }
         for (std::size_t i = 0; i < normals.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                if (!(dot(normals[i], normals[j]) > kFlat)) return false;
+                if (!(dot(normals[i], normals[j]) > kFlatCorner)) return false;
         std::vector<std::size_t> rows;
         for (const std::int32_t f : triangles_at_[index(inside[0])]) {
             const Triangle& face = triangles_[index(f)];

@@ -15,8 +15,8 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kFlat = 0.002;  ///< twice the limit of checkMesh
-constexpr double kMoved = 0.5;   ///< of the tolerance: how far corners on surfaces move
+constexpr double kFlatTetrahedron = 0.002;  ///< twice the limit of checkMesh
+constexpr double kMoved = 0.5;              ///< of the tolerance: how far corners on surfaces move
 constexpr double kBetter = 1.02;
 constexpr int kRounds = 20;
 constexpr std::array kSteps{0.4, 0.2, 0.1, 0.05, 0.025};  ///< of an edge
@@ -152,7 +152,7 @@ std::size_t thicken_flat_tetrahedra(FilledMesh& mesh, double tolerance, Progress
         flat.clear();
         for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
             poll(progress, t);
-            if (roundness(mesh, mesh.tetrahedra[t]) < kFlat) flat.push_back(t);
+            if (roundness(mesh, mesh.tetrahedra[t]) < kFlatTetrahedron) flat.push_back(t);
         }
         return !flat.empty();
     };

@@ -43,6 +43,7 @@ struct Together {
     std::vector<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
     std::vector<std::int32_t> model_of_cell;
     std::vector<std::uint8_t> is_near;  ///< of cells
+    std::vector<Sides> model_sides;
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
@@ -81,6 +82,7 @@ Together::Together(std::span<const PartModel> models,
     };
     for (const PartModel& own : models) {
         positions.push_back(own.model.vertex_count());
+        model_sides.push_back(own.sides);
         blocks = std::max(blocks, own.model.blocks);
         surfaces = std::max(surfaces, own.model.surfaces);
         if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
@@ -209,7 +211,7 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// Joins the models where only the cells that are near structures take part in cutting; nothing
 /// where rounding went beyond them.
 std::optional<Joined> join(const Together& together, const StructureSurface& surface,
-                           std::span<const PartModel> models, std::span<const Structure> structures,
+                           std::span<const Structure> structures,
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
     const ComplexView all = together.view();
@@ -224,10 +226,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     const CutterWinding winding(overlay, execution.progress);
     const StructureSides sides(overlay, winding, surface, structures, execution.progress);
     assert(model_of_cell.size() == near.cell_count());
-    std::vector<Sides> model_sides;
-    for (const PartModel& own : models)
-        model_sides.push_back(own.sides);
-    const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
+    const WantedParts wanted(overlay, winding, sides, model_of_cell, together.model_sides, acts);
     begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
     begin(execution.progress, 0.85, 0.92, "rounding what was cut");
@@ -247,10 +246,28 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     return joined;
 }
 
+/// One cell that fills a box.
+CellComplex box_cell(const std::array<Position, 2>& corners) {
+    CellComplex cell;
+    for (std::size_t v = 0; v < 8; ++v)
+        cell.vertices.push_back({corners[v & 1][0], corners[v >> 1 & 1][1], corners[v >> 2][2]});
+    cell.face_vertices = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    for (std::int64_t begin = 0; begin <= 24; begin += 4)
+        cell.face_offsets.push_back(begin);
+    cell.face_cells.assign(6, {0, -1});
+    cell.face_surface.assign(6, kWall);
+    cell.cell_block.push_back(0);
+    cell.cell_kind = CellKind::kBlocks;
+    return cell;
+}
+
 }  // namespace
 
-std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
-                           const Execution& execution) {
+std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
+                           std::span<const Structure> structures, const Execution& execution) {
+    const CellComplex cell = box_cell(corners);
+    ComplexView rock = cell;
+    rock.blocks = 1;
     cutting::check_model(rock);
     const StructureSurface surface = structure_surface(structures, box_of(rock));
     SurfaceOverlay overlay(rock, surface.surface, execution);
@@ -302,10 +319,10 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     Together together(models, places, execution);
     together.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    if (auto joined = join(together, surface, models, structures, acts, least, execution))
+    if (auto joined = join(together, surface, structures, acts, least, execution))
         return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
-    return *join(together, surface, models, structures, acts, least, execution);
+    return *join(together, surface, structures, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,

@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    PlaneId add(const strata::SurfaceView& surface, std::int32_t triangle, ClosedColumn& column) {
+    PlaneId add(const TriangleView& surface, std::int32_t triangle, ClosedColumn& column) {
         std::array<const double*, 3> row;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t v = surface.triangles[3 * static_cast<std::size_t>(triangle) + i];

@@ -70,7 +70,7 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
     std::size_t first = 0;
     for (const strata::StackInput& rock : input.rocks) {
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
-            const strata::SurfaceView& s = rock.surfaces[k];
+            const TriangleView& s = rock.surfaces[k];
             look(s.vertices, 3, s.triangles, [&](std::size_t probe, std::int32_t t) {
                 keep_lowest(triangle_[probe * surfaces_ + first + k], t);
             });

@@ -52,7 +52,7 @@ const double* corner(std::span<const double> vertices, std::size_t columns, std:
 /// Around what a rock mass covers at most.
 Box rock_box(const strata::StackInput& rock) {
     Box box;
-    for (const strata::SurfaceView& s : rock.surfaces) {
+    for (const TriangleView& s : rock.surfaces) {
         for (const std::int32_t v : s.triangles)
             box.include(corner(s.vertices, 3, v));
     }
@@ -188,10 +188,10 @@ public:
     }
 
     void in_triangles(std::size_t count) {
-        std::vector<std::pair<std::size_t, const strata::SurfaceView*>> surfaces;
+        std::vector<std::pair<std::size_t, const TriangleView*>> surfaces;
         std::size_t total = 0;
         for (const strata::StackInput& rock : input_.rocks) {
-            for (const strata::SurfaceView& s : rock.surfaces) {
+            for (const TriangleView& s : rock.surfaces) {
                 total += s.triangles.size() / 3;
                 surfaces.emplace_back(total, &s);
             }
@@ -202,7 +202,7 @@ public:
             const auto at = std::upper_bound(
                 surfaces.begin(), surfaces.end(), t,
                 [](std::size_t value, const auto& entry) { return value < entry.first; });
-            const strata::SurfaceView& s = *at->second;
+            const TriangleView& s = *at->second;
             const std::size_t own = t - (at->first - s.triangles.size() / 3);
             std::array<PlanPosition, 3> p;
             for (std::size_t c = 0; c < 3; ++c) {
@@ -265,7 +265,7 @@ double largest_plan_coordinate(const ComplexView& model, const ModelInput& input
     };
     look(model.vertices, 3);
     for (const strata::StackInput& rock : input.rocks) {
-        for (const strata::SurfaceView& s : rock.surfaces)
+        for (const TriangleView& s : rock.surfaces)
             look(s.vertices, 3);
         if (rock.region) look(rock.region->vertices, 2);
     }

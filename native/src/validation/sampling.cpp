@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "realmodel/base/errors.hpp"
 #include "validation/chunked.hpp"
 #include "validation/closed_form.hpp"
+#include "validation/figure.hpp"
 #include "validation/input_columns.hpp"
 #include "validation/model_columns.hpp"
 
@@ -26,12 +26,6 @@ constexpr double kHeightSteps = 32;
 double rounding_of_heights(double highest) {
     constexpr double kLeast = std::numeric_limits<double>::denorm_min();
     return 2 * kHeightSteps * std::max(highest * 0x1p-52, kLeast);
-}
-
-std::string figure(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", value);
-    return text;
 }
 
 std::string text_of(const std::vector<Interval>& column) {
@@ -257,7 +251,7 @@ void require_vertices(const ModelInput& input) {
     };
     int surface = 0;
     for (const strata::StackInput& rock : input.rocks) {
-        for (const strata::SurfaceView& s : rock.surfaces)
+        for (const TriangleView& s : rock.surfaces)
             check(s.triangles, s.vertices.size() / 3, surface++);
         if (rock.region) check(rock.region->triangles, rock.region->vertices.size() / 2, -1);
     }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 #include "validation/arrays_test.hpp"
 #include "validation/cell_extent.hpp"
@@ -12,6 +11,7 @@
 #include "validation/closed_cells.hpp"
 #include "validation/face_measures.hpp"
 #include "validation/face_shape.hpp"
+#include "validation/figure.hpp"
 #include "validation/outside_test.hpp"
 #include "validation/vertex_test.hpp"
 
@@ -21,12 +21,6 @@ namespace {
 
 /// Cells with more faces than this are looked at one by one, on all threads.
 constexpr std::size_t kFacesOfLargeCell = 4096;
-
-std::string figure(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", value);
-    return text;
-}
 
 /// Sum with a running correction (Neumaier 1974).
 struct Sum {

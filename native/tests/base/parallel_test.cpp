@@ -148,5 +148,63 @@ TEST(Parallel, ChunksAreCountedIntoTheProgress) {
     EXPECT_DOUBLE_EQ(progress.fraction(), 0.6);
 }
 
+TEST(ParallelTasks, EachRunsOnceWithItsShare) {
+    for (const int threads : {1, 2, 3, 8}) {
+        for (const std::size_t count : {0, 1, 2, 5}) {
+            Progress progress;
+            std::vector<int> runs(count, 0);
+            parallel_tasks(count, {threads, &progress}, 0.5,
+                           [&](std::size_t task, const auto& own) {
+                               ++runs[task];
+                               const int at_once = std::min(threads, static_cast<int>(count));
+                               EXPECT_EQ(own.threads,
+                                         at_once == 1 ? threads : (2 * threads - 1) / at_once + 1);
+                               std::atomic<int> inner{0};  // loops run in parallel within it
+                               parallel_chunks(100, own, [&](std::size_t) { ++inner; });
+                               EXPECT_EQ(inner, 100);
+                           });
+            EXPECT_EQ(runs, std::vector<int>(count, 1));
+            EXPECT_NEAR(progress.fraction(), count == 0 ? 0.0 : 0.5, 1e-15);
+        }
+    }
+}
+
+TEST(ParallelTasks, TheErrorIsThatOfTheLowestAndThoseAboveItAreStopped) {
+    std::atomic<int> begun{0}, stopped{0};
+    try {
+        parallel_tasks(3, {3, nullptr}, 1.0, [&](std::size_t task, const Execution& own) {
+            if (task == 2) {
+                ++begun;
+                try {
+                    for (;;)
+                        own.progress->check();
+                } catch (const Cancelled&) {
+                    ++stopped;
+                    throw;
+                }
+            }
+            while ((task == 1 ? begun : stopped) == 0)  // the lowest still runs when another failed
+                own.progress->check();
+            if (task == 1) throw std::runtime_error("1");
+            throw std::runtime_error("0");
+        });
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "0");
+    }
+    EXPECT_EQ(stopped, 1);
+}
+
+TEST(ParallelTasks, AllStopWithTheCaller) {
+    Progress progress;
+    EXPECT_THROW(parallel_tasks(2, {2, &progress}, 1.0,
+                                [&](std::size_t, const Execution& own) {
+                                    progress.cancel();
+                                    for (;;)
+                                        own.progress->check();
+                                }),
+                 Cancelled);
+}
+
 }  // namespace
 }  // namespace realmodel

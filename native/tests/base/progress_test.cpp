@@ -151,5 +151,46 @@ TEST(CountedLoop, CountsFromAnyThread) {
     EXPECT_NEAR(progress.fraction(), 1.0, 1e-12);
 }
 
+TEST(Progress, PartsTakeTheWholeOn) {
+    Progress whole;
+    whole.report(0.25, "all of it");
+    Progress one(&whole, 0.25), other(&whole, 0.5);
+    one.report(0.5, "one part");
+    EXPECT_DOUBLE_EQ(whole.fraction(), 0.375);
+    other.begin(0.0, 1.0, "another part");
+    CountedLoop loop(&other, 2, 1.0);
+    loop.count();
+    EXPECT_DOUBLE_EQ(whole.fraction(), 0.625);
+    one.report(0.25, nullptr);  // the whole does not go back
+    EXPECT_DOUBLE_EQ(whole.fraction(), 0.625);
+    one.report(1.0, nullptr);
+    loop.count();
+    EXPECT_DOUBLE_EQ(whole.fraction(), 1.0);
+    EXPECT_EQ(whole.text(), "all of it");
+}
+
+TEST(Progress, PartsOfPartsTakeTheWholeOn) {
+    Progress whole;
+    Progress part(&whole, 0.5);
+    Progress inner(&part, 0.5);
+    inner.report(0.5, nullptr);
+    EXPECT_DOUBLE_EQ(part.fraction(), 0.25);
+    EXPECT_DOUBLE_EQ(whole.fraction(), 0.125);
+}
+
+TEST(Progress, APartIsCancelledWithTheWholeOrAlone) {
+    Progress whole;
+    Progress one(&whole, 0.5), other(&whole, 0.5);
+    one.cancel();
+    EXPECT_THROW(one.check(), Cancelled);
+    EXPECT_NO_THROW(other.check());
+    EXPECT_NO_THROW(whole.check());
+    whole.cancel();
+    EXPECT_THROW(other.check(), Cancelled);
+    Progress unwatched(nullptr, 0.5);
+    unwatched.report(1.0, "nobody hears of it");
+    EXPECT_NO_THROW(unwatched.check());
+}
+
 }  // namespace
 }  // namespace realmodel

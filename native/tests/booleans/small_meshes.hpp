@@ -16,7 +16,7 @@ struct Mesh {
     std::vector<double> vertices;
     std::vector<std::int32_t> triangles;
 
-    TriangleMesh view() const { return {vertices, triangles}; }
+    TriangleView view() const { return {vertices, triangles}; }
     void add(const Mesh& other) {
         const auto first = static_cast<std::int32_t>(vertices.size() / 3);
         vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());

@@ -16,7 +16,7 @@ struct Plane {
     std::vector<std::int32_t> triangles{0, 1, 2, 0, 2, 3};
     /// Over a rectangle of 10 by 6, with heights at its west and its east side.
     Plane(double west, double east) : vertices{0, 0, west, 10, 0, east, 10, 6, east, 0, 6, west} {}
-    strata::SurfaceView view() const { return {vertices, triangles}; }
+    TriangleView view() const { return {vertices, triangles}; }
 };
 
 /// The model of some planes, whose blocks are numbered from 0.

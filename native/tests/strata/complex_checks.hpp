@@ -18,7 +18,7 @@ namespace realmodel::strata {
 struct OwnedSurface {
     std::vector<double> vertices;
     std::vector<std::int32_t> triangles;
-    SurfaceView view() const { return {vertices, triangles}; }
+    TriangleView view() const { return {vertices, triangles}; }
 
     std::int32_t vertex(double x, double y, double z) {
         vertices.insert(vertices.end(), {x, y, z});

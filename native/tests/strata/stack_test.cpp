@@ -176,7 +176,7 @@ TEST(Stack, TheRegionClips) {
     const auto upper = grid(
         4, 4, 0, 0, 1, 1, [](double, double y) { return 2 + y; }, true);
     input.surfaces = {lower.view(), upper.view()};
-    input.region = RegionView{corners, triangles};
+    input.region = TriangleView{corners, triangles};
     const auto c = build_stack(input, {1, nullptr});
     expect_valid(c);
     EXPECT_DOUBLE_EQ(c.volumes[1], 0.25 * 2.0);
@@ -475,7 +475,7 @@ TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
         return {};
     };
     StackInput input{{floor.view(), top.view()}, {}, {}, {}, {}, {}};
-    input.region = RegionView{corners, triangle};
+    input.region = TriangleView{corners, triangle};
     EXPECT_NE(refusal(input).find("corner 1 of the region"), std::string::npos);
     input.region.reset();
     for (const double base : {-1e60, std::nan("")}) {

@@ -18,7 +18,7 @@ using strata::CellComplex;
 using strata::grid;
 using strata::OwnedSurface;
 
-cutting::TriangleView view(const OwnedSurface& s) {
+TriangleView view(const OwnedSurface& s) {
     return {s.vertices, s.triangles};
 }
 
@@ -90,10 +90,12 @@ std::string refusal(const auto& work) {
 
 const std::vector<std::uint8_t> kAllAct(64, 1);
 
+/// A box with rock.
+const std::array<std::array<double, 3>, 2> kRock{{{0, 0, 0}, {4, 4, 3}}};
+
 TEST(PartsOf, AFaultLeavesTwoBesideIt) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface upright = sheet(1, 0);
-    const auto parts = parts_of(with(rock, 1), std::array{fault(upright)}, {1, nullptr});
+    const auto parts = parts_of(kRock, std::array{fault(upright)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     // the box of either part ends at the fault
@@ -102,7 +104,6 @@ TEST(PartsOf, AFaultLeavesTwoBesideIt) {
 }
 
 TEST(PartsOf, FaultsThatCrossLeaveFour) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface one = sheet(1, 0.1);
     OwnedSurface other;
     for (const auto& [x, z] :
@@ -110,12 +111,11 @@ TEST(PartsOf, FaultsThatCrossLeaveFour) {
         other.vertex(x, 2 + z / 8, z);
     other.triangle(0, 1, 2);
     other.triangle(0, 2, 3);
-    const auto parts = parts_of(with(rock, 2), std::array{fault(one), fault(other)}, {1, nullptr});
+    const auto parts = parts_of(kRock, std::array{fault(one), fault(other)}, {1, nullptr});
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}));
 }
 
 TEST(PartsOf, ABranchEndsAtTheOtherFault) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface trunk = sheet(2, 0.25);
     OwnedSurface branch;  // crosses the trunk; the larger part is where x is great
     for (const auto& [x, z] :
@@ -125,7 +125,7 @@ TEST(PartsOf, ABranchEndsAtTheOtherFault) {
     branch.triangle(0, 2, 3);
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
+    const auto parts = parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
     ASSERT_EQ(parts.size(), 3U);
     EXPECT_EQ(std::ranges::count_if(parts, [](const Part& p) { return p.sides[1] == 0; }), 1);
     const auto whole = std::ranges::find_if(parts, [](const Part& p) { return p.sides[1] == 0; });
@@ -133,18 +133,16 @@ TEST(PartsOf, ABranchEndsAtTheOtherFault) {
 }
 
 TEST(PartsOf, OneThatMissesTheFaultThatItIsToEndAtIsRefused) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface trunk = sheet(1, 0), far = sheet(3, 0);
     Structure ends = fault(far);
     ends.ends_at = {0};
     EXPECT_EQ(refusal([&] {
-                  parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
+                  parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
               }),
               "does_not_meet");
 }
 
 TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface trunk = sheet(90, 0, -99, 99);
     OwnedSurface branch;  // level: what is in the rock ends before the trunk, and is continued
     for (const double x : {-30.0, 50.0, 95.0}) {
@@ -157,16 +155,15 @@ TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
     }
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
+    const auto parts = parts_of(kRock, std::array{fault(trunk), ends}, {1, nullptr});
     const std::int8_t side =
         sides_of_points(std::array{fault(trunk)}, std::array{0.0, 0.0, 0.0}, {1, nullptr})[0];
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{side, -1}, {side, 1}}));
 }
 
 TEST(PartsOf, ABodyHasAnInside) {
-    const CellComplex rock = layers({0, 3});
     const OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
-    const auto parts = parts_of(with(rock, 1), std::array{body(chest)}, {1, nullptr});
+    const auto parts = parts_of(kRock, std::array{body(chest)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     EXPECT_EQ(parts[0].low, (std::array<double, 3>{1, 1, 1}));
@@ -174,11 +171,10 @@ TEST(PartsOf, ABodyHasAnInside) {
 }
 
 TEST(PartsOf, ABodyThatIsNotClosedIsRefusedWithThePlace) {
-    const CellComplex rock = layers({0, 3});
     OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
     chest.triangles.resize(chest.triangles.size() - 3);
     try {
-        parts_of(with(rock, 1), std::array{body(chest)}, {1, nullptr});
+        parts_of(kRock, std::array{body(chest)}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "not_closed");
@@ -358,7 +354,7 @@ TEST(PartsOf, AFaultThatIsContinuedAcrossAnotherIsCrossedAllThrough) {
     small.triangle(0, 2, 3);
     Structure dies = fault(small);
     dies.dies_out = true;
-    EXPECT_EQ(parts_of(with(rock, 2), std::array{fault(slanted), dies}, {1, nullptr}).size(), 4U);
+    EXPECT_EQ(parts_of(kRock, std::array{fault(slanted), dies}, {1, nullptr}).size(), 4U);
 }
 
 TEST(JoinModels, AFaultThatDiesOutIsASlit) {
@@ -578,7 +574,7 @@ TEST(ContinuationOf, PartsOfAFaultThatDiesOutMayNotLieBesideEachOther) {
     Structure dying = fault(two);
     dying.dies_out = true;
     try {
-        parts_of(layers({0, 4}), std::array{dying}, {1, nullptr});
+        parts_of({{{0, 0, 0}, {4, 4, 4}}}, std::array{dying}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "folded");

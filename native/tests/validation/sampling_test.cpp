@@ -33,7 +33,7 @@ struct OwnedRock {
         for (const OwnedSurface& s : surfaces)
             input.surfaces.push_back(s.view());
         input.rules = rules;
-        if (region) input.region = strata::RegionView{region->vertices, region->triangles};
+        if (region) input.region = TriangleView{region->vertices, region->triangles};
         input.base_elevation = base;
         return input;
     }

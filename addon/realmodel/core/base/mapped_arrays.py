@@ -8,6 +8,7 @@ import json
 import os
 import secrets
 import shutil
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,6 +25,9 @@ MakeZeros = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the call
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
 _HEADER = 128  # bytes before an array in a file of NumPy
+# NumPy reads headers with ast.literal_eval, in which threads disturb each other before CPython 3.11.5 (its
+# issue 106905: "AST constructor recursion depth mismatch").
+_READING_A_HEADER = threading.Lock()
 
 
 def as_it_is(array: np.ndarray) -> np.ndarray:
@@ -126,7 +130,8 @@ class MappedArrays:
         """The array of such a reference."""
         if isinstance(place, np.ndarray):
             return place
-        array = np.load(place, mmap_mode="r")
+        with _READING_A_HEADER:
+            array = np.load(place, mmap_mode="r")
         self._files[id(array)] = array, place
         return array
 

@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, cast
@@ -54,37 +54,49 @@ class Work:
         self._share = 0.0
         self._reported = 0.0
         self._text = ""
+        self._has_steps = False
         self._cancelled = False
 
     # -- in the working thread
 
     @contextmanager
-    def phase(self, start: float, end: float, text: str):
-        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1."""
+    def phase(self, start: float, end: float, text: str, has_steps: bool = False):
+        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1. has_steps: its
+        native call says itself what it is doing."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
+            self._has_steps = has_steps
         yield
         self.step(1.0)
 
     @contextmanager
     def part(self, start: float, end: float):
-        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job as a
-        part of another."""
+        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job, or a
+        step that has phases of its own, as a part of another."""
         before = self._part
         low, high = before
         with self._lock:
             self._part = low + (high - low) * start, low + (high - low) * end
             self._start, self._end, self._share = 0.0, 1.0, 0.0
-        yield
-        with self._lock:
-            self._part = before
-            self._start, self._end, self._share = start, end, 1.0
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._part = before
+                self._start, self._end, self._share = start, end, 1.0
 
     @property
     def stretch(self) -> tuple[float, float]:
         """The progress that the present phase begins and ends at."""
         return self._start, self._end
+
+    def share_out(self, items: Sequence[Item]) -> Iterator[Item]:
+        """The items one after the other, each with an equal part of the progress: its phases go from 0 to
+        1."""
+        for number, item in enumerate(items):
+            with self.part(number / len(items), (number + 1) / len(items)):
+                yield item
 
     def step(self, share: float) -> None:
         """Sets the progress of the present phase, 0 to 1. Raises Cancelled if the caller has cancelled."""
@@ -166,7 +178,8 @@ class Work:
             share = self._share
             if self._execution is not None:
                 share = max(share, self._execution.fraction)
-            text = self._text
+            steps = self._execution.text if self._execution is not None and self._has_steps else ""
+            text = steps or self._text
             if self._works:
                 states = [work.state() for work in self._works]
                 share = max(share, sum(each for each, _ in states) / len(states))

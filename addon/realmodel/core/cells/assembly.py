@@ -49,28 +49,23 @@ def build_stage(
 
     def task(work: Work) -> SomeModel:
         structures = model.structures.stage(m)
-        built = intersect(work, inputs, kind, 0.0, _STAGE_INTERSECTED, structures)
+        with work.part(0.0, _STAGE_INTERSECTED):
+            built = intersect(work, inputs, kind, structures)
         timings = {"intersect": time.perf_counter() - began}
-        return type(model).of(assemble(work, project, inputs, built, timings, _STAGE_INTERSECTED, structures))
+        with work.part(_STAGE_INTERSECTED, 1.0):
+            return type(model).of(assemble(work, project, inputs, built, timings, structures))
 
     began = time.perf_counter()
     return run(task, progress, cancel, threads=model.threads)
 
 
-def intersect(
-    work: Work,
-    inputs: list[RockInput],
-    cells: str,
-    start: float,
-    end: float,
-    structures: Structures,
-) -> BuiltCells:
+def intersect(work: Work, inputs: list[RockInput], cells: str, structures: Structures) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
     if structures.is_divided:
-        return build_joined(work, inputs, structures, cells, start, end)
+        return build_joined(work, inputs, structures, cells)
     rocks = [entry.native() for entry in inputs]
     refused = refused_as(lambda error: refused_stack(error, inputs))
-    with work.phase(start, end, "intersecting and cutting"), refused as native:
+    with work.phase(0.0, 1.0, "intersecting and cutting"), refused as native:
         return BuiltCells.of(work.native(native.build_rock_masses, rocks, cells=cells), cells)
 
 
@@ -80,12 +75,11 @@ def assemble(
     inputs: list[RockInput],
     built: BuiltCells,
     timings: dict[str, float],
-    start: float,
     structures: Structures,
 ) -> ModelData:
     """The model that these cells are of."""
     began = time.perf_counter()
-    with work.phase(start, 1.0, "assembling the model"):
+    with work.phase(0.0, 1.0, "assembling the model"):
         own = _complex(inputs, built, structures)
         own.find_components(work)
         work.step(0.8)

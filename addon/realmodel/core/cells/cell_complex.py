@@ -114,44 +114,21 @@ class CellComplex:
 
     def without_cells(self, dropped: np.ndarray) -> CellComplex:
         """The complex without some cells, (C,) bool."""
-        number = np.append(np.where(dropped, -1, np.cumsum(~dropped) - 1), -1).astype(np.int32)
-        cells = number[self.face_cells]
-        kept = np.flatnonzero((cells >= 0).any(axis=1))
-        cells = cells[kept]
-        turned = cells[:, 0] < 0  # seen from the cell that is left
-        cells = np.where(turned[:, None], cells[:, ::-1], cells)
-        return self._of_faces(kept, turned, cells, self.cell_block[~dropped])
+        return self._with_cells(np.where(dropped, -1, np.cumsum(~dropped) - 1))
 
-    def one_cell_each(self, joins: np.ndarray | None = None) -> tuple[CellComplex, np.ndarray]:
-        """The complex with each connected part of a block as one cell: without the faces between cells of
-        one block; and (C,) int32 the new cell of each. joins: (F,) bool, the faces that connect; None:
-        all."""
-        connecting = (
-            self.face_cells if joins is None else np.where(joins[:, None], self.face_cells, np.int32(-1))
-        )
-        part = native_module().cell_components(np.ascontiguousarray(connecting), self.cell_block)
-        roots, cell = np.unique(part, return_inverse=True)
-        cell = cell.ravel().astype(np.int32)
-        cells = np.append(cell, np.int32(-1))[self.face_cells]
-        kept = np.flatnonzero(cells[:, 0] != cells[:, 1])
-        joined = self._of_faces(kept, np.zeros(len(kept), bool), cells[kept], self.cell_block[roots])
-        return joined, cell
+    def one_cell_each(self, joins: np.ndarray) -> tuple[CellComplex, np.ndarray]:
+        """The complex with the cells of a block that faces (F,) bool connect as one, without the faces
+        between these; and (C,) int32 the new cell of each."""
+        connecting = np.where(joins[:, None], self.face_cells, np.int32(-1))
+        part = native_module().cell_components(connecting, self.cell_block)
+        cell = np.unique(part, return_inverse=True)[1].ravel().astype(np.int32)
+        return self._with_cells(cell), cell
 
-    def _of_faces(
-        self, faces: np.ndarray, turned: np.ndarray, cells: np.ndarray, cell_block: np.ndarray
-    ) -> CellComplex:
-        """Some faces (N,), with other cells (N, 2), and their own vertices alone."""
-        offsets, corners = self.face_corners(faces, turned)
-        used, corners = self._renumbered(corners)
-        return CellComplex(
-            self.vertices[used],
-            offsets,
-            corners,
-            np.ascontiguousarray(cells),
-            self.face_surface[faces],
-            np.ascontiguousarray(cell_block),
-            self.cell_kind,
-        )
+    def _with_cells(self, number: np.ndarray) -> CellComplex:
+        """The complex with its cells numbered anew (C,), -1: left out; those of one number are one."""
+        blocks = int(self.cell_block.max(initial=-1)) + 1
+        merged = native_module().merge_cells(self.native(blocks), number.astype(np.int32))
+        return CellComplex.of(merged, self.cell_kind)
 
     def _renumbered(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(V,) bool: the vertices that are corners; and the corners, (N,) int32, counted among these."""

@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.errors import BuildFailed, InputRefused
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, refused_as
+from ..base.work import Work, refused_as
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
@@ -22,12 +23,9 @@ from ..structures.parts.part_models import (
 from ..structures.parts.parts import Structures, compartment_of
 from ..structures.parts.refusals import refused_structure
 from ..surfaces.rock_input import RockInput
-from .built_cells import BuiltCells, CellParts, NativeWarning
-from .cell_complex import CellComplex
+from .built_cells import BuiltCells, CellParts
 from .reach import Reach
 from .stack_refusals import refused_stack
-
-_BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
 
 
 def build_joined(
@@ -35,8 +33,6 @@ def build_joined(
     inputs: list[RockInput],
     structures: Structures,
     cells: str,
-    start: float,
-    end: float,
     reach: Reach | None = None,
 ) -> BuiltCells:
     """The cells of rock masses (RockInput) with structures, and their parts.
@@ -47,47 +43,33 @@ def build_joined(
     there = structures.there()
     if len(there) < len(structures):
         few, part = structures.only(there)
-        built = build_joined(work, inputs, few, cells, start, end)
+        built = build_joined(work, inputs, few, cells)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
-    models: list[tuple] = []
-    parts: list[int] = []
-    warnings: dict[NativeWarning, None] = {}
     reach = reach or Reach(work, structures)
-    begin = start + _BUILT * (end - start)
-
-    def built_in(own_work: Work, part: int) -> BuiltCells | None:
-        with own_work.phase(0.0, 1.0, "intersecting and cutting"):
-            return _part_model(own_work, inputs, structures, reach, part, cells)
-
-    with work.phase(start, begin, "intersecting and cutting"):
-        made = work.each(built_in, range(len(structures.sides)))
-    for number, own in enumerate(made):
-        if own is not None and len(own.complex.cell_block):
-            warnings |= dict.fromkeys(own.warnings)
-            models.append((_native(own.complex, inputs, structures), structures.sides[number].tolist()))
-            parts.append(number)
-    if not models:
-        return _nothing(inputs, structures, cells)
     divides = blocks_divided(inputs, structures)
-    refused = refused_as(lambda error: refused_structure(error, structures))
-    with work.phase(begin, end, "joining the compartments"), refused as native:
-        joined = work.native(
-            native.join_structured,
-            models,
-            structures.native(),
-            divides,
-            continued=structures.continued or [],
-            largest=structures.largest,
-        )
-    part = np.array(parts, np.int32)[joined["cell_part"]]
-    found = BuiltCells(CellComplex.of(joined, cells), joined["volumes"], list(warnings))
-    return _with_parts(found, part, inputs, structures, divides)
-
-
-def _native(own: CellComplex, inputs: list[RockInput], structures: Structures) -> dict:
-    """The cells in one part of space as the native module takes them."""
     surfaces = _first_surfaces(inputs)[-1]
-    return own.native(surfaces + len(inputs) * len(structures)) | {"surfaces": surfaces}
+    piece = None if structures.continued is None else (structures.continued, structures.largest)
+    refused = refused_as(lambda error: _refused(error, inputs, structures))
+    with work.phase(0.0, 1.0, "intersecting and cutting", has_steps=True), refused as native:
+        joined = work.native(
+            native.build_parts,
+            [_part(work, inputs, structures, reach, part, cells) for part in range(len(structures.sides))],
+            (surfaces, structures.native()),
+            divides,
+            cells,
+            piece=piece,
+        )
+    built = BuiltCells.of(joined, cells)
+    return _with_parts(built, joined["cell_part"], inputs, structures, divides)
+
+
+def _refused(error, inputs: list[RockInput], structures: Structures) -> InputRefused | BuildFailed:
+    """The refusal for a native InputError of build_parts, which counts structures after all surfaces."""
+    surfaces = _first_surfaces(inputs)[-1]
+    if error.kind == "rocks_overlap" or 0 <= error.surface < surfaces:
+        return refused_stack(error, inputs)
+    error.surface -= surfaces
+    return refused_structure(error, structures)
 
 
 def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:
@@ -127,31 +109,17 @@ def _with_parts(
     )
 
 
-def _nothing(inputs: list[RockInput], structures: Structures, cells: str) -> BuiltCells:
-    none = np.empty(0, np.int32)
-    return BuiltCells(
-        CellComplex.empty(cells),
-        np.zeros(_first_surfaces(inputs)[-1] + len(structures)),
-        parts=CellParts(none, none, none, np.empty((len(structures), 0), np.uint8)),
-    )
-
-
 def _first_surfaces(inputs: list[RockInput]) -> list[int]:
     """The number of the first surface of each rock mass, and of all."""
     return np.cumsum([0, *(len(entry.surfaces) for entry in inputs)]).tolist()
 
 
-def _part_model(
-    work: Work,
-    inputs: list[RockInput],
-    structures: Structures,
-    reach: Reach,
-    part: int,
-    cells: str,
-) -> BuiltCells | None:
-    """The cells of all rock masses as they are in one part; None where there is nothing."""
+def _part(
+    work: Work, inputs: list[RockInput], structures: Structures, reach: Reach, part: int, cells: str
+) -> tuple:
+    """One part of space, with all rock masses as they are there, as native build_parts takes it."""
+    work.check()
     first = _first_surfaces(inputs)
-    native = native_module()
     stacks = [
         _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
     ]
@@ -162,78 +130,35 @@ def _part_model(
         columns = np.ones_like(columns)
     kept = {sheet: reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
     stacks = [stack.without([not kept[sheet].any() for sheet in stack.sheets]) for stack in stacks]
-    taken = [n for n, stack in enumerate(stacks) if stack.sheets]
-    if not taken:
-        return None
-    for n in taken:
-        stacks[n].sheets = [sheet.some(kept[sheet]) for sheet in stacks[n].sheets]
-    rows = [sheet.of_surface for n in taken for sheet in stacks[n].sheets]
-    more = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
-    built_as = "columns" if more else cells
-    # blocks end at one border: those that each sheet ends at by itself leave many small ones between
-    around = reach.around(columns) if built_as == "blocks" else None
-    if cells == "columns" and not space.all():
-        more["wanted"] = (reach.low, reach.step, space.astype(np.uint8))
-    if structures.continued is not None:  # around a tile
-        more["is_local"] = True
-    regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
+    around = None
+    is_there, has_void = any(stack.sheets for stack in stacks), any(stack.emptied for stack in stacks)
+    if cells == "blocks" and is_there and not has_void:
+        # blocks end at one border: those that each sheet ends at by itself leave many small ones between
+        around = reach.around(columns)
     rocks = [
-        (
-            [sheet.arrays for sheet in stacks[n].sheets],
-            None if region is None else region.arrays,
-            stacks[n].base_elevation,
-            stacks[n].rules,
-        )
-        for n, region in zip(taken, regions, strict=True)
+        _rock_stack(entry, stack.some(kept), entry.region or around, begin)
+        for entry, stack, begin in zip(inputs, stacks, first[:-1], strict=True)
     ]
-    named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
-    surfaces = [first[n] + own if own >= 0 else own for n, own in named]
-    try:
-        built = BuiltCells.of(
-            work.native(native.build_rock_masses, rocks, cells=built_as, **more),
-            cells,
-        )
-    except native.InputError as error:
-        if 0 <= error.surface < len(surfaces):
-            error.items = rows[error.surface][error.items].tolist()
-            error.surface = surfaces[error.surface]
-        raise refused_stack(error, inputs) from error
-    blocks = np.array([block for n in taken for block in stacks[n].blocks], np.int32)
-    # faces keep -1, a wall, and -2, the base; surfaces that only fill bodies are none
-    numbers = np.array([*surfaces, -2, -1], np.int32)
-    own = replace(
-        built.complex,
-        face_surface=numbers[built.complex.face_surface],
-        cell_block=blocks[built.complex.cell_block],
-    )
-    nothing = own.cell_block < 0
-    if nothing.all():
-        return None
-    if nothing.any():
-        own = own.without_cells(nothing)
-    if cells != built_as or (cells == "blocks" and len(set(blocks.tolist())) < len(blocks)):
-        own, _ = own.one_cell_each()
-    warnings = [
-        each
-        if each.surface < 0
-        else each._replace(
-            surface=surfaces[each.surface], items=tuple(rows[each.surface][list(each.items)].tolist())
-        )
-        for each in built.warnings
-    ]
-    return BuiltCells(own, built.volumes, warnings)
+    is_bounded = cells == "columns" and not space.all()
+    wanted = (reach.low, reach.step, space.astype(np.uint8)) if is_bounded else None
+    return structures.sides[part].tolist(), rocks, wanted
 
 
-def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
-    """The arguments of build_rock_masses for voids, by name; {} where there are no voids. stacks: each with
-    whether the rock below the oldest surface stays."""
-    if not any(stack.emptied for stack, _ in stacks):
-        return {}
-    tops = [
-        [of == FILLER for of in stack.surfaces[: max(stack.emptied, default=0)]] if stays else []
-        for stack, stays in stacks
+def _rock_stack(entry: RockInput, stack: Stack, region: Sheet | None, first: int) -> tuple:
+    """One rock mass in one part of space as native build_parts takes it. first: the number of its first
+    surface."""
+    # what a surface that only fills a body, or lies below everything, bounds is a wall
+    numbers = [first + own if own >= 0 else FILLER if own == DEEP else own for own in stack.surfaces]
+    surfaces = [
+        (number, block, sheet.numbers)
+        for number, block, sheet in zip(numbers, stack.blocks, stack.sheets, strict=True)
     ]
-    return {"emptied": [list(stack.emptied) for stack, _ in stacks], "fills": tops}
+    fills = []
+    if entry.rock.base_elevation is None:  # else nothing stays below the oldest surface
+        fills = [of == FILLER for of in stack.surfaces[: max(stack.emptied, default=0)]]
+    sheets = [sheet.arrays for sheet in stack.sheets]
+    given = (sheets, None if region is None else region.arrays, stack.base_elevation, stack.rules)
+    return given, surfaces, list(stack.emptied), fills
 
 
 def _stack(

@@ -17,7 +17,7 @@ from ..model.model import Model
 from ..structures.setup import make_surfaces
 from ..surfaces.rock_input import RockInput
 
-_INTERPOLATED = 0.5  # of the time
+_INTERPOLATED, _INTERSECTED = 0.5, 0.98  # of the time
 
 
 @dataclass
@@ -68,18 +68,21 @@ class Realizer:
 
     def _make(self, work: Work, number: int, cells: str) -> Model:
         began = time.perf_counter()
-        inputs, structures = self._interpolated(work, number)
+        with work.part(0.0, _INTERPOLATED):
+            inputs, structures = self._interpolated(work, number)
         interpolated = time.perf_counter()
-        built = intersect(work, inputs, cells, _INTERPOLATED, 0.98, structures)
+        with work.part(_INTERPOLATED, _INTERSECTED):
+            built = intersect(work, inputs, cells, structures)
         timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
         project = self.model.project
-        return Model.of(assemble(work, project, inputs, built, timings, 0.98, structures))
+        with work.part(_INTERSECTED, 1.0):
+            return Model.of(assemble(work, project, inputs, built, timings, structures))
 
     def _interpolated(self, work: Work, number: int) -> tuple:
         """The rock masses with heights drawn, and the structures."""
         inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
         project = self.model.project
-        structures = make_surfaces(work, project, inputs, None, 0.0, _INTERPOLATED)
+        structures = make_surfaces(work, project, inputs, None)
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:

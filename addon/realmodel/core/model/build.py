@@ -76,22 +76,22 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs, project = read_inputs(work, project)
-    with timed("mesh"):
-        mesh_inputs(work, inputs, ends["read"], ends["mesh"])
+    with timed("mesh"), work.part(ends["read"], ends["mesh"]):
+        mesh_inputs(work, inputs)
 
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
     require_memory(taken(), cells, memory, len(project.faults) + len(project.bodies))
-    start, end = ends["mesh"], ends["interpolate"]
-    with timed("interpolate"):
-        structures = make_surfaces(work, project, inputs, stage, start, end)
+    with timed("interpolate"), work.part(ends["mesh"], ends["interpolate"]):
+        structures = make_surfaces(work, project, inputs, stage)
     inputs = taken()
     structures = structures if stage is None else structures.stage(stage)
-    with timed("intersect"):
-        built = intersect(work, inputs, cells, ends["interpolate"], ends["intersect"], structures)
+    with timed("intersect"), work.part(ends["interpolate"], ends["intersect"]):
+        built = intersect(work, inputs, cells, structures)
     given = replace(project, rocks=[entry.rock for entry in inputs])
-    return Model.of(assemble(work, given, inputs, built, timings, ends["intersect"], structures))
+    with work.part(ends["intersect"], 1.0):
+        return Model.of(assemble(work, given, inputs, built, timings, structures))
 
 
 def _phase_ends(project: Project) -> dict[str, float]:

@@ -92,7 +92,8 @@ def estimate(
         began = time.perf_counter()
         with work.phase(0.0, 0.7, "reading"):
             inputs = read_rocks(work, project)
-        mesh_inputs(work, inputs, 0.7, 1.0)
+        with work.part(0.7, 1.0):
+            mesh_inputs(work, inputs)
         read = time.perf_counter() - began
         if stage is not None:
             inputs = [entry.stage(stage) for entry in inputs]

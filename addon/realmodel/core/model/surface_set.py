@@ -118,8 +118,10 @@ def _build(
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs, with_arrays = read_inputs(work, project, reader)
-    mesh_inputs(work, inputs, _READ, _MESHED, keep)
-    structures = make_surfaces(work, with_arrays, inputs, stage, _MESHED, 1.0, keep, flat)
+    with work.part(_READ, _MESHED):
+        mesh_inputs(work, inputs, keep)
+    with work.part(_MESHED, 1.0):
+        structures = make_surfaces(work, with_arrays, inputs, stage, keep, flat)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

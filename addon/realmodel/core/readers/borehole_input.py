@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
@@ -32,14 +31,16 @@ def read_boreholes(
     unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
     scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
     units = units or UnitNames()
-    of_objects = next((file for file in given.files if is_object_file(file)), None)
-    if of_objects is None and given.layer is not None:
+    of_objects = [file for file in given.files if is_object_file(file)]
+    if not of_objects and given.layer is not None:
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
-    if of_objects is None:
+    if not of_objects:
         return read_borehole_tables(given, step, scale, units, plan_step)
-    if given.picks is None or Path(given.picks) != of_objects:
-        advice = "give it as picks = ... alone"
-        raise InputRefused("it has objects with their own places", file=of_objects, advice=advice)
-    refuse_keys(of_objects, "has objects", given.only_for_tables)
-    return read_hole_objects(given, step, scale, units)
+    refuse_keys(of_objects[0], "has objects", given.only_for_tables)
+    if len(of_objects) < len(given.files):
+        advice = "give tables, or files of objects"
+        raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
+    found = read_hole_objects(given, scale, units, plan_step)
+    step(1.0)
+    return found

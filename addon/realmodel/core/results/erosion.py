@@ -151,7 +151,8 @@ def _stage_volumes(work: Work, model, m: int, until: tuple[int, int] | None = No
         )["volumes"]
     else:
         inputs = [entry.stage(m) for entry in model.rock_inputs]
-        volume = build_joined(work, inputs, bodies, "blocks", *work.stretch).volumes
+        with work.part(*work.stretch):
+            volume = build_joined(work, inputs, bodies, "blocks").volumes
     for b, block in enumerate(model.blocks):
         own = block.surface - first[block.rock]
         body = block.surface - first[-1]

@@ -33,8 +33,9 @@ class Boreholes:
     ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them.
     separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
     (depths are in the unit of z); None: those of the model.
-    Where `picks` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all of its
-    boreholes), and columns names its data `surface` and `hole`; the other keys are for tables.
+    Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
+    of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
+    tables.
     """
 
     picks: str | Path | None = None
@@ -51,7 +52,7 @@ class Boreholes:
     @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only tables can have."""
-        keys = ("collars", "survey", "intervals", "separator", "decimal", "downward_dip")
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip")
         return [key for key in keys if getattr(self, key)]
 
     @property

@@ -100,12 +100,9 @@ def simulation_mesh(
         _check_without_columns(without_columns, elements, layers is not None or layer_thickness is not None)
     _check_thinnest(model, minimum_thickness)
 
-    def fill(work: Work) -> SimulationMesh:
-        with work.phase(0.0, 1.0, "filling with tetrahedra"):
-            made = filled(work, model, float(edge_length), float(minimum_thickness), sizes)
-        return _of_tetrahedra(model, made)
-
     def task(work: Work) -> SimulationMesh:
+        if without_columns:
+            return _filled(work, model, float(edge_length), float(minimum_thickness), sizes)
         arrays = model_arrays(model)
         rocks = np.array([block.rock for block in model.blocks], np.int32)
         with work.phase(0.0, 0.2, "simplifying lines"):
@@ -124,7 +121,14 @@ def simulation_mesh(
             made = call_native(work, function, arrays, rocks, lines, vertices, triangles, *layering)
         return _assembled(model, made, elements, numbers)
 
-    return run(fill if without_columns else task, progress, cancel, threads=threads)
+    return run(task, progress, cancel, threads=threads)
+
+
+def _filled(work: Work, model, edge_length: float, minimum_thickness: float, sizes) -> SimulationMesh:
+    """The mesh of a model without columns."""
+    with work.phase(0.0, 1.0, "filling with tetrahedra"):
+        made = filled(work, model, edge_length, minimum_thickness, sizes)
+    return _of_tetrahedra(model, made)
 
 
 def _check_lengths(lengths: dict[str, float]) -> None:

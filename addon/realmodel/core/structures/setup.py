@@ -4,8 +4,7 @@ compartments."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
@@ -45,13 +44,10 @@ def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tup
     return inputs, replace(project, faults=faults, bodies=bodies)
 
 
-def mesh_inputs(
-    work: Work, inputs: list[RockInput], start: float, end: float, keep: StoreArray = as_it_is
-) -> None:
-    """Meshes the regions of rock masses. Progress goes from `start` to `end`. keep: where the meshes are
-    kept. Raises InputRefused."""
-    for entry, (begin, finish) in _in_parts(inputs, start, end):
-        with work.phase(begin, finish, f"meshing the region of {entry.rock.name}"):
+def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is) -> None:
+    """Meshes the regions of rock masses. keep: where the meshes are kept. Raises InputRefused."""
+    for entry in work.share_out(inputs):
+        with work.phase(0.0, 1.0, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
         if entry.region is not None:
             entry.region = Sheet(*map(keep, entry.region))
@@ -62,33 +58,26 @@ def make_surfaces(
     project: Project,
     inputs: list[RockInput],
     stage: int | None,
-    start: float,
-    end: float,
     keep: StoreArray = as_it_is,
     flat: Callable[[Rock], Collection[int]] | None = None,
     joins: bool = True,
 ) -> Structures:
     """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
-    bodies of the project, as read_inputs gives it. Progress goes from `start` to `end`.
+    bodies of the project, as read_inputs gives it.
 
     keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     if project.faults or project.bodies:
-        return make_structures(work, project, inputs, stage, start, end, joins, keep)
-    for entry, (begin, finish) in _in_parts(inputs, start, end):
+        return make_structures(work, project, inputs, stage, joins, keep)
+    for entry in work.share_out(inputs):
         numbers: Collection[int] = ()
         if flat is not None:
-            settle_methods(work, entry, begin, begin + _CHOSEN * (finish - begin))
+            with work.part(0.0, _CHOSEN):
+                settle_methods(work, entry)
             numbers = flat(entry.rock)
-        interpolate_rock(work, entry, begin, finish, stage, keep, numbers)
+        interpolate_rock(work, entry, stage, keep, numbers)
     return structures_of(project, [], [])
-
-
-def _in_parts(inputs: list[RockInput], start: float, end: float) -> Iterator[tuple]:
-    """Each with its equal part of the progress from `start` to `end`."""
-    steps = np.linspace(start, end, len(inputs) + 1).tolist()
-    return zip(inputs, itertools.pairwise(steps), strict=True)
 
 
 def make_structures(
@@ -96,20 +85,17 @@ def make_structures(
     project: Project,
     inputs: list[RockInput],
     stage: int | None,
-    start: float,
-    end: float,
     joins: bool = True,
     keep: StoreArray = as_it_is,
 ) -> Structures:
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
-    returns the parts of space. Progress goes from `start` to `end`.
+    returns the parts of space.
 
     project: as of read_inputs. joins: whether `entry.surfaces` gets the sheets of each
     surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused, and
     BuildFailed where the parts never settle.
     """
-    first = start + _DIVIDED * (end - start)
-    with work.phase(start, first, "dividing by faults and bodies"):
+    with work.phase(0.0, _DIVIDED, "dividing by faults and bodies"):
         faults = [_facing_up(work, fault) for fault in project.faults]
         structures = structures_of(project, faults, project.bodies)
         box = box_around(inputs, structures)
@@ -120,8 +106,10 @@ def make_structures(
         add_compartments(structures, inputs)
         apply_in_compartments(work, structures, inputs)
         tops = [tops_of_faults(structures, number, entry.rock) for number, entry in enumerate(inputs)]
-        middle = first + (end - first) * sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
-        _make_all(work, inputs, tops, first, middle, stage, keep)
+        share = sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
+        middle = _DIVIDED + (1.0 - _DIVIDED) * share
+        with work.part(_DIVIDED, middle):
+            _make_all(work, inputs, tops, stage, keep)
         if not is_closed:
             is_closed = True
             closed = _without_gaps(work, structures, inputs, box, has_sheets=True)
@@ -129,8 +117,10 @@ def make_structures(
                 structures = divide(work, closed, box)
                 add_compartments(structures, inputs)
                 apply_in_compartments(work, structures, inputs)
-                _make_all(work, inputs, tops, first, middle, stage, keep)
-        _make_all(work, inputs, None, middle, end, stage, keep)
+                with work.part(_DIVIDED, middle):
+                    _make_all(work, inputs, tops, stage, keep)
+        with work.part(middle, 1.0):
+            _make_all(work, inputs, None, stage, keep)
         for entry in inputs:
             numbers = {surface.name: number for number, surface in enumerate(entry.rock.surfaces)}
             entry.divided().warnings.sort(key=lambda each: numbers[each[1].surface or ""])
@@ -159,11 +149,10 @@ def make_structures(
     return structures
 
 
-def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, start, end, stage, keep):
+def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage, keep) -> None:
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
-    for number, (entry, (begin, finish)) in enumerate(_in_parts(inputs, start, end)):
-        some = numbers[number] if numbers else None
-        make_sheets(work, entry, begin, finish, stage, keep, some)
+    for number, entry in enumerate(work.share_out(inputs)):
+        make_sheets(work, entry, stage, keep, numbers[number] if numbers else None)
 
 
 def _without_gaps(

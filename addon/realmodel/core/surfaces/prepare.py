@@ -174,29 +174,25 @@ def _density_points(rock: Rock) -> np.ndarray:
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
-def settle_methods(work: Work, entry: RockInput, start: float, end: float) -> None:
-    """Replaces the method "auto" of surfaces by the one that it chooses. Progress goes from `start` to
-    `end`."""
+def settle_methods(work: Work, entry: RockInput) -> None:
+    """Replaces the method "auto" of surfaces by the one that it chooses."""
     waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"choosing the method of {entry.rock.surfaces[number].name}"):
+    for number in work.share_out(waiting):
+        with work.phase(0.0, 1.0, f"choosing the method of {entry.rock.surfaces[number].name}"):
             settle_method(work, entry, number)
 
 
 def interpolate_rock(
     work: Work,
     entry: RockInput,
-    start: float,
-    end: float,
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     flat: Collection[int] = (),
 ) -> None:
-    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. Progress goes from
-    `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
-    attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
-    these, and looks for points on wrong sides, too."""
+    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. keep: stores the
+    finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped. flat: the
+    numbers of surfaces that are left at height 0: the caller interpolates these, and looks for points on
+    wrong sides, too."""
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()
@@ -205,9 +201,8 @@ def interpolate_rock(
             entry.surfaces[number] = plan
     if not flat and entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
+    for number in work.share_out(waiting):
+        with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number)
         if keep is not as_it_is:
             entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))

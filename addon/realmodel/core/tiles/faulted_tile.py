@@ -55,12 +55,14 @@ def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, n
     """Raises InputRefused."""
     inputs, few = window.inputs, window.structures
     began = time.perf_counter()
-    built = build_joined(work, inputs, few, "columns", 0.0, 0.8, window.reach)
+    with work.part(0.0, 0.8):
+        built = build_joined(work, inputs, few, "columns", window.reach)
     project = replace(
         frame.project, rocks=[entry.rock for entry in inputs], faults=few.faults, bodies=few.bodies
     )
     timings = {"intersect": time.perf_counter() - began}
-    model = Model.of(assemble(work, project, inputs, built, timings, 0.8, few))
+    with work.part(0.8, 1.0):
+        model = Model.of(assemble(work, project, inputs, built, timings, few))
     model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
     owner = owners(model.complex, frame.grid)
     mine = (owner == name).all(axis=1)

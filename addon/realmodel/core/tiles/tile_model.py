@@ -369,7 +369,8 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path) -> BuiltTile:
     timings = {"intersect": time.perf_counter() - began}
     built = BuiltCells.of(arrays, frame.cell_kind)
     no_structures = structures_of(project, [], [])
-    model = Model.of(assemble(work, project, inputs, built, timings, 0.8, no_structures))
+    with work.part(0.8, 1.0):
+        model = Model.of(assemble(work, project, inputs, built, timings, no_structures))
     model.warnings = _warnings(inputs, built, numbers)
     wrong = _wrong_points(work, frame, parts, folder)
     above = {(r, k - 1): each.above for (r, k), each in made.items() if each.above is not None}

@@ -15,6 +15,12 @@ namespace realmodel {
 /// cancels; every member may be called at any time.
 class Progress {
 public:
+    Progress() = default;
+    /// Of a part of some work: how far it is takes that work on by `share` of it, and it is
+    /// cancelled with it. Several parts may be under way at once.
+    /// @param whole  the work, which outlives its part; null: nobody watches it
+    Progress(Progress* whole, double share) : whole_(whole), share_(share) {}
+
     /// Says how far the work is.
     /// @param fraction  share of the work done; kept within 0 .. 1, NaN is left out
     /// @param text      what is being done, UTF-8, copied (what is longer than 127 bytes is cut);
@@ -27,7 +33,8 @@ public:
     /// @param text        as for report()
     void begin(double start, double end, const char* text) noexcept;
 
-    /// Asks the computation to stop; it does so at its next check().
+    /// Asks the computation to stop; it does so at its next check(). The work that it is a part of
+    /// goes on.
     void cancel() noexcept;
     bool cancelled() const noexcept;
 
@@ -41,7 +48,11 @@ public:
 private:
     friend class CountedLoop;
     void advance(double fraction) noexcept;
+    void take_on_whole(double fraction) noexcept;
 
+    Progress* whole_ = nullptr;
+    double share_ = 0.0;
+    std::atomic<double> passed_on_{0.0};  ///< the fraction that the whole knows of
     std::atomic<double> fraction_{0.0};
     std::atomic<double> part_end_{0.0};
     std::atomic<bool> cancelled_{false};

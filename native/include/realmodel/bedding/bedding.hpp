@@ -11,13 +11,14 @@
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "realmodel/triangle_view.hpp"
 
 namespace realmodel::bedding {
 
 /// The history of one rock mass, or of one of its compartments: a sheet of each surface.
 struct History {
-    std::vector<strata::SurfaceView> sheets;  ///< oldest first
-    std::vector<strata::Rule> rules;          ///< one a sheet; none at all means all erosional
+    std::vector<TriangleView> sheets;  ///< oldest first
+    std::vector<strata::Rule> rules;   ///< one a sheet; none at all means all erosional
     std::optional<double> base_elevation;
 };
 

@@ -8,17 +8,9 @@
 
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/execution.hpp"
+#include "realmodel/triangle_view.hpp"
 
 namespace realmodel::booleans {
-
-/// Triangles in space, open or closed, of any number of parts. They may cross themselves.
-struct TriangleMesh {
-    std::span<const double> vertices;         ///< x, y, z of each vertex
-    std::span<const std::int32_t> triangles;  ///< three vertices each
-
-    std::size_t vertex_count() const { return vertices.size() / 3; }
-    std::size_t triangle_count() const { return triangles.size() / 3; }
-};
 
 /// Edges along which two surfaces meet, one after another (Mei 2014, section 4.3).
 enum class LoopKind : std::uint8_t {
@@ -71,15 +63,16 @@ struct Refinement {
     std::vector<std::int32_t> coinciding;  ///< of each triangle the first that coincides with it
 };
 
-/// Intersects two surfaces. What is inside of a closed surface is where its winding number is not
-/// zero. Decisions are exact on the input; new vertices are rounded to doubles once, and what
-/// rounding makes cross is divided again, so that the triangles of the result meet in common edges
-/// and vertices only. The same for any number of threads.
+/// Intersects two surfaces, open or closed, of any number of parts, which may cross themselves.
+/// What is inside of a closed surface is where its winding number is not zero. Decisions are exact
+/// on the input; new vertices are rounded to doubles once, and what rounding makes cross is divided
+/// again, so that the triangles of the result meet in common edges and vertices only. The same for
+/// any number of threads.
 ///
 /// @throws InputError kinds not_finite, bad_index (surface: which; items: the vertex or triangle),
 ///         no_triangles (surface: which), too_large, too_close (rounding does not settle);
 ///         Cancelled
-Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
+Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution = {});
 
 }  // namespace realmodel::booleans

@@ -9,6 +9,7 @@
 
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
+#include "realmodel/triangle_view.hpp"
 
 namespace realmodel::cutting {
 
@@ -50,18 +51,12 @@ Cut cut_by_plane(const ComplexView& model, const Plane& plane, const Execution& 
 /// The section alone, in a fraction of the time.
 Section section_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution);
 
-/// Triangles in any position, either orientation.
-struct TriangleView {
-    std::span<const double> vertices;         ///< 3 V numbers
-    std::span<const std::int32_t> triangles;  ///< 3 T indices into the vertices
-};
-
-/// Cuts a model by a triangulated surface that parts it: open, and ending outside of the model or
-/// on its outside, or closed. Above is where an open one turns its upper side (on the whole);
-/// below, or inside, of a closed one is what a way out leaves through it an odd number of times.
-/// Where surface and faces meet is decided exactly, on the model's coordinates and the surface's;
-/// vertices of the model within their own rounding of the surface are taken to lie on it. The
-/// model's cells may overlap by rounding (docs/dev/geometry.md, "Cutting").
+/// Cuts a model by a surface of triangles in any position that parts it: open, and ending outside
+/// of the model or on its outside, or closed. Above is where an open one turns its upper side (on
+/// the whole); below, or inside, of a closed one is what a way out leaves through it an odd number
+/// of times. Where surface and faces meet is decided exactly, on the model's coordinates and the
+/// surface's; vertices of the model within their own rounding of the surface are taken to lie on
+/// it. The model's cells may overlap by rounding (docs/dev/geometry.md, "Cutting").
 /// @throws InputError kinds not_finite, bad_index, no_triangles, bad_model; of open surfaces
 ///         branching, one_sided, ends_inside (it does not part the model; the place), two_sides (a
 ///         place is above one part of it and below another)

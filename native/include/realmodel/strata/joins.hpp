@@ -28,14 +28,13 @@ public:
     const Warning& warning() const;
     /// The vertices of a mesh of so many columns with plan coordinates joined; not the borders.
     std::vector<double> snapped(std::span<const double> vertices, std::size_t columns) const;
-    /// A mesh as build_rock_masses builds it. Nothing where it covers a position twice, or the
-    /// border of a region crosses itself: then that takes all meshes as they are given. Triangles
-    /// that are not divided keep their numbers.
+    /// A mesh, of so many columns, as build_rock_masses builds it. Nothing where it covers a
+    /// position twice, or the border of a region crosses itself: then that takes all meshes as they
+    /// are given. Triangles that are not divided keep their numbers.
     /// @throws InputError not_finite, bad_index, vertical_triangle; as above then
     /// @throws Cancelled
-    std::optional<JoinedMesh> mesh(const SurfaceView& surface,
+    std::optional<JoinedMesh> mesh(const TriangleView& mesh, std::size_t columns,
                                    const Execution& execution = {}) const;
-    std::optional<JoinedMesh> mesh(const RegionView& region, const Execution& execution = {}) const;
 
 private:
     struct Found;

@@ -12,21 +12,9 @@
 
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
+#include "realmodel/triangle_view.hpp"
 
 namespace realmodel::strata {
-
-/// A triangulated surface, single-valued in z: one row (x, y, z) a vertex, three indices a
-/// triangle.
-struct SurfaceView {
-    std::span<const double> vertices;         ///< 3 V numbers, model units
-    std::span<const std::int32_t> triangles;  ///< 3 T indices into the vertices, either orientation
-};
-
-/// A triangulation of the region in plan; only its border matters.
-struct RegionView {
-    std::span<const double> vertices;         ///< 2 V numbers
-    std::span<const std::int32_t> triangles;  ///< 3 T indices
-};
 
 /// What a surface does to what is older, and to what is younger (docs/dev/geometry.md).
 enum class Rule {
@@ -65,9 +53,9 @@ struct Window {
 
 /// One rock mass.
 struct StackInput {
-    std::vector<SurfaceView> surfaces;  ///< oldest first
-    std::vector<Rule> rules;            ///< one a surface; none at all means all erosional
-    std::optional<RegionView> region;
+    std::vector<TriangleView> surfaces;  ///< oldest first, each single-valued in z
+    std::vector<Rule> rules;             ///< one a surface; none at all means all erosional
+    std::optional<TriangleView> region;  ///< in plan; only its border matters
     std::optional<double> base_elevation;
     /// Surfaces, ascending: before each of them all that is there becomes air, and only what was
     /// protected stays so. Of models of columns without a base elevation.

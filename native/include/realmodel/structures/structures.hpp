@@ -8,36 +8,37 @@
 
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
-#include "realmodel/cutting/cut.hpp"
+#include "realmodel/triangle_view.hpp"
 
 namespace realmodel::structures {
 
 /// A fault, an open surface, or a body, a closed one (docs/dev/structures.md).
 struct Structure {
-    cutting::TriangleView surface;
+    TriangleView surface;
     bool is_body = false;
-    std::vector<std::int32_t> ends_at;  ///< of a fault: the faults that it ends at
-    bool dies_out = false;              ///< a fault that ends in the rock
+    std::vector<std::int32_t> ends_at = {};  ///< of a fault: the faults that it ends at
+    bool dies_out = false;                   ///< a fault that ends in the rock
 };
 
 /// The side of each structure that something is on: 1 above a fault or outside of a body, -1 below
 /// or inside, 0 where there is no such structure: beyond a fault that it ends at.
 using Sides = std::vector<std::int8_t>;
 
-/// A part of space that structures leave, within a rock.
+/// A part of space that structures leave, within some rock.
 struct Part {
     Sides sides;
     std::array<double, 3> low, high;  ///< a box around it
 };
 
-/// The parts that structures divide some rock into, each combination of sides once, ascending.
+/// The parts that structures divide the rock in a box (two corners) into, each combination of sides
+/// once, ascending.
 /// @throws InputError  `surface` is the structure's number; kinds not_finite, bad_index,
 ///         no_triangles, branching, one_sided; not_closed (of a body: the place of an open edge);
 ///         does_not_meet (a fault and one that it ends at, which it does not meet); folded (one
 ///         that dies out, whose border crosses itself seen at right angles to its mean plane)
 /// @throws Cancelled
-std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
-                           const Execution& execution);
+std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
+                           std::span<const Structure> structures, const Execution& execution);
 
 /// A structure with what continues it beyond its border, found once for models that are joined
 /// piece by piece: each piece has the triangles near it.

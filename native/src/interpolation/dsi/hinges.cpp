@@ -10,6 +10,8 @@
 
 namespace realmodel::interpolation {
 
+using realmodel::dot;
+
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;

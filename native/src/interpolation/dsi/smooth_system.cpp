@@ -16,7 +16,7 @@ constexpr int kMostIterations = 400;
 constexpr int kIterationsBeforeFactor = 60;
 constexpr std::size_t kMostFactored = 100'000;
 // Of the diagonal: heights that no constraint holds must not make a factor singular.
-constexpr double kHeld = 1e-13;
+constexpr double kHeldNode = 1e-13;
 
 }  // namespace
 
@@ -141,7 +141,7 @@ void SmoothSystem::factor() {
             if (column <= at) entries.emplace_back(at, column, value);
         });
         const double diagonal = rows_.diagonal(row);
-        entries.emplace_back(at, at, kHeld * (diagonal > 0 ? diagonal : 1));
+        entries.emplace_back(at, at, kHeldNode * (diagonal > 0 ? diagonal : 1));
     }
     const auto count = static_cast<Eigen::Index>(nodes_.size());
     Eigen::SparseMatrix<double> matrix(count, count);

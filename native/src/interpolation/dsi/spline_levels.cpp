@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kCoarsestCoefficients = 300;
 // Of the mean roughness on the diagonal: what neither roughness nor constraints hold (outside the
 // mesh, or a tilt of all) is held by this much, in the preconditioner only.
-constexpr double kHeld = 1e-10;
+constexpr double kHeldSpline = 1e-10;
 
 /// The splines on half a cell from those on the cell: row k gives the k-th on the half.
 constexpr double kHalves[2][3][3] = {{{0.75, 0.25, 0}, {0.25, 0.75, 0}, {0, 0.75, 0.25}},
@@ -150,7 +150,7 @@ void SplineLevels::set_constraints(std::span<const WeightedPosition> constraints
             c.strength);
     }
     const double least =
-        whole > 0 ? kHeld * whole / static_cast<double>(finest.coefficients()) : 1.0;
+        whole > 0 ? kHeldSpline * whole / static_cast<double>(finest.coefficients()) : 1.0;
     for (std::size_t at = 0; at < levels_.size(); ++at) {
         check_();
         if (at > 0) restrict_elements(elements, levels_[at - 1].stencils.grid());

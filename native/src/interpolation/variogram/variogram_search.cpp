@@ -22,7 +22,7 @@ constexpr double kChanceShare = 0.001;
 constexpr double kChancePoints = 10;
 // Of the experimental value at the shortest lag.
 constexpr double kNuggetsTried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
-constexpr double kRangesTried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
+constexpr double kRangeFactors[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
 
 /// A part that makes surfaces of a model rougher. A small share of a rough model is much at short
 /// distances; of the same model at a shorter range less so.
@@ -212,7 +212,7 @@ void VariogramSearch::vary(const Candidate& start) {
     for (const double share : kNuggetsTried)
         attempt(start.fit.curve, share * e_.gamma.front(), longest);
     const CurveFit with_nugget = best_with(model)->fit;
-    for (const double times : kRangesTried) {
+    for (const double times : kRangeFactors) {
         Curve curve = with_nugget.curve;
         curve.range *= times;
         attempt(curve, with_nugget.nugget, longest);

@@ -10,50 +10,54 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kFaces = 1 << 13;  // copied at a time
+constexpr std::size_t kFacesCopied = 1 << 13;  // copied at a time
 
 /// The faces on surfaces, which come first; those that only have a cell above are seen from below.
 class SurfaceFaces {
 public:
     SurfaceFaces(const FaceList& faces, const ConformedFaces& conformed, const Execution& execution)
         : faces_(faces), conformed_(conformed), execution_(execution) {
-        first_corner_.resize((faces.size() + kFaces - 1) / kFaces);
-        parallel_ranges(faces.size(), kFaces, execution, [&](std::size_t begin, std::size_t end) {
-            const std::uint32_t first = conformed.face_offsets[begin],
-                                last = conformed.face_offsets[end];
-            const auto taken =
-                std::count_if(conformed.vertices.begin() + first, conformed.vertices.begin() + last,
-                              [](std::int32_t v) { return v >= 0; });
-            first_corner_[begin / kFaces] =
-                static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
-        });
+        first_corner_.resize((faces.size() + kFacesCopied - 1) / kFacesCopied);
+        parallel_ranges(
+            faces.size(), kFacesCopied, execution, [&](std::size_t begin, std::size_t end) {
+                const std::uint32_t first = conformed.face_offsets[begin],
+                                    last = conformed.face_offsets[end];
+                const auto taken = std::count_if(conformed.vertices.begin() + first,
+                                                 conformed.vertices.begin() + last,
+                                                 [](std::int32_t v) { return v >= 0; });
+                first_corner_[begin / kFacesCopied] =
+                    static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
+            });
         corners_ = count_before(first_corner_);
     }
 
     std::size_t corners() const { return corners_; }
 
     void copy(const std::vector<std::int32_t>& surface_of_plane, CellComplex& complex) const {
-        parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
-            auto late = late_from(conformed_.face_offsets[begin]);
-            const auto start = complex.face_vertices.begin();
-            auto next = start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFaces]);
-            for (std::size_t f = begin; f < end; ++f) {
-                const auto face = next;
-                for (auto e = conformed_.face_offsets[f]; e < conformed_.face_offsets[f + 1]; ++e) {
-                    if (conformed_.vertices[e] >= 0) *next++ = conformed_.vertices[e];
-                    for (; late != conformed_.inserted.end() && late->entry == e; ++late)
-                        *next++ = late->vertex;
+        parallel_ranges(
+            faces_.size(), kFacesCopied, execution_, [&](std::size_t begin, std::size_t end) {
+                auto late = late_from(conformed_.face_offsets[begin]);
+                const auto start = complex.face_vertices.begin();
+                auto next =
+                    start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFacesCopied]);
+                for (std::size_t f = begin; f < end; ++f) {
+                    const auto face = next;
+                    for (auto e = conformed_.face_offsets[f]; e < conformed_.face_offsets[f + 1];
+                         ++e) {
+                        if (conformed_.vertices[e] >= 0) *next++ = conformed_.vertices[e];
+                        for (; late != conformed_.inserted.end() && late->entry == e; ++late)
+                            *next++ = late->vertex;
+                    }
+                    complex.face_offsets[f] = face - start;
+                    complex.face_surface[f] = surface_of_plane[index(faces_.plane[f])];
+                    if (faces_.below[f] >= 0) {
+                        complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
+                    } else {
+                        complex.face_cells[f] = {faces_.above[f], kOutsideCell};
+                        std::reverse(face, next);
+                    }
                 }
-                complex.face_offsets[f] = face - start;
-                complex.face_surface[f] = surface_of_plane[index(faces_.plane[f])];
-                if (faces_.below[f] >= 0) {
-                    complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
-                } else {
-                    complex.face_cells[f] = {faces_.above[f], kOutsideCell};
-                    std::reverse(face, next);
-                }
-            }
-        });
+            });
     }
 
 private:

@@ -12,7 +12,7 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kTogether = 1 << 12;
+constexpr std::size_t kOffsets = 1 << 12;
 
 /// Whether a unit in the last place of the coordinates is so large a part of the model's extent
 /// that a volume may be off by as much: some 1e-13.
@@ -44,7 +44,7 @@ Array<PlanOffset> find_plan_offsets(const exact::PlanArrangement& geometry,
     Array<PlanOffset> offsets;
     if (!is_far_from_origin(plan_vertices)) return offsets;
     offsets.resize(plan_vertices.size());
-    parallel_ranges(offsets.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(offsets.size(), kOffsets, execution, [&](std::size_t begin, std::size_t end) {
         using Number = exact::DoubleDoubleInterval;
         const exact::LocalArrangement scope(geometry);
         const exact::BallArithmetic in{geometry};
@@ -77,7 +77,7 @@ Array<PlanOffset> vertex_offsets(const Array<PlanOffset>& offsets,
     Array<PlanOffset> result;
     if (offsets.empty()) return result;
     result.resize(conformed.positions.size());
-    parallel_ranges(offsets.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(offsets.size(), kOffsets, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             const auto [x, y] = plan_vertices.position[p];
             for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v) {

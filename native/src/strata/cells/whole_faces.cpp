@@ -15,7 +15,7 @@ using exact::SpaceId;
 
 namespace {
 
-constexpr std::size_t kTriangles = 1 << 13, kVertices = 1 << 14;
+constexpr std::size_t kFacesAtOnce = 1 << 13, kVertices = 1 << 14;
 
 std::int32_t cell(const std::vector<std::int32_t>& cell_of_node, std::int32_t node) {
     return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
@@ -35,7 +35,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
                            WholeTriangles& wholes, FaceList& faces, const Execution& execution) {
     std::vector<std::uint8_t> is_touched(links.neighbor.size(), 0);
     parallel_ranges(
-        is_touched.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
+        is_touched.size(), kFacesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) continue;
                 const auto& neighbors = links.neighbor[p];
@@ -83,7 +83,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     const auto set = [](std::int32_t& number, std::int32_t to) {
         std::atomic_ref(number).store(to, std::memory_order_relaxed);
     };
-    parallel_ranges(faces.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(faces.size(), kFacesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
             const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
@@ -112,7 +112,7 @@ void UntouchedTriangles::add_to(CellComplex& complex,
 /// Numbers the input vertices that only untouched triangles have, in their order.
 void UntouchedTriangles::number_vertices(CellComplex& complex) {
     auto is_new = zeros<std::uint8_t>(of_space_.size(), execution_);
-    parallel_ranges(wholes_.face.size(), kTriangles, execution_,
+    parallel_ranges(wholes_.face.size(), kFacesAtOnce, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t p = begin; p < end; ++p) {
                             if (!is_face(p)) continue;
@@ -147,10 +147,10 @@ void UntouchedTriangles::number_vertices(CellComplex& complex) {
 void UntouchedTriangles::add_triangles(CellComplex& complex,
                                        const std::vector<std::int32_t>& cell_of_node) const {
     const std::size_t planes = wholes_.face.size();
-    std::vector<std::size_t> first((planes + kTriangles - 1) / kTriangles);
-    parallel_ranges(planes, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> first((planes + kFacesAtOnce - 1) / kFacesAtOnce);
+    parallel_ranges(planes, kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
-            first[begin / kTriangles] += is_face(p) ? 1 : 0;
+            first[begin / kFacesAtOnce] += is_face(p) ? 1 : 0;
     });
     const std::size_t count = count_before(first), faces = complex.face_cells.size(),
                       corners = complex.face_vertices.size();
@@ -158,8 +158,8 @@ void UntouchedTriangles::add_triangles(CellComplex& complex,
     complex.face_offsets.resize(faces + count + 1);
     complex.face_cells.resize(faces + count);
     complex.face_surface.resize(faces + count);
-    parallel_ranges(planes, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
-        std::size_t next = first[begin / kTriangles];
+    parallel_ranges(planes, kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
+        std::size_t next = first[begin / kFacesAtOnce];
         for (std::size_t p = begin; p < end; ++p) {
             if (!is_face(p)) continue;
             const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;

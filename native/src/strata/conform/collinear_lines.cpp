@@ -13,7 +13,7 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 13, kMostChunks = 64;
+constexpr std::size_t kLinesAtOnce = 1 << 13, kMostLineChunks = 64;
 
 /// A line with a number that is equal for lines that run through the same plan vertices, and hardly
 /// ever for others.
@@ -40,19 +40,20 @@ Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces
                           const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
     const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            mark(used[index(corners[c].line.id())]);
-    });
-    std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
-    parallel_ranges(used.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        before[begin / kChunk] =
+    parallel_ranges(corners.size(), kLinesAtOnce, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            mark(used[index(corners[c].line.id())]);
+                    });
+    std::vector<std::size_t> before((used.size() + kLinesAtOnce - 1) / kLinesAtOnce);
+    parallel_ranges(used.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
+        before[begin / kLinesAtOnce] =
             static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
     });
     Array<Keyed> lines(count_before(before));
-    parallel_ranges(used.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(used.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         LocalArrangement scope(geometry);
-        std::size_t next = before[begin / kChunk];
+        std::size_t next = before[begin / kLinesAtOnce];
         for (std::size_t l = begin; l < end; ++l) {
             if (used[l] == 0) continue;
             const auto line = static_cast<LineId>(l);
@@ -72,7 +73,8 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
     // Keys are spread evenly.
     const auto share = [](const Keyed& line) { return static_cast<double>(line.key) * 0x1p-64; };
     {
-        const std::size_t chunks = std::clamp<std::size_t>(lines.size() / kChunk, 1, kMostChunks);
+        const std::size_t chunks =
+            std::clamp<std::size_t>(lines.size() / kLinesAtOnce, 1, kMostLineChunks);
         const auto produce = [&](std::size_t chunk, const auto& take) {
             const std::size_t end = lines.size() * (chunk + 1) / chunks;
             for (std::size_t i = lines.size() * chunk / chunks; i < end; ++i)
@@ -81,8 +83,8 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
         lines = BucketSort<Keyed, decltype(share), decltype(in_order)>(share, in_order)
                     .sorted(chunks, lines.size(), produce, execution);
     }
-    std::vector<std::vector<Follower>> found((lines.size() + kChunk - 1) / kChunk);
-    parallel_ranges(lines.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<Follower>> found((lines.size() + kLinesAtOnce - 1) / kLinesAtOnce);
+    parallel_ranges(lines.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         LocalArrangement scope(geometry);
         std::vector<LineId> leaders;
         for (std::size_t i = begin; i < end; ++i) {
@@ -96,7 +98,7 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
                 if (leader == leaders.end()) {
                     leaders.push_back(line);
                 } else {
-                    found[begin / kChunk].push_back({line, *leader});
+                    found[begin / kLinesAtOnce].push_back({line, *leader});
                 }
             }
         }
@@ -121,16 +123,16 @@ CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces
     for (const Follower& follower : followers)
         joined.of_line[index(follower.line)] = -1;
 
-    std::vector<std::size_t> before((joined.of_line.size() + kChunk - 1) / kChunk);
+    std::vector<std::size_t> before((joined.of_line.size() + kLinesAtOnce - 1) / kLinesAtOnce);
     parallel_ranges(
-        joined.of_line.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-            before[begin / kChunk] = static_cast<std::size_t>(
+        joined.of_line.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
+            before[begin / kLinesAtOnce] = static_cast<std::size_t>(
                 std::count(joined.of_line.begin() + begin, joined.of_line.begin() + end, 0));
         });
     joined.representative = Array<LineId>(count_before(before));
-    parallel_ranges(joined.of_line.size(), kChunk, execution,
+    parallel_ranges(joined.of_line.size(), kLinesAtOnce, execution,
                     [&](std::size_t begin, std::size_t end) {
-                        std::size_t next = before[begin / kChunk];
+                        std::size_t next = before[begin / kLinesAtOnce];
                         for (std::size_t l = begin; l < end; ++l) {
                             if (joined.of_line[l] < 0) continue;
                             joined.of_line[l] = static_cast<std::int32_t>(next);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kEdges = 1 << 14;         // in a bucket: they fit the cache of a core
 constexpr std::size_t kMostEdges = 2000000000;  // so that plan vertices on lines can be numbered
-constexpr std::size_t kCorners = 1 << 17, kMostChunks = 64;  // sorted into buckets at a time
+constexpr std::size_t kCorners = 1 << 17, kMostCornerChunks = 64;  // sorted into buckets at a time
 
 /// How many faces of a chunk are in a bucket, or where the next of them goes.
 struct Filling {
@@ -32,7 +32,8 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
     const std::size_t buckets = (line_count_ + lines_together_ - 1) / lines_together_;
     const int shift = std::countr_zero(lines_together_);
 
-    const std::size_t chunks = std::clamp<std::size_t>(corners.size() / kCorners, 1, kMostChunks);
+    const std::size_t chunks =
+        std::clamp<std::size_t>(corners.size() / kCorners, 1, kMostCornerChunks);
     std::vector<std::vector<Filling>> filling(chunks);
     const auto for_each_once = [&](std::size_t chunk, const auto& visit) {
         const std::size_t end = faces.size() * (chunk + 1) / chunks;

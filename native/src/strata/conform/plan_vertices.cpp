@@ -16,7 +16,7 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 14, kMostChunks = 64;
+constexpr std::size_t kVerticesAtOnce = 1 << 14, kMostVertexChunks = 64;
 
 /// A point with its rounded position.
 struct Rounded {
@@ -42,11 +42,11 @@ struct XRange {
 XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8_t>& used,
                          const Execution& execution) {
     const auto vertices = geometry.vertex_count();
-    std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
-    parallel_ranges(vertices, kChunk, execution, [&](std::size_t begin, std::size_t end) {
+    std::vector<XRange> ranges((vertices + kVerticesAtOnce - 1) / kVerticesAtOnce);
+    parallel_ranges(vertices, kVerticesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             if (used[v] != 0)
-                ranges[begin / kChunk].include(geometry.point(static_cast<PointId>(v)).x);
+                ranges[begin / kVerticesAtOnce].include(geometry.point(static_cast<PointId>(v)).x);
         }
     });
     XRange all;
@@ -65,10 +65,11 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
                              const std::vector<ExtraPoint>& extra, const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
     const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            mark(used[index(corners[c].point)]);
-    });
+    parallel_ranges(corners.size(), kVerticesAtOnce, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            mark(used[index(corners[c].point)]);
+                    });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;
     const XRange range = range_of_vertices(geometry, used, execution);
@@ -76,7 +77,8 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
     const auto in_order = [](const Rounded& a, const Rounded& b) {
         return std::tie(a.x, a.y, a.point) < std::tie(b.x, b.y, b.point);
     };
-    const std::size_t chunks = std::clamp<std::size_t>(used.size() / kChunk, 1, kMostChunks);
+    const std::size_t chunks =
+        std::clamp<std::size_t>(used.size() / kVerticesAtOnce, 1, kMostVertexChunks);
     const auto produce = [&](std::size_t chunk, const auto& take) {
         const std::size_t end = used.size() * (chunk + 1) / chunks;
         for (std::size_t p = used.size() * chunk / chunks; p < end; ++p) {
@@ -107,13 +109,13 @@ void for_each_position(const Array<Rounded>& points, std::size_t begin, std::siz
 
 /// Finds which points are in the same position. Rounded coordinates are the same for every way to
 /// name a point, so only points with equal ones can be; among those the exact test decides.
-/// @param before  how many positions begin in each range of kChunk points
+/// @param before  how many positions begin in each range of kVerticesAtOnce points
 /// @return for each point, the first one in its position
 Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Array<Rounded>& points,
                                       std::vector<std::size_t>& before,
                                       const Execution& execution) {
     Array<std::uint32_t> first_there(points.size());
-    before.assign((points.size() + kChunk - 1) / kChunk, 0);
+    before.assign((points.size() + kVerticesAtOnce - 1) / kVerticesAtOnce, 0);
     const auto find_among = [&](LocalArrangement& scope, std::size_t begin, std::size_t end) {
         std::size_t positions = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -128,14 +130,15 @@ Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Arr
         }
         return positions;
     };
-    parallel_ranges(
-        points.size(), kChunk, execution, [&](std::size_t range_begin, std::size_t range_end) {
-            LocalArrangement scope(geometry);
-            for_each_position(points, range_begin, range_end,
-                              [&](std::size_t begin, std::size_t end) {
-                                  before[range_begin / kChunk] += find_among(scope, begin, end);
-                              });
-        });
+    parallel_ranges(points.size(), kVerticesAtOnce, execution,
+                    [&](std::size_t range_begin, std::size_t range_end) {
+                        LocalArrangement scope(geometry);
+                        for_each_position(points, range_begin, range_end,
+                                          [&](std::size_t begin, std::size_t end) {
+                                              before[range_begin / kVerticesAtOnce] +=
+                                                  find_among(scope, begin, end);
+                                          });
+                    });
     return first_there;
 }
 
@@ -165,31 +168,32 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
     const auto of_point = [&](std::size_t i) -> PlanVertexId& {
         return vertices.of_point[index(points[i].point)];
     };
-    parallel_ranges(
-        points.size(), kChunk, execution, [&](std::size_t range_begin, std::size_t range_end) {
-            const std::size_t chunk = range_begin / kChunk;
-            std::size_t next = before[chunk];
-            for_each_position(points, range_begin, range_end,
-                              [&](std::size_t begin, std::size_t end) {
-                                  for (std::size_t i = begin; i < end; ++i) {
-                                      if (first_there[i] != i) {
-                                          of_point(i) = of_point(first_there[i]);
-                                          continue;
-                                      }
-                                      of_point(i) = static_cast<PlanVertexId>(next);
-                                      vertices.representative[next] = points[i].point;
-                                      vertices.position[next] = {points[i].x, points[i].y};
-                                      if (next > 0 && points[i - 1].x == points[i].x) {
-                                          std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
-                                              .fetch_or(std::uint64_t{1} << (next - 1) % 64,
-                                                        std::memory_order_relaxed);
-                                      }
-                                      if (i > begin) coincident[chunk].push_back(of_point(i));
-                                      ++next;
-                                  }
-                              });
-            assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
-        });
+    parallel_ranges(points.size(), kVerticesAtOnce, execution,
+                    [&](std::size_t range_begin, std::size_t range_end) {
+                        const std::size_t chunk = range_begin / kVerticesAtOnce;
+                        std::size_t next = before[chunk];
+                        for_each_position(
+                            points, range_begin, range_end,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    if (first_there[i] != i) {
+                                        of_point(i) = of_point(first_there[i]);
+                                        continue;
+                                    }
+                                    of_point(i) = static_cast<PlanVertexId>(next);
+                                    vertices.representative[next] = points[i].point;
+                                    vertices.position[next] = {points[i].x, points[i].y};
+                                    if (next > 0 && points[i - 1].x == points[i].x) {
+                                        std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
+                                            .fetch_or(std::uint64_t{1} << (next - 1) % 64,
+                                                      std::memory_order_relaxed);
+                                    }
+                                    if (i > begin) coincident[chunk].push_back(of_point(i));
+                                    ++next;
+                                }
+                            });
+                        assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
+                    });
     for (const auto& some : coincident)
         vertices.coincident.insert(vertices.coincident.end(), some.begin(), some.end());
     return vertices;

@@ -15,7 +15,7 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kChunk = 256;
+constexpr std::size_t kFacetsAtOnce = 256;
 
 /// Convex facets found by one chunk, in its own ids or shared ones.
 struct FoundFacets {
@@ -50,12 +50,13 @@ std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
                                                       const SurfaceTiling& surface,
                                                       const Execution& execution,
                                                       const Work& work) {
-    const std::size_t count = older.plane.size(), chunks = (count + kChunk - 1) / kChunk;
+    const std::size_t count = older.plane.size(),
+                      chunks = (count + kFacetsAtOnce - 1) / kFacetsAtOnce;
     std::vector<std::unique_ptr<FoundFacets>> found(chunks);
     parallel_chunks(chunks, execution, [&](std::size_t c) {
         found[c] = std::make_unique<FoundFacets>(geometry);
         PieceFinder finder(found[c]->scope, surface);
-        for (std::size_t f = c * kChunk; f < std::min(count, (c + 1) * kChunk); ++f) {
+        for (std::size_t f = c * kFacetsAtOnce; f < std::min(count, (c + 1) * kFacetsAtOnce); ++f) {
             work(f, finder, *found[c]);
         }
     });

@@ -243,7 +243,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
                          const Execution& execution) {
     std::vector<Mesh> meshes;
     for (const StackInput& rock : rocks) {
-        for (const SurfaceView& s : rock.surfaces)
+        for (const TriangleView& s : rock.surfaces)
             meshes.push_back({s.vertices, s.triangles, 3, &snapping});
         if (rock.region)
             meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
@@ -295,7 +295,7 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
     };
     for (const StackInput& rock : rocks) {
         StackInput& copy = joined.rocks.emplace_back(rock);
-        for (SurfaceView& s : copy.surfaces)
+        for (TriangleView& s : copy.surfaces)
             replace(s, 3);
         if (copy.region) replace(*copy.region, 2);
     }

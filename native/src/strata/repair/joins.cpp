@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/joins.hpp"
 
-#include <type_traits>
 #include <utility>
 
 #include "strata/repair/border_joining.hpp"
@@ -16,13 +15,12 @@ struct Joins::Found {
     BorderChains chains;
     Warning warning;
 
-    template <class View>
-    std::optional<JoinedMesh> mesh(const View& given, std::size_t columns,
+    std::optional<JoinedMesh> mesh(const TriangleView& given, std::size_t columns,
                                    const Execution& execution) const {
         begin_step(execution.progress, 0.0, 1.0, "joining the borders");
         JoinedMesh joined = joined_mesh(given.vertices, given.triangles, columns, snapping, chains,
                                         execution.progress);
-        if (!is_single_valued(View{joined.vertices, joined.triangles}, execution)) return {};
+        if (!is_single_valued({joined.vertices, joined.triangles}, columns, execution)) return {};
         return joined;
     }
 
@@ -30,10 +28,10 @@ private:
     // All meshes together are single-valued where each is alone: what a mesh covers is found from
     // its own border (enter_site), and that the frame around this one is another one does not
     // count, as it only has to lie outside of the border (fill_frame).
-    template <class View>
-    static bool is_single_valued(const View& mesh, const Execution& execution) {
+    static bool is_single_valued(const TriangleView& mesh, std::size_t columns,
+                                 const Execution& execution) {
         StackInput input;
-        if constexpr (std::is_same_v<View, SurfaceView>) {
+        if (columns == 3) {
             input.surfaces.push_back(mesh);
         } else {
             input.region = mesh;
@@ -51,13 +49,9 @@ std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t
     return joined_mesh(vertices, {}, columns, found_->snapping, {}).vertices;
 }
 
-std::optional<JoinedMesh> Joins::mesh(const SurfaceView& surface,
+std::optional<JoinedMesh> Joins::mesh(const TriangleView& mesh, std::size_t columns,
                                       const Execution& execution) const {
-    return found_->mesh(surface, 3, execution);
-}
-
-std::optional<JoinedMesh> Joins::mesh(const RegionView& region, const Execution& execution) const {
-    return found_->mesh(region, 2, execution);
+    return found_->mesh(mesh, columns, execution);
 }
 
 std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,

@@ -37,7 +37,7 @@ struct PlanMesh {
 std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
     std::vector<PlanMesh> meshes;
     for (const StackInput& rock : rocks) {
-        for (const SurfaceView& s : rock.surfaces)
+        for (const TriangleView& s : rock.surfaces)
             meshes.push_back({s.vertices, 3, s.triangles});
         if (rock.region) meshes.push_back({rock.region->vertices, 2, rock.region->triangles});
     }

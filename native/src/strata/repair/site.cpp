@@ -18,7 +18,7 @@ using exact::VertexId;
 
 namespace {
 
-std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const RegionView& region,
+std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const TriangleView& region,
                                        std::int32_t first_surface, const PlanSnapping& snapping) {
     for (std::size_t i = 0; i < region.vertices.size(); ++i) {
         if (is_within_limits(region.vertices[i])) continue;
@@ -157,7 +157,7 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
     Site& site = *entered;
     std::size_t vertices = 0, triangles = 0;
     for (const StackInput& rock : rocks) {
-        for (const SurfaceView& surface : rock.surfaces) {
+        for (const TriangleView& surface : rock.surfaces) {
             vertices += surface.vertices.size() / 3;
             triangles += surface.triangles.size() / 3;
         }

@@ -19,13 +19,13 @@ namespace {
 
 constexpr std::size_t kRange = 1 << 12;  // looked at at a time
 
-std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
+std::array<double, 3> vertex_of(const TriangleView& surface, std::int64_t v) {
     const auto i = static_cast<std::size_t>(v) * 3;
     return {surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]};
 }
 
 /// Looks at the coordinates of vertices.
-void check_vertices(const SurfaceView& surface, int index, std::size_t begin, std::size_t end) {
+void check_vertices(const TriangleView& surface, int index, std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::int64_t>(begin); v < static_cast<std::int64_t>(end); ++v) {
         for (const double c : vertex_of(surface, v)) {
             if (!is_within_limits(c)) {
@@ -39,7 +39,7 @@ void check_vertices(const SurfaceView& surface, int index, std::size_t begin, st
 }
 
 /// Looks at the corners of triangles.
-void check_corners(const SurfaceView& surface, int index, std::size_t begin, std::size_t end) {
+void check_corners(const TriangleView& surface, int index, std::size_t begin, std::size_t end) {
     const std::size_t count = surface.vertices.size() / 3;
     for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
         const std::int32_t v = surface.triangles[i];
@@ -63,7 +63,7 @@ struct RangeOfTriangles {
 };
 
 /// Triangles with an area, counter-clockwise; marks their vertices.
-RangeOfTriangles triangles_with_area(const SurfaceView& surface, int index,
+RangeOfTriangles triangles_with_area(const TriangleView& surface, int index,
                                      const PlanSnapping& snapping, std::size_t begin,
                                      std::size_t end, std::vector<std::uint8_t>& is_used) {
     RangeOfTriangles found;
@@ -106,7 +106,7 @@ struct EnteredVertices {
 };
 
 /// Enters the used vertices in their order, each fetched some rounds before it is needed.
-EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& surface,
+EnteredVertices enter_vertices(PlanArrangement& geometry, const TriangleView& surface,
                                const PlanSnapping& snapping,
                                const std::vector<std::uint8_t>& is_used, Progress* progress) {
     constexpr std::size_t kAhead = 12;
@@ -148,7 +148,7 @@ EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& sur
 /// threads may do at once. Nothing but entering looks at the geometry.
 class SurfaceEntry {
 public:
-    SurfaceEntry(const SurfaceView& surface, int index, const PlanSnapping& snapping)
+    SurfaceEntry(const TriangleView& surface, int index, const PlanSnapping& snapping)
         : surface_(surface),
           index_(index),
           snapping_(snapping),
@@ -247,7 +247,7 @@ private:
                        });
     }
 
-    const SurfaceView& surface_;
+    const TriangleView& surface_;
     int index_;
     const PlanSnapping& snapping_;
     std::size_t triangles_, vertices_;
@@ -269,7 +269,7 @@ bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
 }
 
 std::vector<EnteredSurface> enter_surfaces(PlanArrangement& geometry,
-                                           std::span<const SurfaceView> surfaces, int first_index,
+                                           std::span<const TriangleView> surfaces, int first_index,
                                            const PlanSnapping& snapping,
                                            std::vector<Warning>& warnings,
                                            const Execution& execution) {

@@ -17,7 +17,7 @@ bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
 /// area (with a warning). The first of them is number `first_index` of all.
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle
 std::vector<EnteredSurface> enter_surfaces(exact::PlanArrangement& geometry,
-                                           std::span<const SurfaceView> surfaces, int first_index,
+                                           std::span<const TriangleView> surfaces, int first_index,
                                            const PlanSnapping& snapping,
                                            std::vector<Warning>& warnings,
                                            const Execution& execution);

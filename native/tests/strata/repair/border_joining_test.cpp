@@ -36,7 +36,7 @@ TEST(BorderJoining, DividesEdgesAtVerticesBesideThem) {
     const StackInput input = stack_of(outlines);
     const JoinedBorders joined = join_borders({&input, 1}, {}, find_chains({&input, 1}, {}));
     ASSERT_EQ(joined.rocks.size(), 1u);
-    for (const SurfaceView& s : joined.rocks[0].surfaces)
+    for (const TriangleView& s : joined.rocks[0].surfaces)
         EXPECT_EQ(s.triangles.size(), 9u);  // all have both vertices now
     const CellComplex columns = build_stack(input, {1, nullptr});
     const double area = Outline::kX * 2e6 / 2;

@@ -44,12 +44,12 @@ TEST(Joins, GiveTheMeshesThatAreBuilt) {
     for (const bool borders : {true, false}) {
         const auto joins = find_joins({&input, 1}, borders);
         ASSERT_TRUE(joins);
-        const auto mesh = joins->mesh(input.surfaces[1]);
+        const auto mesh = joins->mesh(input.surfaces[1], 3);
         ASSERT_TRUE(mesh);
         EXPECT_EQ(mesh->vertices, expected.vertices);
         EXPECT_EQ(mesh->triangles, expected.triangles);
         EXPECT_EQ(joins->snapped(input.surfaces[1].vertices, 3), expected.vertices);
-        const auto region = joins->mesh(*input.region);
+        const auto region = joins->mesh(*input.region, 2);
         ASSERT_TRUE(region);
         EXPECT_EQ(region->vertices, owned.corners);
         EXPECT_EQ(joins->snapped(input.region->vertices, 2), owned.corners);
@@ -66,11 +66,11 @@ TEST(Joins, AreNotMadeInAMeshThatIsNotSingleValued) {
     const StackInput input = owned.view();
     const auto joins = find_joins({&input, 1});
     ASSERT_TRUE(joins);
-    EXPECT_FALSE(joins->mesh(input.surfaces[0]));
-    EXPECT_TRUE(joins->mesh(input.surfaces[1]));
+    EXPECT_FALSE(joins->mesh(input.surfaces[0], 3));
+    EXPECT_TRUE(joins->mesh(input.surfaces[1], 3));
     const std::vector<double> bow{0, 0, 4, 4, 4, 0, 0, 4, -1, 2, 5, 2};
     const std::vector<std::int32_t> crossing{0, 1, 4, 2, 3, 5};
-    EXPECT_FALSE(joins->mesh(RegionView{bow, crossing}));
+    EXPECT_FALSE(joins->mesh({bow, crossing}, 2));
 }
 
 TEST(Joins, RefuseWhatTheBuilderRefuses) {
@@ -80,7 +80,7 @@ TEST(Joins, RefuseWhatTheBuilderRefuses) {
     const StackInput input = owned.view();
     const auto joins = find_joins({&input, 1});
     ASSERT_TRUE(joins);
-    EXPECT_THROW(joins->mesh(input.surfaces[0]), InputError);
+    EXPECT_THROW(joins->mesh(input.surfaces[0], 3), InputError);
 }
 
 }  // namespace

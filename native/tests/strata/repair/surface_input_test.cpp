@@ -15,7 +15,7 @@ struct Entered {
     std::vector<EnteredSurface> surfaces;
 
     explicit Entered(const OwnedSurface& surface, const PlanSnapping& snapping = {}) {
-        const std::vector<SurfaceView> views{surface.view()};
+        const std::vector<TriangleView> views{surface.view()};
         surfaces = enter_surfaces(geometry, views, 7, snapping, warnings, {1, nullptr});
     }
 };

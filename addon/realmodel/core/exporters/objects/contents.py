@@ -60,8 +60,8 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a file of objects holds; no two parts and holes have one name. block_names: of all blocks of the
-    model, in the file. boundary_names: of surfaces, then of walls, base and cuts."""
+    """What a file of objects holds; no two parts have one name, and no two holes. block_names: of all blocks
+    of the model, in the file. boundary_names: of surfaces, then of walls, base and cuts."""
 
     blocks: list[BlockShell]
     surfaces: list[SurfaceShape]
@@ -74,10 +74,10 @@ class Contents:
         """Those of a model."""
         parts, library = model_parts(model), model.project.library
         shapes, holes = surface_parts(model), _holes(model)
-        names = distinct_names([*(part.name for part in (*parts, *shapes)), *(hole.name for hole in holes)])
+        names = distinct_names(part.name for part in (*parts, *shapes))
         parts = [replace(part, name=name) for part, name in zip(parts, names, strict=False)]
-        shapes = [replace(part, name=name) for part, name in zip(shapes, names[len(parts) :], strict=False)]
-        named = zip(holes, names[len(parts) + len(shapes) :], strict=True)
+        shapes = [replace(part, name=name) for part, name in zip(shapes, names[len(parts) :], strict=True)]
+        named = zip(holes, distinct_names(hole.name for hole in holes), strict=True)
         triangles = FaceTriangles.of(model)
         existing = [number for number, block in enumerate(model.blocks) if block.cells]
         block_names = [block.name for block in model.blocks]

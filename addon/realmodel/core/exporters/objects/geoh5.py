@@ -85,7 +85,7 @@ class _Objects:
             self._workspace,
             name=name,
             parent=self._group(group),
-            uid=stable_uuid("geoh5", "object", name),
+            uid=stable_uuid("geoh5", "object", group, name),
             **attributes,
         )
         if crs := self._model.project.crs:
@@ -176,7 +176,7 @@ class _Objects:
         self._add(item, name, where, values.astype(np.int32), kind)
 
     def _add(self, item: Any, name: str, where: str, values: Any, kind: dict) -> None:
-        words = ("geoh5", "data", item.name, name)
+        words = ("geoh5", "data", item.parent.name, item.name, name)
         self._workspace.create_entity(
             self._data.Data,
             entity={

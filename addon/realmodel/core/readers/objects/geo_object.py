@@ -23,12 +23,14 @@ class ObjectName:
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """places (N, 3): points, or the beginnings of intervals along lines. columns: (N,) texts or numbers by
-    name; what is not known is "" or NaN."""
+    """places (N, 3): points, or the beginnings of intervals along lines, which end at `ends` (N, 3). columns:
+    (N,) texts or numbers by name; what is not known is "" or NaN. depths (N, 2): of the ends of intervals;
+    None: by their lengths, one after another."""
 
     places: np.ndarray
     columns: dict[str, np.ndarray]
-    are_intervals: bool = False
+    ends: np.ndarray | None = None
+    depths: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +48,7 @@ class GeoObject:
     @property
     def columns(self) -> dict[str, np.ndarray]:
         """What is known of its vertices."""
-        return next((each.columns for each in self.values if not each.are_intervals), {})
+        return next((each.columns for each in self.values if each.ends is None), {})
 
 
 class OpenFile(Protocol):

@@ -50,7 +50,7 @@ class _Geoh5File:
         vertices = np.array(item.vertices, np.float64)
         values = [Values(vertices, _columns(item, "VERTEX"))]
         if wanted.kind == LINES:
-            values.append(Values(vertices[np.array(item.cells)[:, 0]], _columns(item, "CELL"), True))
+            values.append(_along(item, vertices))
         triangles = np.array(item.cells) if wanted.kind == SURFACE else None
         return GeoObject(wanted.name, wanted.kind, vertices, triangles, values)
 
@@ -74,24 +74,35 @@ def _hole(item: Any, wanted: ObjectName) -> GeoObject:
         vertices = np.array(item.vertices, np.float64)
         values.append(Values(vertices, _columns(item, "VERTEX")))
         if item.cells is not None:
-            values.append(Values(vertices[np.array(item.cells)[:, 0]], _columns(item, "CELL"), True))
+            values.append(_along(item, vertices))
     else:
         vertices = collar[None]
         values = list(_tables(item))
     return GeoObject(wanted.name, HOLE, vertices, None, values, collar)
 
 
+def _along(item: Any, vertices: np.ndarray) -> Values:
+    """The intervals between vertices, with the depths that a drillhole says."""
+    begins, ends = (vertices[np.array(item.cells)[:, end]] for end in (0, 1))
+    columns = _columns(item, "CELL")
+    known = [columns.pop(name) for name in ("FROM", "TO") if name in columns]
+    depths = np.column_stack(known) if len(known) == 2 else None
+    return Values(begins, columns, ends, depths)
+
+
 def _tables(item: Any) -> Iterator[Values]:
     """The tables of a drillhole in a group of drillholes, each with depths of its own."""
     for group in item.property_groups or ():
-        intervals = getattr(group, "from_", None)
-        depths = intervals if intervals is not None else getattr(group, "depth_", None)
-        if depths is None or depths.values is None:
-            continue
+        limits = [getattr(group, name, None) for name in ("from_", "to_")]
+        depths = [each.values for each in limits if each is not None and each.values is not None]
+        point = getattr(group, "depth_", None)
         known = [item.workspace.get_entity(uid)[0] for uid in group.properties or ()]
         known = [each for each in known if each is not None and each.name.upper() not in _DEPTHS]
         columns = {each.name: column for each in known if (column := _column(each)) is not None}
-        yield Values(item.desurvey(depths.values), columns, intervals is not None)
+        if len(depths) == 2:
+            yield Values(item.desurvey(depths[0]), columns, item.desurvey(depths[1]), np.column_stack(depths))
+        elif point is not None and point.values is not None:
+            yield Values(item.desurvey(point.values), columns)
 
 
 def _columns(item: Any, where: str) -> dict[str, np.ndarray]:

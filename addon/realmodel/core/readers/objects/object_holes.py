@@ -1,92 +1,178 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picks of boreholes from the objects of a file: drillholes, lines of boreholes, or points that name their
-hole."""
+"""Picks and logged intervals of boreholes from the objects of a file: drillholes, lines of boreholes, or
+points that name their hole."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.text import Step
 from ...settings.boreholes import Boreholes
 from ..tables.boreholes import Picks
-from ..tables.hole_tables import PICKS
+from ..tables.hole_tables import INTERVALS, PICKS
+from ..tables.intervals import known_interval, observed_intervals, plan_step_of, tops_of
+from ..tables.observations import Observations
 from ..tables.table_layout import names_shown, plain_name
 from ..tables.unit_names import UnitNames
 from .geo_object import HOLE, LINES, POINTS, GeoObject, Values
 from .object_file import read_objects
 
 _KINDS = (HOLE, LINES, POINTS)
-_BLOCK = "block"  # how intervals are called where no pick is
 
 
-def read_hole_objects(given: Boreholes, step: Step, scale: np.ndarray, units: UnitNames) -> Picks:
-    """The picks of the boreholes of a file, or of the object `layer`. scale (3,): the factors to the model's
-    unit. units: what the names in it mean.
+def read_hole_objects(
+    given: Boreholes, scale: np.ndarray, units: UnitNames, plan_step: float | None
+) -> Picks:
+    """What the boreholes of a file say, or the object `layer`. scale (3,): the factors to the model's unit.
+    units: what the names in it mean. plan_step: as of read_intervals.
 
-    An object's points that name a surface are picks; intervals that name one have it at their top, where the
-    interval above has another name. `hole` among its data names the hole, else the object's name does.
+    Picks are points whose data name a surface, and tops of intervals that name one where the interval above
+    has another name. `hole` among the data names the hole, else the object's name does.
     Raises InputRefused naming the file and the object.
     """
-    assert given.picks is not None
-    file = Path(given.picks)
     picks = Picks()
-    found_points: dict[str, list[np.ndarray]] = {}
+    for file in dict.fromkeys(given.files):
+        kinds = (HOLE,) if given.layer is None else _KINDS
+        found = read_objects(file, given.layer, kinds)
+        if given.picks is not None and Path(given.picks) == file:
+            _add_picks(picks, found, given, scale, units)
+        if given.intervals is not None and Path(given.intervals) == file:
+            _add_intervals(picks, found, given, scale, (units, plan_step))
+    for _, places in picks.holes.values():
+        places.sort(key=lambda pick: -pick[1][2])
+    return picks
+
+
+def _add_picks(
+    picks: Picks, found: list[GeoObject], given: Boreholes, scale: np.ndarray, units: UnitNames
+) -> None:
+    points: dict[str, list[np.ndarray]] = {}
     missing = 0
-    kinds = (HOLE,) if given.layer is None else _KINDS
-    found = read_objects(file, given.layer, kinds)
-    for number, each in enumerate(found):
-        for name, hole, place, collar in _picks_of(each, given):
-            surface = units.surface(name)
-            if units.says_nothing(name) or not surface:
+    for each in found:
+        for code, hole, place in _picks_of(each, given):
+            surface = units.surface(code)
+            if units.says_nothing(code) or not surface:
                 continue
             if not np.isfinite(place).all():
                 missing += 1
                 continue
-            here = place * scale
-            found_points.setdefault(surface, []).append(here)
-            top = None if collar is None else collar * scale
-            picks.holes.setdefault(hole, (top, []))[1].append((surface, here))
-        step((number + 1) / len(found))
-    picks.points.update((surface, np.array(places)) for surface, places in found_points.items())
-    if not picks.points:
-        raise InputRefused("there are no picks in it", file=file)
-    for _, places in picks.holes.values():
-        places.sort(key=lambda pick: -pick[1][2])
+            points.setdefault(surface, []).append(place * scale)
+            picks.holes.setdefault(hole, (_collar(each, scale), []))[1].append((surface, place * scale))
+    picks.points.update((surface, np.array(places)) for surface, places in points.items())
+    if not points:
+        raise InputRefused("there are no picks in it", file=given.picks)
     if missing:
-        picks.warnings.append(f"{file}: {missing} picks have no place and are left out")
-    return picks
+        picks.warnings.append(f"{given.picks}: {missing} picks have no place and are left out")
 
 
-def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np.ndarray, np.ndarray | None]]:
-    """Name of the surface, hole, place (3,) and collar of each pick of an object."""
-    values, column = _table(found, given)
-    names = _texts(values.columns[column])
-    hole = _column(values, given.columns.get("hole"), PICKS["hole"])
-    holes = [found.name] * len(names) if hole is None else _texts(values.columns[hole])
+def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:
+    """The name of the surface, the hole and the place (3,) of each pick of an object."""
+    aliases = (*PICKS["surface"], *INTERVALS["block"])
+    values, column = _table(found, found.values, given, "surface", aliases)
+    names, holes = _texts(values.columns[column]), _holes(found, values, given)
     before = ("", "")
     for name, own, place in zip(names, holes, values.places, strict=True):
-        repeats = values.are_intervals and (name, own) == before
+        repeats = values.ends is not None and (name, own) == before
         before = (name, own)
         if not repeats:
-            yield name, own, place, found.collar
+            yield name, own, place
 
 
-def _table(found: GeoObject, given: Boreholes) -> tuple[Values, str]:
-    """The data of an object that name surfaces, and under which name."""
-    said = given.columns.get("surface")
-    for values in found.values:
-        column = _column(values, said, (*PICKS["surface"], _BLOCK))
+@dataclass
+class _Log:
+    """The intervals of a hole: where their ends are, by depth, and (from, to, block)."""
+
+    collar: np.ndarray | None
+    depths: list[float] = field(default_factory=list)
+    places: list[np.ndarray] = field(default_factory=list)
+    intervals: list[tuple[float, float, str]] = field(default_factory=list)
+
+    def place(self, depth: float) -> np.ndarray:
+        """(3,) the place of a depth, on straight lines between the known ones."""
+        known, first = np.unique(self.depths, return_index=True)
+        places = np.array(self.places)[first]
+        return np.array([np.interp(depth, known, column) for column in places.T])
+
+
+def _add_intervals(
+    picks: Picks,
+    found: list[GeoObject],
+    given: Boreholes,
+    scale: np.ndarray,
+    meaning: tuple[UnitNames, float | None],
+) -> None:
+    units, plan_step = meaning
+    logs: dict[str, _Log] = {}
+    for each in found:
+        _read_log(logs, picks, each, given, scale, units)
+    if not logs:
+        raise InputRefused("there are no intervals in it", file=given.intervals)
+    if plan_step is None:
+        plan_step = plan_step_of(np.array([log.places[0][:2] for log in logs.values()]))
+    parts = []
+    for hole, log in logs.items():
+        parts.append(observed_intervals(hole, log.intervals, log.place, plan_step, picks.left_out))
+        picks.holes.setdefault(hole, (log.collar, []))[1].extend(tops_of(parts[-1]))
+    picks.observations.append(Observations.joined(parts))
+
+
+def _read_log(
+    logs: dict[str, _Log],
+    picks: Picks,
+    found: GeoObject,
+    given: Boreholes,
+    scale: np.ndarray,
+    units: UnitNames,
+) -> None:
+    tables = [values for values in found.values if values.ends is not None]
+    values, column = _table(found, tables, given, "block", INTERVALS["block"])
+    names, holes = _texts(values.columns[column]), _holes(found, values, given)
+    assert values.ends is not None
+    begins, ends = values.places * scale, values.ends * scale
+    depths = _depths(begins, ends, holes) if values.depths is None else values.depths * scale[2]
+    for code, hole, (low, high), begin, end in zip(names, holes, depths.tolist(), begins, ends, strict=True):
+        log = logs.setdefault(hole, _Log(_collar(found, scale)))
+        if not (np.isfinite(begin).all() and np.isfinite(end).all()):
+            what = f"an interval of hole '{hole}' has no place"
+            raise InputRefused(what, file=given.intervals, item=f"object '{found.name}'")
+        log.depths += [low, high]
+        log.places += [begin, end]
+        where = f"object '{found.name}', hole '{hole}' at {low:.9g}, '{code}'"
+        if not units.says_nothing(code):
+            interval = known_interval((low, high, code), hole, where, units, picks.left_out)
+            log.intervals += [] if interval is None else [interval]
+
+
+def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarray:
+    """(N, 2) the depths of the ends of intervals that follow one another along each hole, from 0."""
+    last: dict[str, tuple[float, np.ndarray]] = {}
+    depths = []
+    for hole, begin, end in zip(holes, begins, ends, strict=True):
+        depth, place = last.get(hole, (0.0, begin))
+        depth += float(np.linalg.norm(begin - place))
+        depths.append((depth, depth + float(np.linalg.norm(end - begin))))
+        last[hole] = depths[-1][1], end
+    return np.array(depths).reshape(-1, 2)
+
+
+def _table(
+    found: GeoObject, tables: list[Values], given: Boreholes, meaning: str, aliases: Iterable[str]
+) -> tuple[Values, str]:
+    """The data of an object that name surfaces or blocks, and under which name."""
+    said = given.columns.get(meaning)
+    for values in tables:
+        column = _column(values, said, aliases)
         if column is not None:
             return values, column
-    there = [name for values in found.values for name in values.columns]
-    what = f"it has no data '{said or 'surface'}'"
+    there = [name for values in tables for name in values.columns]
+    what = f"it has no data '{said or meaning}'"
     advice = f"it has {names_shown(there)}: " if there else ""
-    advice += 'name it: columns = { surface = "..." }'
-    raise InputRefused(what, file=given.picks, item=f"object '{found.name}'", advice=advice)
+    advice += f'name it: columns = {{ {meaning} = "..." }}'
+    raise InputRefused(what, file=given.files[-1], item=f"object '{found.name}'", advice=advice)
 
 
 def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
@@ -95,6 +181,15 @@ def _column(values: Values, said: object, aliases: Iterable[str]) -> str | None:
         return next((name for name in values.columns if name.lower() == str(said).strip().lower()), None)
     plain = {plain_name(name): name for name in reversed(values.columns)}
     return next((plain[alias] for alias in aliases if alias in plain), None)
+
+
+def _holes(found: GeoObject, values: Values, given: Boreholes) -> list[str]:
+    column = _column(values, given.columns.get("hole"), PICKS["hole"])
+    return [found.name] * len(values.places) if column is None else _texts(values.columns[column])
+
+
+def _collar(found: GeoObject, scale: np.ndarray) -> np.ndarray | None:
+    return None if found.collar is None else found.collar * scale
 
 
 def _texts(column: np.ndarray) -> list[str]:

@@ -67,7 +67,8 @@ class _OmfFile:
                 by_place.setdefault(data.location, {})[data.name] = column
         values = [Values(vertices, by_place.get("vertices", {}))]
         if segments is not None:
-            values.append(Values(vertices[segments[:, 0]], by_place.get("segments", {}), True))
+            begins, ends = vertices[segments[:, 0]], vertices[segments[:, 1]]
+            values.append(Values(begins, by_place.get("segments", {}), ends))
         return GeoObject(wanted.name, wanted.kind, vertices, triangles, values)
 
     def _reader(self) -> Any:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
@@ -70,12 +70,23 @@ def read_intervals(
         raise InputRefused("there are no intervals in it", file=given.intervals)
     if plan_step is None:
         plan = np.array([hole.begin[:2] for hole in found.values()]) * scale[:2]
-        plan_step = float(np.ptp(plan, axis=0).max()) / _STEPS
+        plan_step = plan_step_of(plan)
     parts, tops = [], {}
     for name, hole in found.items():
-        parts.append(_observed(holes, hole, name, scale, plan_step, left_out))
-        tops[name] = hole.begin * scale, _tops(parts[-1])
+
+        def place(depth: float, hole: _Hole = hole) -> np.ndarray:
+            # Depths, and horizontal offsets along a hole, are in the unit of z.
+            way = holes.way_to(hole.row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)
+            return (hole.begin + way) * scale
+
+        parts.append(observed_intervals(name, hole.intervals, place, plan_step, left_out))
+        tops[name] = hole.begin * scale, tops_of(parts[-1])
     return Intervals(Observations.joined(parts), tops, left_out)
+
+
+def plan_step_of(plan: np.ndarray) -> float:
+    """How far places along inclined intervals are apart in plan, for holes at (N, 2)."""
+    return float(np.ptp(plan, axis=0).max()) / _STEPS
 
 
 def _interval(
@@ -92,6 +103,15 @@ def _interval(
         left_out.append(LeftOut("no_depth", f"{where}: '{lacking[0]}' has no value", code, hole, depth))
         return None
     begin, end = row.number("from"), row.number("to")
+    return known_interval((begin, end, code), hole, where, units, left_out)
+
+
+def known_interval(
+    given: tuple[float, float, str], hole: str, where: str, units: UnitNames, left_out: list[LeftOut]
+) -> tuple[float, float, str] | None:
+    """(from, to, block) of from, to and the name of a unit, which says something; None where it cannot be
+    used. where: the interval in messages."""
+    begin, end, code = given
     if begin > end:
         text = f"{where}: from {begin:.9g} is below to {end:.9g}"
         left_out.append(LeftOut("from_to", text, code, hole, begin))
@@ -104,21 +124,20 @@ def _interval(
     return (begin, end, block) if begin < end else None  # of no thickness: the unit is absent
 
 
-def _observed(
-    holes: Holes, hole: _Hole, name: str, scale: np.ndarray, plan_step: float, left_out: list[LeftOut]
+def observed_intervals(
+    name: str,
+    intervals: Iterable[tuple[float, float, str]],
+    place: Callable[[float], np.ndarray],
+    plan_step: float,
+    left_out: list[LeftOut],
 ) -> Observations:
-    """What the intervals of one hole say, from above downward."""
+    """What the intervals (from, to, block) of one hole say, from above downward. place(depth): where it
+    is."""
     places: list[np.ndarray] = []
     depths: list[float] = []
     blocks: list[str] = []
-
-    @cache
-    def place(depth: float) -> np.ndarray:
-        # Depths, and horizontal offsets along a hole, are in the unit of z.
-        way = holes.way_to(hole.row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)
-        return (hole.begin + way) * scale
-
-    for begin, end, block in _divided(hole.intervals, name, left_out):
+    place = cache(place)
+    for begin, end, block in _divided(intervals, name, left_out):
         across = norm((place(end) - place(begin))[:2])
         count = 1 if plan_step <= 0 else min(int(np.ceil(across / plan_step)), _MOST_BETWEEN + 1)
         for depth in [begin, *np.linspace(begin, end, max(count, 1) + 1)[1:-1].tolist(), end]:
@@ -165,7 +184,7 @@ def _alike(depths: list[float]) -> dict[float, float]:
     return found
 
 
-def _tops(observations: Observations) -> list[tuple[str, np.ndarray]]:
+def tops_of(observations: Observations) -> list[tuple[str, np.ndarray]]:
     """(surface, place) where the blocks of a hole begin."""
     blocks = observations.blocks
     first = [row for row in range(len(blocks)) if row == 0 or blocks[row] != blocks[row - 1]]

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,10 @@ class Stack:
         if emptied and emptied[-1] == len(kept):
             return _EMPTY
         return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept], emptied)
+
+    def some(self, kept: Mapping[Sheet, np.ndarray]) -> Stack:
+        """With some triangles (T,) bool of each sheet alone."""
+        return replace(self, sheets=[sheet.some(kept[sheet]) for sheet in self.sheets])
 
 
 _EMPTY = Stack([], [], None, [], [])

@@ -181,25 +181,8 @@ def structures_of(project: Project, faults: list[Fault], bodies: list[Body]) -> 
 def divide(work: Work, structures: Structures, box: np.ndarray) -> Structures:
     """The parts of a box, (2, 3). Raises InputRefused."""
     with refused_as(lambda error: refused_structure(error, structures)) as native:
-        sides, low, high = work.native(native.structure_parts, _box_complex(*box), structures.native())
+        sides, low, high = work.native(native.structure_parts, box.tolist(), structures.native())
     return replace(structures, sides=sides, low=low, high=high, box=box)
-
-
-def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
-    """One cell, as an argument of the native module."""
-    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.float64)
-    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-    return {
-        "vertices": np.where(corners == 0, low, high),
-        "face_offsets": np.arange(0, 25, 4, dtype=np.int64),
-        "face_vertices": np.array(faces, np.int32).ravel(),
-        "face_cells": np.array([[0, -1]] * 6, np.int32),
-        "face_surface": np.full(6, -1, np.int32),
-        "cell_block": np.zeros(1, np.int32),
-        "blocks": 1,
-        "surfaces": 0,
-        "cell_kind": "blocks",
-    }
 
 
 def box_around(inputs: list[RockInput], structures: Structures, has_sheets: bool = False) -> np.ndarray:

@@ -27,14 +27,12 @@ from .throws import Throws
 def make_sheets(
     work: Work,
     entry: RockInput,
-    start: float,
-    end: float,
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     numbers: Collection[int] | None = None,
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
-    Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
+    keep: where a surface's arrays are kept once its sheets are made.
     numbers: of the surfaces, with those that they need; None: of all that have no sheets yet.
 
     Surfaces without enough data in a compartment come last, for the throw of others is needed there: also
@@ -50,7 +48,7 @@ def make_sheets(
         ]
         for each in _by_kind(rock, stage)
     )
-    steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
+    steps = np.linspace(0.0, 1.0, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
     def begin(part: Work, number: int) -> list[CompartmentSheets]:
         """The sheets of a surface that are not all made yet."""
@@ -76,13 +74,13 @@ def make_sheets(
 
     few = entry.divided().few
     # ready meshes need no others
-    with work.phase(start, steps[0], "interpolating surfaces"):
+    with work.phase(0.0, steps[0], "interpolating surfaces"):
         unfinished = list(itertools.chain(*work.each(begin_ready, ready)))
     for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
             unfinished += begin(work, number)
     if unfinished:
-        with work.phase(end, end, "interpolating surfaces"):
+        with work.phase(1.0, 1.0, "interpolating surfaces"):
             begun = {*ready, *interpolated}
             for number in itertools.chain(*reversed(_by_kind(rock, None))):
                 if number not in begun and not entry.divided().is_made(number):

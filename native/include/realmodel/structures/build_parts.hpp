@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model with faults and bodies from its surfaces (docs/dev/structures.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/execution.hpp"
+#include "realmodel/complex.hpp"
+#include "realmodel/strata/stack.hpp"
+#include "realmodel/structures/structures.hpp"
+
+namespace realmodel::structures {
+
+/// What a surface of a stack in one part of space is in the whole model.
+struct PartSurface {
+    std::int32_t number;  ///< its own; kWall or kBase: there is no such surface in the whole
+    std::int32_t block;   ///< that of the block beneath it; -1: nothing is there
+    /// Of each of its triangles the number in the surface of the whole, which errors and warnings
+    /// name; none at all: they are all there.
+    std::span<const std::int64_t> triangles = {};
+};
+
+/// A rock mass as it is in one part of space.
+struct PartStack {
+    strata::StackInput stack;           ///< without surfaces: it is not there
+    std::vector<PartSurface> surfaces;  ///< one for each of the stack
+};
+
+/// One of the parts that structures leave. What its stacks build may reach beyond it: the
+/// structures cut it.
+struct PartOfSpace {
+    Sides sides;                   ///< as parts_of has them
+    std::vector<PartStack> rocks;  ///< one for each rock mass
+    /// Of columns: those that lie nowhere in it need not be made.
+    std::optional<strata::WantedSpace> wanted = {};
+};
+
+/// A piece of a whole model, with structures continued as in the whole.
+struct PieceOfWhole {
+    std::vector<ContinuedStructure> continued;  ///< one for each structure; none: as far as it goes
+    double largest = 0;                         ///< the largest coordinate of the whole
+};
+
+/// A model with structures, part by part.
+struct StructuredInput {
+    std::vector<PartOfSpace> parts;
+    std::vector<Structure> structures;
+    /// S x B: whether a structure divides a block, numbered as PartSurface::block has them.
+    std::span<const std::uint8_t> acts;
+    std::int32_t surfaces = 0;  ///< of the whole: structures are counted after them
+    std::size_t blocks = 0;     ///< B
+    CellKind cells = CellKind::kColumns;
+    std::optional<PieceOfWhole> piece = {};
+};
+
+/// Builds the stacks of all parts, several at once, cuts them by the structures and joins them:
+/// join_models of their models. Stacks with `emptied` are built as columns, whatever cells are
+/// wanted. The warnings are those of all parts, each once.
+/// @return cell_part  of each cell the part
+/// @throws InputError  as build_rock_masses does, `surface` and the items that are triangles as
+///         the whole has them; as join_models does, `surface` the number of the structure counted
+///         after all surfaces; bad_part (item: the part that does not fit the rest)
+/// @throws Cancelled
+Joined build_parts(const StructuredInput& input, const Execution& execution);
+
+}  // namespace realmodel::structures

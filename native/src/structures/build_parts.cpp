@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/structures/build_parts.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/base/memory.hpp"
+#include "realmodel/strata/cell_components.hpp"
+#include "realmodel/structures/merge_cells.hpp"
+
+namespace realmodel::structures {
+
+namespace {
+
+constexpr double kBuilt = 0.4;  // of the time: until the stacks are built; then they are joined
+
+[[noreturn]] void refuse_part(std::size_t part, const char* what) {
+    throw InputError("bad_part", "part " + std::to_string(part) + " of space: " + what, -1,
+                     {static_cast<std::int64_t>(part)});
+}
+
+void check_stack(const StructuredInput& input, std::size_t part, const PartStack& rock) {
+    const strata::StackInput& stack = rock.stack;
+    if (rock.surfaces.size() != stack.surfaces.size())
+        refuse_part(part, "numbers for each surface of a stack are needed");
+    if (!stack.rules.empty() && stack.rules.size() != stack.surfaces.size())
+        refuse_part(part, "rules: one for each surface of a stack, or none at all");
+    if (!std::ranges::is_sorted(stack.emptied) ||
+        (!stack.emptied.empty() && stack.emptied.back() >= stack.surfaces.size()))
+        refuse_part(part, "emptied: surfaces of the stack, ascending");
+    if (!stack.fills.empty() &&
+        (stack.emptied.empty() || stack.fills.size() != stack.emptied.back()))
+        refuse_part(part, "fills: of each surface before the last emptying");
+    for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+        const PartSurface& surface = rock.surfaces[k];
+        if (surface.number < kBase || surface.number >= input.surfaces)
+            refuse_part(part, "a surface has a number that the model has not");
+        if (surface.block < -1 || (surface.block >= 0 && index(surface.block) >= input.blocks))
+            refuse_part(part, "a block has a number that the model has not");
+        if (!surface.triangles.empty() &&
+            surface.triangles.size() != stack.surfaces[k].triangle_count())
+            refuse_part(part, "numbers for each triangle of a surface are needed");
+    }
+}
+
+void check_input(const StructuredInput& input) {
+    const std::size_t structures = input.structures.size();
+    if (input.acts.size() != structures * input.blocks)
+        throw InputError("bad_part", "acts: one for each structure and block");
+    if (input.piece && !input.piece->continued.empty() &&
+        input.piece->continued.size() != structures)
+        throw InputError("bad_part", "continued: one for each structure");
+    for (std::size_t p = 0; p < input.parts.size(); ++p) {
+        const PartOfSpace& part = input.parts[p];
+        if (part.sides.size() != structures) refuse_part(p, "sides: one for each structure");
+        if (part.rocks.size() != input.parts[0].rocks.size())
+            refuse_part(p, "it has not as many rock masses as the others");
+        for (const PartStack& rock : part.rocks)
+            check_stack(input, p, rock);
+    }
+}
+
+/// The stacks of the rock masses that are in a part, and what their surfaces, counted through all
+/// of them, are in the whole.
+struct StacksHere {
+    std::vector<strata::StackInput> stacks;
+    std::vector<std::int64_t> rocks;
+    std::vector<PartSurface> surfaces;
+
+    explicit StacksHere(const PartOfSpace& part) {
+        for (std::size_t r = 0; r < part.rocks.size(); ++r) {
+            const PartStack& rock = part.rocks[r];
+            if (rock.surfaces.empty()) continue;
+            stacks.push_back(rock.stack);
+            rocks.push_back(static_cast<std::int64_t>(r));
+            surfaces.insert(surfaces.end(), rock.surfaces.begin(), rock.surfaces.end());
+        }
+    }
+
+    bool is_any_emptied() const {
+        return std::ranges::any_of(stacks,
+                                   [](const auto& stack) { return !stack.emptied.empty(); });
+    }
+
+    /// What an error or a warning names, as the whole has it.
+    void name_as_in_whole(int& surface, std::vector<std::int64_t>& items,
+                          const std::string& kind) const {
+        if (kind == "rocks_overlap") {
+            for (std::int64_t& rock : items)
+                rock = rocks[static_cast<std::size_t>(rock)];
+        }
+        if (surface < 0) return;
+        const PartSurface& own = surfaces[static_cast<std::size_t>(surface)];
+        surface = own.number;
+        if (own.triangles.empty() || kind == "not_finite") return;  // that names a vertex
+        for (std::int64_t& triangle : items)
+            triangle = own.triangles[static_cast<std::size_t>(triangle)];
+    }
+};
+
+/// Where each cell comes when those where nothing is are left out and, if asked for, connected
+/// cells of one block become one.
+std::vector<std::int32_t> numbers_of_kept(const CellComplex& complex,
+                                          const std::vector<std::int32_t>& block, bool as_one,
+                                          Progress* progress) {
+    std::vector<std::int32_t> first;  // the first of the cells that each becomes one with
+    if (as_one) first = strata::cell_components(complex.face_cells, block, progress);
+    std::vector<std::int32_t> number(block.size(), -1);
+    std::int32_t next = 0;
+    for (std::size_t c = 0; c < block.size(); ++c) {
+        if (block[c] < 0) continue;
+        const std::size_t own = as_one ? index(first[c]) : c;
+        number[c] = own == c ? next++ : number[own];
+    }
+    return number;
+}
+
+/// Whether two surfaces lie upon the same block, or upon nothing.
+bool repeats_blocks(const std::vector<PartSurface>& surfaces) {
+    std::vector<std::int32_t> blocks;
+    for (const PartSurface& surface : surfaces)
+        blocks.push_back(surface.block);
+    std::ranges::sort(blocks);
+    return std::ranges::adjacent_find(blocks) != blocks.end();
+}
+
+/// A built complex with blocks and surfaces as the whole numbers them, and with the cells wanted.
+CellComplex as_in_whole(CellComplex built, const StacksHere& here, CellKind cells,
+                        Progress* progress) {
+    const auto block_beneath = [&](std::int32_t surface) {
+        return here.surfaces[index(surface)].block;
+    };
+    std::vector<std::int32_t> block(built.cell_block.size());
+    std::ranges::transform(built.cell_block, block.begin(), block_beneath);
+    const bool is_empty_anywhere = std::ranges::find(block, -1) != block.end();
+    const bool as_one =
+        cells == CellKind::kBlocks && (built.cell_kind != cells || repeats_blocks(here.surfaces));
+    if (as_one || is_empty_anywhere) {
+        std::vector<Warning> warnings = std::move(built.warnings);
+        built = merge_cells(built, numbers_of_kept(built, block, as_one, progress), progress);
+        built.warnings = std::move(warnings);
+    }
+    for (std::int32_t& own : built.cell_block)
+        own = block_beneath(own);
+    for (std::int32_t& surface : built.face_surface) {
+        if (surface >= 0) surface = here.surfaces[index(surface)].number;
+    }
+    for (Warning& warning : built.warnings)
+        here.name_as_in_whole(warning.surface, warning.items, warning.kind);
+    built.cell_kind = cells;
+    return built;
+}
+
+CellComplex model_of_part(const StructuredInput& input, const PartOfSpace& part,
+                          const Execution& execution) {
+    const StacksHere here(part);
+    if (here.stacks.empty()) return {};
+    const CellKind built_as = here.is_any_emptied() ? CellKind::kColumns : input.cells;
+    const bool may_leave_out = built_as == CellKind::kColumns && part.wanted;
+    try {
+        return as_in_whole(strata::build_rock_masses(here.stacks, execution, built_as,
+                                                     may_leave_out ? &*part.wanted : nullptr,
+                                                     input.piece.has_value()),
+                           here, input.cells, execution.progress);
+    } catch (InputError& error) {
+        here.name_as_in_whole(error.surface, error.items, error.kind);
+        throw;
+    }
+}
+
+bool are_same(const Warning& one, const Warning& other) {
+    return one.kind == other.kind && one.surface == other.surface && one.items == other.items &&
+           one.text == other.text;
+}
+
+/// The models that have cells, the parts that they are of, and their warnings, each once.
+struct PartModels {
+    std::vector<PartModel> models;
+    std::vector<std::int32_t> parts;
+    std::vector<Warning> warnings;
+
+    PartModels(const StructuredInput& input, const std::vector<CellComplex>& built) {
+        for (std::size_t p = 0; p < built.size(); ++p) {
+            if (built[p].cell_block.empty()) continue;
+            ComplexView model = built[p];
+            model.blocks = input.blocks;
+            model.surfaces = input.surfaces;
+            model.block_volume = {};
+            models.push_back({model, input.parts[p].sides});
+            parts.push_back(static_cast<std::int32_t>(p));
+            for (const Warning& warning : built[p].warnings) {
+                const auto is_same = [&](const Warning& w) { return are_same(w, warning); };
+                if (std::ranges::none_of(warnings, is_same)) warnings.push_back(warning);
+            }
+        }
+    }
+};
+
+Joined join_parts(const StructuredInput& input, const PartModels& parts,
+                  const Execution& execution) {
+    Joined joined;
+    if (parts.models.empty()) {
+        joined.complex.face_offsets.push_back(0);
+        joined.complex.cell_kind = input.cells;
+        joined.complex.volumes.assign(input.blocks, 0.0);
+        return joined;
+    }
+    const PieceOfWhole piece = input.piece.value_or(PieceOfWhole{});
+    try {
+        joined = join_models(parts.models, input.structures, input.acts, execution, piece.continued,
+                             piece.largest);
+    } catch (InputError& error) {
+        if (error.surface >= 0) error.surface += input.surfaces;
+        throw;
+    }
+    for (std::int32_t& part : joined.cell_part)
+        part = parts.parts[index(part)];
+    joined.complex.warnings = parts.warnings;
+    return joined;
+}
+
+void begin_phase(Progress* progress, double from, double to, const char* what) {
+    if (progress != nullptr) progress->begin(from, to, what);
+}
+
+}  // namespace
+
+Joined build_parts(const StructuredInput& input, const Execution& execution) {
+    check_input(input);
+    begin_phase(execution.progress, 0, kBuilt, "intersecting and cutting");
+    std::vector<CellComplex> built(input.parts.size());
+    parallel_tasks(built.size(), execution, kBuilt, [&](std::size_t p, const Execution& own) {
+        built[p] = model_of_part(input, input.parts[p], own);
+    });
+    give_back_memory();
+    begin_phase(execution.progress, kBuilt, 1, "joining the compartments");
+    Progress joining(execution.progress, 1 - kBuilt);
+    Joined joined = join_parts(input, PartModels(input, built), {execution.threads, &joining});
+    joining.report(1.0, nullptr);
+    return joined;
+}
+
+}  // namespace realmodel::structures

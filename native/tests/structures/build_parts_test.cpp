@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/structures/build_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "../strata/complex_checks.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::structures {
+namespace {
+
+using strata::OwnedSurface;
+
+OwnedSurface level(double z, int n = 4) {
+    return strata::grid(n, n, 0, 0, 4, 4, [z](double, double) { return z; });
+}
+
+/// The rectangle x = at + slant z, which goes far beyond the rock.
+OwnedSurface inclined(double at, double slant) {
+    OwnedSurface s;
+    for (const double z : {-9.0, 9.0}) {
+        for (const double y : {-9.0, 9.0})
+            s.vertex(at + slant * z, y, z);
+    }
+    s.triangle(0, 1, 3);
+    s.triangle(0, 3, 2);
+    return s;
+}
+
+/// Layers over the square from (0, 0) to (4, 4), given for each part by the heights of their tops,
+/// and faults that divide all of them.
+struct Faulted {
+    Faulted(std::vector<OwnedSurface> faults, const std::vector<std::vector<double>>& heights,
+            std::vector<Sides> sides)
+        : shapes(std::move(faults)) {
+        for (const std::vector<double>& own : heights) {
+            for (const double z : own)
+                sheets.push_back(level(z));
+        }
+        for (const OwnedSurface& shape : shapes)
+            input.structures.push_back({shape.view()});
+        input.surfaces = static_cast<std::int32_t>(heights[0].size());
+        input.blocks = heights[0].size();
+        acts.assign(shapes.size() * input.blocks, 1);
+        input.acts = acts;
+        std::size_t next = 0;
+        for (std::size_t p = 0; p < heights.size(); ++p) {
+            PartStack stack;
+            for (std::size_t k = 0; k < heights[p].size(); ++k) {
+                const auto number = static_cast<std::int32_t>(k);
+                stack.stack.surfaces.push_back(sheets[next++].view());
+                stack.surfaces.push_back({number, k == 0 ? -1 : number});
+            }
+            input.parts.push_back({std::move(sides[p]), {stack}});
+        }
+    }
+    PartStack& stack(std::size_t part) { return input.parts[part].rocks[0]; }
+
+    std::vector<OwnedSurface> shapes, sheets;
+    std::vector<std::uint8_t> acts;
+    StructuredInput input;
+};
+
+/// Below the fault layers of thickness 1, above it the same, half as high again.
+Faulted one_fault() {
+    return {{inclined(1, 0.25)}, {{0, 1, 2}, {0.5, 1.5, 2.5}}, {{-1}, {1}}};
+}
+
+void expect_equal(const Joined& one, const Joined& other) {
+    EXPECT_TRUE(std::ranges::equal(one.complex.vertices, other.complex.vertices));
+    EXPECT_TRUE(std::ranges::equal(one.complex.face_vertices, other.complex.face_vertices));
+    EXPECT_TRUE(std::ranges::equal(one.complex.face_cells, other.complex.face_cells));
+    EXPECT_TRUE(std::ranges::equal(one.complex.face_surface, other.complex.face_surface));
+    EXPECT_TRUE(std::ranges::equal(one.complex.cell_block, other.complex.cell_block));
+    EXPECT_EQ(one.complex.volumes, other.complex.volumes);
+    EXPECT_EQ(one.cell_part, other.cell_part);
+}
+
+Joined built(const StructuredInput& input) {
+    const Joined one = build_parts(input, {1, nullptr});
+    strata::expect_valid(one.complex, input.cells == CellKind::kBlocks);
+    for (const int threads : {2, 5})
+        expect_equal(one, build_parts(input, {threads, nullptr}));
+    return one;
+}
+
+InputError refused(const StructuredInput& input) {
+    try {
+        build_parts(input, {2, nullptr});
+    } catch (const InputError& error) {
+        return error;
+    }
+    return {"nothing", "is refused"};
+}
+
+TEST(BuildParts, AreTheStacksJoined) {
+    for (const CellKind cells : {CellKind::kColumns, CellKind::kBlocks}) {
+        Faulted own = one_fault();
+        own.input.cells = cells;
+        std::vector<CellComplex> stacks;
+        std::vector<PartModel> models;
+        for (std::size_t p = 0; p < 2; ++p)
+            stacks.push_back(strata::build_stack(own.stack(p).stack, {1, nullptr}, cells));
+        for (std::size_t p = 0; p < 2; ++p)
+            models.push_back({stacks[p], own.input.parts[p].sides});
+        const Joined all = built(own.input);
+        EXPECT_EQ(all.complex.cell_kind, cells);
+        EXPECT_GT(std::ranges::count(all.complex.face_surface, 3), 0);  // on the fault
+        expect_equal(all, join_models(models, own.input.structures, own.acts, {1, nullptr}));
+        // below the fault x > 1 + z / 4, above it x < 1 + z / 4; between y = 0 and y = 4
+        EXPECT_NEAR(all.complex.volumes[1], 4 * (3 - 0.125) + 4 * (1 + 0.25), 1e-12);
+        EXPECT_NEAR(all.complex.volumes[2], 4 * (3 - 0.375) + 4 * (1 + 0.5), 1e-12);
+        for (std::size_t c = 0; c < all.cell_part.size(); ++c)
+            EXPECT_TRUE(all.cell_part[c] == 0 || all.cell_part[c] == 1);
+    }
+}
+
+TEST(BuildParts, WhereARockMassIsNotThereNothingIs) {
+    Faulted own({inclined(1, 0), inclined(3, 0)}, {{0, 1}, {0, 1}, {0, 1}}, {{}, {}, {}});
+    const auto parts = parts_of({{{0, 0, 0}, {4, 4, 1}}}, own.input.structures, {1, nullptr});
+    ASSERT_EQ(parts.size(), 3U);  // the second is the one between the faults
+    for (std::size_t p = 0; p < 3; ++p)
+        own.input.parts[p].sides = parts[p].sides;
+    EXPECT_NEAR(built(own.input).complex.volumes[1], 16, 1e-12);
+    own.stack(1) = {};
+    const Joined beside = built(own.input);
+    EXPECT_NEAR(beside.complex.volumes[1], 8, 1e-12);
+    EXPECT_EQ(std::ranges::count(beside.cell_part, 1), 0);
+    EXPECT_GT(std::ranges::count(beside.cell_part, 0), 0);
+    EXPECT_GT(std::ranges::count(beside.cell_part, 2), 0);
+    for (const std::size_t part : {0, 2})
+        own.stack(part) = {};
+    const Joined nothing = built(own.input);
+    EXPECT_TRUE(nothing.complex.cell_block.empty());
+    EXPECT_EQ(nothing.complex.volumes, std::vector<double>(2, 0));
+}
+
+TEST(BuildParts, SurfacesHaveTheirNumbersInTheWhole) {
+    Faulted own = one_fault();
+    own.input.surfaces = 7;
+    own.input.blocks = 9;
+    own.acts.assign(9, 1);
+    own.input.acts = own.acts;
+    own.stack(0).surfaces = {{4, -1}, {5, 8}, {6, 2}};
+    own.stack(1).surfaces = {{4, -1}, {kWall, 8}, {6, 2}};  // there it only fills
+    const Joined all = built(own.input);
+    for (const std::int32_t block : all.complex.cell_block)
+        EXPECT_TRUE(block == 2 || block == 8);
+    std::set<std::int32_t> surfaces(all.complex.face_surface.begin(),
+                                    all.complex.face_surface.end());
+    EXPECT_EQ(surfaces, (std::set<std::int32_t>{kWall, 4, 5, 6, 7}));  // 7: the fault
+    EXPECT_EQ(all.complex.volumes.size(), 9U);
+    EXPECT_GT(all.complex.volumes[8], 0);
+}
+
+TEST(BuildParts, LayersOfOneBlockAreOneCellOfAModelOfBlocks) {
+    Faulted own = one_fault();
+    own.input.cells = CellKind::kBlocks;
+    for (const std::size_t part : {0, 1})
+        own.stack(part).surfaces[1].block = 2;
+    const Joined all = built(own.input);
+    EXPECT_EQ(all.complex.cell_block.size(), 2U);
+    EXPECT_EQ(std::ranges::count(all.complex.face_surface, 1), 0);
+}
+
+TEST(BuildParts, WhatIsNothingIsLeftOut) {
+    for (const CellKind cells : {CellKind::kColumns, CellKind::kBlocks}) {
+        Faulted own = one_fault();
+        own.input.cells = cells;
+        for (const std::size_t part : {0, 1})
+            own.stack(part).surfaces[2].block = -1;
+        const Joined all = built(own.input);
+        EXPECT_EQ(all.complex.volumes[2], 0);
+        EXPECT_NEAR(all.complex.volumes[1], 4 * (3 - 0.125) + 4 * (1 + 0.25), 1e-12);
+    }
+}
+
+TEST(BuildParts, StacksThatAreEmptiedBecomeBlocks) {
+    Faulted own = one_fault();
+    own.input.cells = CellKind::kBlocks;
+    own.stack(0).stack.emptied = {1};  // what was there is air: the upper two layers fill it
+    const Joined all = built(own.input);
+    EXPECT_EQ(all.complex.cell_kind, CellKind::kBlocks);
+    EXPECT_EQ(std::ranges::count(all.cell_part, 0), 1);  // surface 1 lies upon nothing there
+    EXPECT_EQ(std::ranges::count(all.cell_part, 1), 2);
+}
+
+TEST(BuildParts, ColumnsWhereNothingIsWantedMayBeLeftOut) {
+    Faulted own = one_fault();
+    const Joined all = built(own.input);
+    const std::vector<std::uint8_t> cells{1, 1, 0, 0};  // part 0 is where x > 1: nothing is wanted
+    own.input.parts[0].wanted = strata::WantedSpace{{0, 0, -9}, {1, 4, 18}, {4, 1, 1}, cells};
+    const Joined few = built(own.input);
+    EXPECT_LT(std::ranges::count(few.cell_part, 0), std::ranges::count(all.cell_part, 0));
+    EXPECT_EQ(std::ranges::count(few.cell_part, 1), std::ranges::count(all.cell_part, 1));
+}
+
+TEST(BuildParts, WarningsOfSeveralPartsComeOnce) {
+    Faulted own = one_fault();
+    for (const std::size_t part : {0, 1}) {
+        OwnedSurface& sheet = own.sheets[3 * part + 1];
+        sheet.triangle(0, 1, 1);  // without area
+        own.stack(part).stack.surfaces[1] = sheet.view();
+    }
+    std::vector<std::int64_t> numbers(33);
+    for (std::size_t t = 0; t < numbers.size(); ++t)
+        numbers[t] = 100 + static_cast<std::int64_t>(t);
+    for (const std::size_t part : {0, 1})
+        own.stack(part).surfaces[1].triangles = numbers;
+    const Joined all = built(own.input);
+    ASSERT_EQ(all.complex.warnings.size(), 1U);
+    EXPECT_EQ(all.complex.warnings[0].surface, 1);
+    EXPECT_EQ(all.complex.warnings[0].items, std::vector<std::int64_t>{132});
+    numbers[32] = 7;
+    const std::vector<std::int64_t> others = numbers;
+    numbers[32] = 8;
+    own.stack(0).surfaces[1].triangles = others;
+    EXPECT_EQ(built(own.input).complex.warnings.size(), 2U);
+}
+
+TEST(BuildParts, WhatIsRefusedIsNamedAsInTheWhole) {
+    Faulted own = one_fault();
+    own.input.surfaces = 7;
+    OwnedSurface& sheet = own.sheets[4];  // surface 1 of part 1
+    sheet.vertices.insert(sheet.vertices.end(),
+                          {sheet.vertices[0], sheet.vertices[1], sheet.vertices[2] + 1});
+    sheet.triangle(0, 1, 25);
+    own.stack(1).stack.surfaces[1] = sheet.view();
+    const std::vector<std::int64_t> numbers(33, 50);
+    own.stack(1).surfaces[1] = {5, 1, numbers};
+    const InputError vertical = refused(own.input);
+    EXPECT_EQ(vertical.kind, "vertical_triangle");
+    EXPECT_EQ(vertical.surface, 5);
+    EXPECT_EQ(vertical.items, std::vector<std::int64_t>{50});
+
+    own = one_fault();
+    own.shapes[0].triangles[5] = 99;
+    own.input.structures[0].surface = own.shapes[0].view();
+    const InputError structure = refused(own.input);
+    EXPECT_EQ(structure.kind, "bad_index");
+    EXPECT_EQ(structure.surface, 3);  // counted after the surfaces
+}
+
+TEST(BuildParts, OverlappingRockMassesHaveTheirNumbers) {
+    Faulted own = one_fault();
+    const PartStack rock = own.stack(1);
+    own.input.parts[0].rocks = {{}, {}, {}};
+    own.input.parts[1].rocks = {rock, {}, rock};
+    const InputError error = refused(own.input);
+    EXPECT_EQ(error.kind, "rocks_overlap");
+    EXPECT_EQ(error.items, (std::vector<std::int64_t>{0, 2}));
+}
+
+TEST(BuildParts, PartsThatDoNotFitTheRestAreRefused) {
+    const std::vector<std::uint8_t> few(2, 1);
+    const std::vector<std::int64_t> numbers(3);
+    const std::vector<std::pair<std::int64_t, std::function<void(Faulted&)>>> cases{
+        {-1, [&](Faulted& own) { own.input.acts = few; }},
+        {-1, [](Faulted& own) { own.input.piece.emplace().continued.resize(2); }},
+        {1, [](Faulted& own) { own.input.parts[1].sides = {}; }},
+        {1, [](Faulted& own) { own.input.parts[1].rocks.emplace_back(); }},
+        {0, [](Faulted& own) { own.stack(0).surfaces.pop_back(); }},
+        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = 3; }},
+        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -3; }},
+        {1, [](Faulted& own) { own.stack(1).surfaces[1].block = 3; }},
+        {1, [](Faulted& own) { own.stack(1).surfaces[1].block = -2; }},
+        {1, [&](Faulted& own) { own.stack(1).surfaces[1].triangles = numbers; }},
+        {1, [](Faulted& own) { own.stack(1).stack.rules = {strata::Rule::kErosional}; }},
+        {1, [](Faulted& own) { own.stack(1).stack.emptied = {3}; }},
+        {1,
+         [](Faulted& own) {
+             own.stack(1).stack.emptied = {2, 1};
+         }},
+        {1, [](Faulted& own) { own.stack(1).stack.fills = {1}; }},
+    };
+    for (const auto& [part, change] : cases) {
+        Faulted own = one_fault();
+        change(own);
+        const InputError error = refused(own.input);
+        EXPECT_EQ(error.kind, "bad_part") << error.what();
+        EXPECT_EQ(error.items, part < 0 ? std::vector<std::int64_t>{} : std::vector{part})
+            << error.what();
+    }
+}
+
+TEST(BuildParts, CanBeWatchedAndCancelled) {
+    const Faulted own = one_fault();
+    Progress progress;
+    build_parts(own.input, {2, &progress});
+    EXPECT_DOUBLE_EQ(progress.fraction(), 1);
+    EXPECT_EQ(progress.text(), "joining the compartments");
+    progress.cancel();
+    EXPECT_THROW(build_parts(own.input, {2, &progress}), Cancelled);
+}
+
+}  // namespace
+}  // namespace realmodel::structures
