@@ -86,7 +86,8 @@ class RealModelView(bpy.types.PropertyGroup):
     )  # JSON of the state that the bodies of kind "surviving" were made from
     show_boreholes: BoolProperty(
         name="Boreholes",
-        description="Show the boreholes as tubes, in the color of the layer below each pick",
+        description="Show the boreholes as tubes, in the colors of the blocks of their intervals, or of the "
+        "layer below each pick",
         options=set(),
         update=changes.boreholes,
     )

@@ -3,6 +3,8 @@
 
 import json
 
+from . import observed_blocks
+
 
 def keep(row, holes):
     """Adds holes, as realmodel.core's Picks.holes, to those that a rock mass has."""
@@ -23,6 +25,31 @@ def rename(row, old, new):
             pick[0] = new if pick[0] == old else pick[0]
     if picks:
         row.hole_picks = json.dumps(picks)
+
+
+def remove_at(row, places):
+    """Removes the picks at some places (N, 3), and holes that have no others."""
+    removed = {tuple(place) for place in places.tolist()}
+    left = {
+        hole: [collar, kept]
+        for hole, (collar, met) in of_rock(row).items()
+        if (kept := [pick for pick in met if tuple(pick[1]) not in removed])
+    }
+    row.hole_picks = json.dumps(left) if left else ""
+
+
+def paths(row):
+    """The line of each hole of a rock mass: its collar, if that is known, and its picks or, where it has
+    intervals, all of these."""
+    logs, _ = observed_blocks.shown(row)
+    picked = of_rock(row)
+    found = []
+    for hole in dict.fromkeys((*picked, *logs)):
+        collar, picks = picked.get(hole, (None, []))
+        places = logs[hole].places.tolist() if hole in logs else [place for _, place in picks]
+        given = [*([] if collar is None else [collar]), *places]
+        found.append([place for n, place in enumerate(given) if n == 0 or place != given[n - 1]])
+    return [line for line in found if line]
 
 
 def of_rock(row):

@@ -8,26 +8,29 @@ from ..core.surfaces.age_order import age_order
 from . import data_objects, library_rows, reading_text, settings, stored_arrays
 
 
-def give(scene, rock, picks, add_surfaces=False):
+def give(scene, rock, picks, add_surfaces=False, units=()):
     """Adds points to the surfaces of their names.
 
     rock: its row. picks: realmodel.core.Picks in model units. add_surfaces: adds those that are not there,
-    the oldest first. Returns warnings about unused points, and about their order. Raises InputRefused.
+    the oldest first. units: names of blocks with intervals or observations; their surfaces are called so,
+    too. Returns warnings about unused points, and about their order. Raises InputRefused.
     """
     points = picks.points
     given = {row.name for row in rock.surfaces}
-    new = [name for name in points if name not in given]
+    new = [name for name in dict.fromkeys((*points, *units)) if name not in given]
     own = {row.name: _own_points(scene, row) for row in rock.surfaces if row.name in points}
     warnings = []
     with settings.filling():
         if add_surfaces:
-            order = age_order(new, [points[name] for name in new], picks.holes)
+            order = age_order(new, [points.get(name, _tops(picks, name)) for name in new], picks.holes)
             warnings += [text] if (text := order.warning(new)) else []
             for name in (new[number] for number in order.order):
                 row = rock.surfaces.add()
                 row.name = name
                 row.property_id = library_rows.for_surface(scene, name)
-                own[name] = np.empty((0, 3))
+                row.block = name if name in units else ""
+                if name in points:
+                    own[name] = np.empty((0, 3))
         else:
             warnings += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
         for row in rock.surfaces:  # Blender may have moved all of them when some were added
@@ -40,6 +43,12 @@ def give(scene, rock, picks, add_surfaces=False):
         ]
         rock.active_surface = len(rock.surfaces) - 1
     return warnings
+
+
+def _tops(picks, name):
+    """(N, 3) where a unit begins in the intervals of holes; None where it is in none."""
+    tops = [place for _, met in picks.holes.values() for surface, place in met if surface == name]
+    return np.array(tops) if tops else None
 
 
 def _own_points(scene, row):

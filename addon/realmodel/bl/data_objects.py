@@ -15,7 +15,16 @@ from ..core import InputRefused, PointFile, RealModelError, Surface
 from ..core.readers import read_mesh, read_point_file, read_region
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.readers.fault_trace import read_fault_trace
-from . import borehole_picks, display, meshes, project_settings, reading_text, settings, stored_arrays
+from . import (
+    borehole_picks,
+    display,
+    meshes,
+    observed_blocks,
+    project_settings,
+    reading_text,
+    settings,
+    stored_arrays,
+)
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
@@ -73,9 +82,10 @@ def begin(scene, points):
 
 
 def points_of(scene, rock, depsgraph):
-    """(P, 3) float64 of all points of a rock mass's surfaces, in model coordinates; the vertices of ready
-    meshes count where there are no points. Raises InputRefused."""
+    """(P, 3) float64 of all points of a rock mass's surfaces and of its observations, in model coordinates;
+    the vertices of ready meshes count where there are no points. Raises InputRefused."""
     found = [row_points(scene, row, depsgraph) for row in rock.surfaces]
+    found.append(observed_blocks.places_of(rock))
     found = [points for points in found if points is not None and len(points)]
     if not found:
         raise InputRefused(
@@ -130,10 +140,16 @@ def _wanted(scene, read):
                 f"{rock.name} outline",
                 lambda rock=rock: _outline(scene, rock),
             )
-        if rock.hole_picks:
-            found[f"boreholes {rock.name} {_checksum(rock.hole_picks)}"] = (
+        logs, outcrops = observed_blocks.shown(rock)
+        if rock.hole_picks or logs:
+            found[f"boreholes {rock.name} {_checksum(rock.hole_picks + rock.observations)}"] = (
                 f"{rock.name} boreholes",
-                lambda rock=rock: _paths(rock),
+                lambda rock=rock: _chains(borehole_picks.paths(rock)),
+            )
+        if len(outcrops):
+            found[f"observations {rock.name} {_checksum(rock.observations)}"] = (
+                f"{rock.name} observations",
+                lambda outcrops=outcrops: (outcrops, np.empty((0, 2), np.int32)),
             )
         for row in rock.surfaces:
             if (key := _points_key(row)) is not None:
@@ -176,15 +192,6 @@ def _checksum(text):
 def _cloud(scene, row, points):
     points = read_points(scene, row) if points is None else points
     return points, np.empty((0, 2), np.int32)
-
-
-def _paths(rock):
-    """The boreholes of a rock mass: lines from their collars through their picks."""
-    holes = [
-        [*([] if collar is None else [collar]), *(place for _, place in picks)]
-        for collar, picks in borehole_picks.of_rock(rock).values()
-    ]
-    return _chains(holes)
 
 
 def _sticks(scene, row):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..core import Dips, InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.base.errors import naming
 from ..core.base.work import run
 from ..core.project.project import surface_item
@@ -33,6 +33,7 @@ from . import (
     shapes,
     stored_arrays,
     structure_settings,
+    surface_dips,
     units,
 )
 from .origin import KEY as ORIGIN_KEY
@@ -137,13 +138,8 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = _stored_dips(row)
+        surface.dips = surface_dips.of_surface(row)
     return surface
-
-
-def _stored_dips(row):
-    """The realmodel.core.Dips of a surface's row; None where it has none."""
-    return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
 
 
 def region_rings(row, depsgraph, origin):
@@ -419,9 +415,7 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        dips = surface.known_dips()
-        given = {} if dips is None else {key: each for key, each in vars(dips).items() if each is not None}
-        row.dips = stored_arrays.pack(**given) if given else ""
+        surface_dips.keep(row, surface.known_dips())
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

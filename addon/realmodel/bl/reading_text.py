@@ -89,5 +89,10 @@ def value_text(given):
 
 def named_columns(given):
     """{name: column} of "hole = BHID; depth = 3"."""
+    return {name: column(text) for name, text in named_texts(given).items()}
+
+
+def named_texts(given):
+    """{name: text} of "SST = Sandstone; LC ="."""
     parts = (part.partition("=") for part in given.split(";") if part.strip())
-    return {name.strip(): column(text) for name, _, text in parts}
+    return {name.strip(): text.strip() for name, _, text in parts}

@@ -1,28 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Import of boreholes: points for all surfaces of a rock mass at once."""
+"""Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
+
+from pathlib import Path
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
-from bpy_extras.io_utils import ImportHelper
 
-from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
-from ..core.readers import OBJECT_ENDINGS, TABLE_ENDINGS, read_boreholes
-from ..core.settings.boreholes import COLUMNS, Boreholes
+from ..bl import (
+    borehole_picks,
+    borehole_points,
+    caches,
+    data_objects,
+    field_tables,
+    live,
+    method_settings,
+    observed_blocks,
+    project_settings,
+    reading_text,
+    settings,
+    stored_arrays,
+    surface_dips,
+)
+from ..core import InputRefused, RealModelError
+from ..core.readers import OBJECT_ENDINGS, TABLE_ENDINGS, table_kind
+from ..core.readers.objects.object_file import is_object_file
+from ..core.settings.methods import METHODS
 from ..core.settings.schema import READING
+from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
-from .imports import arrived
-from .reporting import Reporting, chosen_path, file_filter, require_file
+from .imports import FilesImportHelper, arrived
+from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
 from .rocks import add_rock
 
+_SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
+_kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
-class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
-    """Read a table with the depths at which boreholes, vertical or not, met the surfaces, or the drillholes
-    of an OMF or geoh5 file; the surfaces get these points beside their own, and are added where they are not
-    there yet"""
+
+class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
+    """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
+    the surfaces) and of logged intervals, or the drillholes of an OMF or geoh5 file; tables of places in
+    known blocks, such as outcrops; and dips, which the active surface gets. Choose all of them at once: each
+    is told by its columns. Surfaces get these data beside their own, and are added where they are not there
+    yet"""
 
     bl_label = "Import Boreholes"
 
-    filename_ext = ""
+    filepath: StringProperty(
+        name="File", description="One of the tables", subtype="FILE_PATH", options={"SKIP_SAVE"}
+    )
     filter_glob: file_filter(*TABLE_ENDINGS, *OBJECT_ENDINGS)
     layer: StringProperty(
         name="Layer",
@@ -30,13 +55,14 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     collars: StringProperty(
         name="Collars",
-        description="Table with hole, x, y and z of each borehole, beside the table of picks or anywhere; "
-        "empty: the picks have x, y and z themselves",
+        description="Table with hole, x, y and z of each borehole, beside the other tables or anywhere; "
+        "empty: it is among the chosen files, or the rows of picks and intervals have x, y and z themselves",
     )
     survey: StringProperty(
         name="Survey",
-        description="Table with hole, depth along it, azimuth, and dip or inclination, beside the table of "
-        "picks or anywhere; empty: holes go as the collars say, or straight down",
+        description="Table with hole, depth along it, azimuth, and dip or inclination, beside the other "
+        "tables or anywhere; empty: it is among the chosen files, or holes go as the collars say, or "
+        "straight down",
     )
     downward_dip: EnumProperty(
         name="Downward Dip",
@@ -50,7 +76,12 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     columns: StringProperty(
         name="Columns",
         description="Columns with other names, in any of the tables, such as hole = BHID; "
-        "depth = FROM. There are " + ", ".join(COLUMNS),
+        "depth = FROM. There are " + ", ".join(field_tables.ALL_COLUMNS),
+    )
+    names: StringProperty(
+        name="Names",
+        description="What codes of units in the tables mean: surfaces, blocks or bodies, such as "
+        "SST = Sandstone; LC = (nothing: lost core)",
     )
     units: EnumProperty(
         name="Unit",
@@ -59,38 +90,160 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     add_surfaces: BoolProperty(
         name="Add Surfaces",
-        description="Add surfaces that are named in the table but not in the list, the oldest first",
+        description="Add surfaces that are named in the tables but not in the list, the oldest first; a unit "
+        "of intervals is the block beneath its surface",
         default=True,
     )
 
     def act(self, context):
-        picks = chosen_path(self, "the picks")
-        given = Boreholes(
-            picks,
-            _beside(picks, self.collars),
+        scene = context.scene
+        tables = self._tables()
+        surface = _surface_for_dips(scene).name if tables.dips else ""
+        rock = settings.active_rock(scene)
+        found = field_tables.read(
+            scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces
+        )
+        rock = rock or add_rock(scene)
+        warnings = [*found.picks.warnings, *left_out_texts(found.left_out).values()]
+        if found.picks.points or found.new:
+            warnings += borehole_points.give(scene, rock, found.picks, self.add_surfaces, found.new)
+        given = list(found.picks.points.values())
+        if len(found.observations):
+            observed_blocks.add(rock, found.observations)
+            given.append(found.observations.places)
+        if surface:
+            row = rock.surfaces[surface]  # it may have moved where surfaces were added
+            surface_dips.add(row, found.dips)
+            warnings += _dips_warnings(row, tables.dips)
+        borehole_picks.keep(rock, found.picks.holes)
+        arrived(context, rock, given)
+        for text in warnings:
+            self.report({"WARNING"}, text)
+        self.report({"INFO"}, _summary(found, surface))
+
+    def _tables(self):
+        """The chosen tables, and those that are named. Raises InputRefused."""
+        paths = self.paths() or [chosen_path(self, "the tables")]
+        named = {
+            kind: path
+            for kind, text in (("collars", self.collars), ("survey", self.survey))
+            if (path := _beside(paths[0], text)) is not None
+        }
+        for file in (*paths, *named.values()):
+            require_file(file)
+        return field_tables.sorted_out(
+            paths,
             reading_text.named_columns(self.columns),
-            units=None if self.units == "NONE" else self.units,
-            survey=_beside(picks, self.survey),
+            None if self.units == "NONE" else self.units,
             downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
             layer=self.layer.strip() or None,
+            **named,
         )
-        for file in given.files:
-            require_file(file)
-        given.check()
-        found = read_boreholes(given, context.scene.realmodel.units)
-        rock = settings.active_rock(context.scene) or add_rock(context.scene)
-        warnings = borehole_points.give(context.scene, rock, found, self.add_surfaces)
-        borehole_picks.keep(rock, found.holes)
-        arrived(context, rock, list(found.points.values()))
-        for text in [*found.warnings, *warnings]:
-            self.report({"WARNING"}, text)
-        self.report({"INFO"}, f"Points for {len(found.points)} surfaces: {', '.join(found.points)}")
+
+    def draw(self, _context):
+        layout = self.layout
+        box = layout.box().column(align=True)
+        shown = [path for path in self.paths() if path.is_file()]
+        for path in shown:
+            text, icon = shown_kind(path, self.columns)
+            box.label(text=f"{path.name}: {text}", icon=icon)
+        if not shown:
+            box.label(text="Choose all tables at once", icon="INFO")
+        layout.use_property_split = True
+        for name in _SHOWN:
+            layout.prop(self, name)
 
     def check(self, _context):
-        return False  # a file of any ending
+        return True  # a file of any ending; what the chosen tables are is drawn anew
 
 
-def _beside(picks, given):
-    """The path of another table, which may stand beside the picks; None where none is given."""
+def _beside(table, given):
+    """The path of another table, which may stand beside one; None where none is given."""
     path = project_settings.absolute(given)
-    return picks.parent / given.strip() if path is not None and not path.is_file() else path
+    return table.parent / given.strip() if path is not None and not path.is_file() else path
+
+
+def shown_kind(path, columns):
+    """What a chosen file is taken for, and an icon."""
+    key = stored_arrays.file_stamp(path), columns
+    if key not in _kinds:
+        try:
+            named = reading_text.named_columns(columns)
+            _kinds[key] = ("boreholes" if is_object_file(path) else table_kind(path, named)), "CHECKMARK"
+        except RealModelError as error:
+            _kinds[key] = error.what, "ERROR"
+    return _kinds[key]
+
+
+def _surface_for_dips(scene):
+    """The row of the active surface. Raises InputRefused where dips cannot be of it."""
+    row = settings.active_surface(scene)
+    if row is None:
+        advice = "import the surface first, and make it the active one"
+        raise InputRefused("there is no surface that the dips could be of", advice=advice)
+    if row.source in method_settings.READY_MESHES:
+        what = f"'{row.name}' is made of an object or a mesh, and takes no dips"
+        raise InputRefused(what, advice="make a surface from points the active one")
+    return row
+
+
+def _dips_warnings(row, files):
+    """Warnings about dips that a surface gets from DipFiles."""
+    for file in files:
+        if column := field_tables.naming_column(file):
+            yield f"{Path(file.file).name}: column '{column}' is not used; all its dips are of '{row.name}'"
+    if not METHODS[row.method].takes_dips:
+        able = ", ".join(method.label for method in METHODS.values() if method.takes_dips)
+        yield f"the method of '{row.name}' does not use dips; choose one of {able}, or remove the dips"
+
+
+def _summary(found, surface):
+    """What was read, in one sentence."""
+    said = []
+    names = dict.fromkeys((*found.picks.points, *found.new))
+    if found.picks.points:
+        said.append(f"points for {len(found.picks.points)} surfaces")
+    elif found.new:
+        said.append(f"{len(found.new)} new surfaces")
+    if len(found.observations):
+        said.append(f"{len(found.observations)} observations of blocks")
+    if found.dips is not None:
+        said.append(f"{len(found.dips)} dips of '{surface}'")
+    text = ", ".join(said) or "nothing that could be used"
+    text = text[0].upper() + text[1:]
+    return f"{text}: {', '.join(names)}" if names else text
+
+
+def observed(context):
+    row = settings.active_rock(context.scene)
+    return None if row is not None and row.observations else "the rock mass has no observations of blocks"
+
+
+def with_dips(context):
+    row = settings.active_surface(context.scene)
+    return None if row is not None and row.dips else "the surface has no dips"
+
+
+class REALMODEL_OT_observations_remove(Reporting, bpy.types.Operator):
+    """Remove the observations of blocks of the rock mass, logged intervals too; points and picks stay"""
+
+    bl_label = "Remove Observations"
+    needs = (a_rock, observed)
+
+    def act(self, context):
+        row = settings.active_rock(context.scene)
+        borehole_picks.remove_at(row, observed_blocks.places_of(row))
+        observed_blocks.keep(row, None)
+        data_objects.update(context.scene)
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_dips_remove(Reporting, bpy.types.Operator):
+    """Remove the dips of the active surface"""
+
+    bl_label = "Remove Dips"
+    needs = (a_surface, with_dips)
+
+    def act(self, context):
+        surface_dips.keep(settings.active_surface(context.scene), None)
+        live.touch(context.scene)

@@ -36,6 +36,8 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
                 "No surfaces yet. Add the oldest first.",
             )
         _draw_adding(layout)
+        if rock.observations:
+            _draw_removable(layout, "Observations of blocks", "realmodel.observations_remove")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
@@ -46,6 +48,13 @@ def _draw_adding(layout):
     line.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
     line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
     line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
+
+
+def _draw_removable(layout, text, operator):
+    """Data that are stored in the .blend, and a button that removes them."""
+    row = layout.row()
+    row.label(text=text)
+    row.operator(operator, text="", icon="X")
 
 
 def _draw_surface(layout, context, surface):
@@ -61,6 +70,8 @@ def _draw_surface(layout, context, surface):
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
         setting_rows.draw(layout, surface, "correlation", SURFACE)
+        if surface.dips:
+            _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
     elif len(context.scene.realmodel.faults):
         line = layout.row(heading="Continue By")
         line.prop(surface, "use_continuation", text="")

@@ -16,6 +16,7 @@ from .tables.boreholes import Picks
 from .tables.dips import gradient_of, read_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
+from .tables.table_kind import TABLE_KINDS, table_kind
 from .tables.table_preview import TablePreview, preview_table
 from .tables.unit_names import UnitNames
 
@@ -25,6 +26,7 @@ __all__ = [
     "OBJECT_ENDINGS",
     "RASTER_ENDINGS",
     "TABLE_ENDINGS",
+    "TABLE_KINDS",
     "Picks",
     "TablePreview",
     "UnitNames",
@@ -41,4 +43,5 @@ __all__ = [
     "read_points",
     "read_region",
     "read_shapes",
+    "table_kind",
 ]

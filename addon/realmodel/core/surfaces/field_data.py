@@ -144,9 +144,14 @@ def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
                 "nearest to which observations allow it"
             )
             found.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
+    texts = left_out_texts(entry.left_out)
+    return [*found, *(BuildWarning(text, kind, entry.rock.name) for kind, text in texts.items())]
+
+
+def left_out_texts(left_out: Sequence[LeftOut]) -> dict[str, str]:
+    """A sentence for each kind of observations that are left out."""
+    found = {}
     for kind, says in KINDS.items():
-        listed: Sequence[LeftOut] = [each for each in entry.left_out if each.kind == kind]
-        if listed:
-            text = f"{len(listed)} {says}: {number_list([each.text for each in listed], _LISTED)}"
-            found.append(BuildWarning(text, kind, entry.rock.name))
+        if listed := [each.text for each in left_out if each.kind == kind]:
+            found[kind] = f"{len(listed)} {says}: {number_list(listed, _LISTED)}"
     return found

@@ -18,7 +18,7 @@ from ...settings.directions import unit_vector
 from .hole_tables import Row, rows
 from .points import AXES
 
-_COLUMNS = {
+DIPS = {
     **AXES,
     "dip": ("dip", "dip_angle", "dipangle", "inclination", "incl", "plunge"),
     "dip_direction": (
@@ -46,7 +46,7 @@ def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step
     units = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
     plan, height = factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
     places, gradients, z = [], [], []
-    for row in rows(given, file, _COLUMNS, ("x", "y"), step):
+    for row in rows(given, file, DIPS, ("x", "y"), step):
         places.append((plan * row.number("x"), plan * row.number("y")))
         z.append(height * row.number("z") if row.has("z") else math.nan)
         gradients.append(_gradient(row))

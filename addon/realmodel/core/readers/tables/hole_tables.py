@@ -134,9 +134,7 @@ class Row:
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step):
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
-    names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
-    names.update(alias for aliases in known.values() for alias in aliases)
-    table = open_table(file, Expected(given.separator, (), names, 1, 2))
+    table = _opened(given, file, known)
     columns = _columns(given, table, known, needed)
     separator = table.layout.separator
     body = table.raw[table.layout.body :].decode(table.encoding)
@@ -159,6 +157,21 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         yield Row(
             table, table.layout.body_line + number, table.layout.fields(line.rstrip("\r")), columns, decimal
         )
+
+
+def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
+    """The known columns that a table has, by their meaning: their names in the header, in small letters.
+    Raises InputRefused if it is not a table."""
+    table = _opened(given, file, known)
+    names = [plain_name(name) for name in table.layout.names or ()]
+    found = _columns(given, table, known, ())
+    return {meaning: names[at] if at < len(names) else "" for meaning, at in found.items()}
+
+
+def _opened(given: Reading, file: Path, known: Columns) -> Table:
+    names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
+    names.update(alias for aliases in known.values() for alias in aliases)
+    return open_table(file, Expected(given.separator, (), names, 1, 2))
 
 
 def _parts(body: str, separator: str):

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dips of a surface, stored in its row."""
+
+import numpy as np
+
+from ..core import Dips
+from . import stored_arrays
+
+
+def keep(row, dips):
+    """Stores realmodel.core.Dips, or None."""
+    row.dips = ""
+    if dips is not None and len(dips):
+        given = {key: each for key, each in vars(dips).items() if each is not None}
+        row.dips = stored_arrays.pack(**given)
+
+
+def add(row, dips):
+    """Adds Dips to those that a surface has."""
+    known = of_surface(row)
+    keep(row, dips if known is None else joined([known, dips]))
+
+
+def of_surface(row):
+    """The stored Dips; None where there are none. Raises InputRefused for damaged text."""
+    return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
+
+
+def joined(parts):
+    """Several Dips, one after another."""
+    heights = [np.full(len(part), np.nan) if part.z is None else part.z for part in parts]
+    positions, gradients = (
+        np.concatenate([getattr(part, key) for part in parts]) for key in ("positions", "gradients")
+    )
+    return Dips(positions, gradients, np.concatenate(heights))

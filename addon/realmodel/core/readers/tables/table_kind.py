@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a table of field data is, by its columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from ...base.errors import InputRefused
+from ...settings.boreholes import Boreholes
+from .dips import DIPS
+from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, SURVEY, columns_in
+
+TABLE_KINDS = ("collars", "survey", "picks", "intervals", "observations", "dips")
+
+
+def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None) -> str:
+    """One of TABLE_KINDS: what a table is, by the usual names of its columns.
+
+    columns: names or numbers of those that are called otherwise, by meaning, as of Boreholes, ObservationFile
+    and DipFile; they decide where the names in the header do not: a column that is named as `surface` makes a
+    table one of picks, as `block` one of intervals or observations, as `dip_direction` one of dips.
+    Raises InputRefused where it may be none of them.
+    """
+    file = Path(file)
+    given = Boreholes(columns=columns or {})
+    hole, logged, survey, seen, dips = (
+        columns_in(given, file, known) for known in (COLLARS, INTERVALS, SURVEY, OBSERVED, DIPS)
+    )
+    are_picks = {"hole", "surface"} <= hole.keys() and not {"depth", "elevation", "z"}.isdisjoint(hole)
+    are_seen = {"x", "y", "z", "block"} <= seen.keys()
+    named = set(given.columns)
+    if are_picks and "surface" in named:
+        return "picks"
+    if {"hole", "from", "to", "block"} <= logged.keys():
+        return "intervals"
+    if are_seen and "block" in named:
+        return "observations"
+    # A name or an id beside a block is that of a place, not that of a hole.
+    of_hole = {"hole", "x", "y", "z"} <= hole.keys() and ("hole" in seen or not are_seen)
+    if _are_dips(dips) and not (of_hole and "dip_direction" not in named and _by_azimuth(dips)):
+        return "dips"
+    if are_picks and not (are_seen and "hole" not in seen and "depth" not in hole):
+        return "picks"
+    if are_seen:
+        return "observations"
+    if of_hole:
+        return "collars"
+    if {"hole", "depth"} <= survey.keys() and not DIRECTIONS.keys().isdisjoint(survey):
+        return "survey"
+    raise InputRefused(
+        f"its columns do not say whether it has {', '.join(TABLE_KINDS[:-1])} or {TABLE_KINDS[-1]}",
+        file=file,
+        advice="name its columns, as in hole = BHID; depth = FROM",
+    )
+
+
+def _are_dips(columns: Mapping[str, str]) -> bool:
+    found = columns.keys()
+    has_angles = "dip" in found and not {"dip_direction", "strike"}.isdisjoint(found)
+    return {"x", "y"} <= found and ({"slope_x", "slope_y"} <= found or has_angles)
+
+
+def _by_azimuth(columns: Mapping[str, str]) -> bool:
+    """Whether the dips of a table may as well be the directions of holes."""
+    direction = columns.get("dip_direction")
+    return "strike" not in columns and direction in DIRECTIONS["azimuth"]
