@@ -220,9 +220,18 @@ class States(PanelCase):
             with bpy.context.temp_override(window=window, area=area, region=region):
                 self.draw()
 
+    def field_data(self):
+        """A surface with dips, of a rock mass with observations."""
+        for name, text in (("seen", "x,y,z,block\n1,2,3,Sand\n"), ("dips", "x,y,dip,strike\n1,2,5,0\n")):
+            path = self.folder / f"{name}.csv"
+            path.write_text(text)
+            ops.boreholes_read(filepath=str(path))
+
     def test_every_operator_has_a_button(self):
         drawn = self.draw().operators
         activity = bpy.context.window_manager.realmodel
+        self.field_data()
+        drawn |= self.draw().operators
         ops.open_sample(sample="gravel_plain")
         activity.running = True
         drawn |= self.draw().operators
