@@ -192,8 +192,8 @@ def _dips_warnings(row, files):
     for file in files:
         if column := field_tables.naming_column(file):
             yield f"{Path(file.file).name}: column '{column}' is not used; all its dips are of '{row.name}'"
-    if not METHODS[row.method].takes_dips:
-        able = ", ".join(method.label for method in METHODS.values() if method.takes_dips)
+    if not METHODS[row.method].is_constrained:
+        able = ", ".join(method.label for method in METHODS.values() if method.is_constrained)
         yield f"the method of '{row.name}' does not use dips; choose one of {able}, or remove the dips"
 
 
