@@ -133,6 +133,8 @@ name = "by number"
 region = { file = "two.geojson", where = { unit = "b" }, units = "ft" }
 triangles = 300
 mesher = "grid"
+map = { file = "two.geojson", block = "unit", units = "ft", ground = "low" }
+names = { a = "", b = "low" }
 
 [[rock.surface]]
 name = "low"
@@ -504,6 +506,14 @@ class Written(PanelCase):
         seen = self.composed().observations
         self.assertEqual(sorted(set(seen.blocks)), ["in holes only", "kriged", "moved", "smooth"])
         self.assertEqual(len(seen), 26)
+
+    def test_a_map_becomes_observations(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        seen = project_settings.compose(self.scene, depsgraph).project.rocks[1].observed
+        self.assertEqual(set(seen.blocks), {"low"})
+        self.assertGreater(len(seen), 50)
 
     def test_boreholes(self):
         write_files(self.folder)

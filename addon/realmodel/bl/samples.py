@@ -15,6 +15,7 @@ _LABELS = {
     "castle_hill": ("Castle Hill", "Eleven surfaces, cut by erosion into separate bodies"),
     "gravel_plain": ("Gravel Plain", "A valley filled with gravel, from boreholes"),
     "uncertain_valley": ("Uncertain Valley", "Gravel in a buried channel between boreholes: how much?"),
+    "mapped_valley": ("Mapped Valley", "A geological map, a terrain and twenty dips: no borehole"),
     "fault_blocks": (
         "Fault Blocks",
         "Faults from sticks: a branch, one that dies out, a younger cover",

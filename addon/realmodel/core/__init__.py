@@ -37,6 +37,7 @@ from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
 from .settings.dips import DipFile, Dips
+from .settings.map_file import MapFile
 from .settings.map_layer import MapLayer
 from .settings.observation_file import ObservationFile
 from .settings.point_file import MeshFile, PointFile
@@ -72,6 +73,7 @@ __all__ = [
     "Library",
     "Loop",
     "MapArea",
+    "MapFile",
     "MapLayer",
     "MeshEstimate",
     "MeshFile",

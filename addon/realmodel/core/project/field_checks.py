@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of boreholes, observations and the names in their tables."""
+"""Checks of boreholes, observations, maps and the names in them."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
+from pathlib import Path
 
+from ..readers.point_input import companions
 from ..settings.method_options import is_name
+from ..settings.point_file import MeshFile, PointFile
 from .entry import check_file, refused_by
+from .plan_input import check_layer, layer_files
 
 
 def names_of_units(project, rock) -> list[str]:
@@ -17,7 +21,8 @@ def names_of_units(project, rock) -> list[str]:
 
 
 def check_field_data(project, rock) -> None:
-    """Refuses boreholes, observations and names of a rock mass that make no sense. Raises InputRefused."""
+    """Refuses boreholes, observations, a map and names of a rock mass that make no sense. Raises
+    InputRefused."""
     refuse = rock.refused
     if rock.boreholes is not None:
         with refused_by(refuse, "boreholes", "boreholes: "):
@@ -29,10 +34,41 @@ def check_field_data(project, rock) -> None:
         with refused_by(refuse, "observations", "observations: "):
             given.check()
         check_file(given.file, "observations", refuse)
-    for key in ("boreholes", "observations"):
+    if rock.map is not None:
+        _check_map(rock)
+    for key in ("boreholes", "observations", "map"):
         if getattr(rock, key) is not None and not rock.interpolates:
-            raise refuse(f"{key} have no effect, as no surface is interpolated", key)
+            raise refuse(f"'{key}' has no effect, as no surface is interpolated", key)
     _check_names(project, rock)
+
+
+def ground_file(rock) -> PointFile | MeshFile | str | Path | None:
+    """The file that the ground of its map is read from; None where it is a surface of the rock mass."""
+    ground = rock.map.ground
+    is_surface = isinstance(ground, str) and ground in [surface.name for surface in rock.surfaces]
+    return None if is_surface else ground
+
+
+def files_of_map(rock) -> list[Path]:
+    """The files of the map of a rock mass."""
+    if rock.map is None:
+        return []
+    files = [*layer_files(rock.map.polygons), *layer_files(rock.map.faults)]
+    ground = ground_file(rock)
+    if ground is not None:
+        file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
+        files += [file, *companions(file)]
+    return files
+
+
+def _check_map(rock) -> None:
+    refuse = rock.refused
+    with refused_by(refuse, "map", "map: "):
+        rock.map.check()
+    check_layer(rock.map.polygons, "map", refuse)
+    check_layer(rock.map.faults, "map", refuse)
+    for file in files_of_map(rock):
+        check_file(file, "map", refuse)
 
 
 def _check_names(project, rock) -> None:

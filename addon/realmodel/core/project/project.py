@@ -20,6 +20,7 @@ from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
 from ..settings.crs import checked_crs
 from ..settings.dips import DipFile, Dips
+from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
@@ -47,7 +48,7 @@ from .entry import (
     refused_by,
     shapes_given,
 )
-from .field_checks import check_field_data, names_of_units
+from .field_checks import check_field_data, files_of_map, names_of_units
 from .library import Library
 from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .region_rings import is_several
@@ -166,8 +167,9 @@ class Rock(Entry):
     `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
     blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
-    they are read, with those of the boreholes. `names` says what a name in these tables means: {"SST":
-    "Sandstone"}, the name of a block, surface or body, or "" for nothing.
+    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `names`
+    says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface or body, or ""
+    for nothing.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
@@ -191,6 +193,7 @@ class Rock(Entry):
     boreholes: Boreholes | None = None
     observations: str | Path | ObservationFile | Observations | None = None
     names: Mapping[str, str] = field(default_factory=dict)
+    map: MapFile | None = None
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
@@ -269,6 +272,7 @@ class Project:
             files += files_of_sizes(rock.size)
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
+            files += files_of_map(rock)
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
@@ -375,7 +379,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
     continued to faults."""
     shapes = shapes_given(surface, ("points", "mesh"), refuse)
-    no_points = not shapes and rock.boreholes is None and rock.observations is None
+    no_points = not shapes and rock.boreholes is None and rock.observations is None and rock.map is None
     if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if shapes:

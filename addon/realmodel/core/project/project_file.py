@@ -11,8 +11,10 @@ import numpy as np
 from ..base.finite import is_number
 from ..base.toml_table import Source, Table, TomlDocument
 from ..base.units import METERS, MODEL_UNIT
+from ..readers import is_mesh_file
 from ..settings.boreholes import Boreholes
 from ..settings.dips import DipFile
+from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
@@ -75,6 +77,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
         observations=_read_observations(table, folder),
+        map=_read_map(table, folder),
         names=table.content.get("names", {}),
         source=Source(table.document, table.path),
         **_values(table, ROCK, ("edge_length", "triangles", "mesher", "base_elevation")),
@@ -201,6 +204,39 @@ def _read_observations(table: Table, folder: Path) -> ObservationFile | None:
     keys.allow_only(("file", *said))
     values = {name: given[name] for name in said if name in given}
     return ObservationFile(folder / keys.text("file", required=True), **values)
+
+
+def _read_map(table: Table, folder: Path) -> MapFile | None:
+    given = table.content.get("map")
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        raise table.refuse(
+            "'map' must be a table", "map", 'write map = { file = "geology.gpkg", block = "UNIT" }'
+        )
+    keys = _inner(table, "map", given)
+    said = ("where", "units")
+    keys.allow_only(("file", "layer", "block", "ground", "faults", *said))
+    values = {name: given[name] for name in said if name in given}
+    if "faults" in given:
+        values["faults"] = _read_layer(keys, "faults", given["faults"], folder)
+    names = [entry.get("name") for entry in table.content.get("surface", []) if isinstance(entry, dict)]
+    ground = given.get("ground")
+    if isinstance(ground, dict):
+        values["ground"] = _read_ground(_inner(keys, "ground", ground), folder)
+    elif (named := keys.text("ground")) is not None:
+        values["ground"] = named if named in names else folder / named
+    file, block = (keys.text(key, required=True) for key in ("file", "block"))
+    return MapFile(folder / file, block, keys.text("layer"), **values)
+
+
+def _read_ground(keys: Table, folder: Path) -> PointFile | MeshFile:
+    keys.allow_only(("file", *READING))
+    file = folder / keys.text("file", required=True)
+    said = {key: keys.content[key] for key in READING if key in keys}
+    if is_file(file) and is_mesh_file(file) and set(said) <= set(MESH_READING):
+        return MeshFile(file, **said)
+    return PointFile(file, **said)
 
 
 def _inner(table: Table, key: str, content: dict) -> Table:

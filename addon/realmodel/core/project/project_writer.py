@@ -75,8 +75,9 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             lines.append(f"library = {toml_value(library)}")
         for rock in project.rocks:
             lines += ["", "[[rock]]", *_rock_lines(rock)]
-            if rock.observation_file is not None:
-                raise UsageError(f"rock '{rock.name}': its observations have not been read; build it first")
+            if rock.observation_file is not None or rock.map is not None:
+                what = "observations have" if rock.map is None else "map has"
+                raise UsageError(f"rock '{rock.name}': its {what} not been read; build it first")
             if rock.observed is not None and len(rock.observed):
                 target = beside(rock.name, "observations", ending=".csv")
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")

@@ -80,6 +80,10 @@ class ClosedForm:
             blocks[np.isnan(heights_at(work, level, points[:, :2]))] = AIR
         return blocks
 
+    def youngest_heights(self, work: Work, points: np.ndarray) -> np.ndarray:
+        """(N,) the heights of the youngest surface over or under points (N, 3), NaN where it has none."""
+        return self._heights(work, len(self.rules) - 1, points, self.compartments_of(work, points))
+
     def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
         """(N,) heights of a surface at points in the compartments `where`."""
         found = np.full(len(points), np.nan)

@@ -7,15 +7,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.triangles import median_edge
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..readers.tables.observations import LeftOut, Observations
 from ..results.layer_values import at_places
 from ..results.residuals import heights_of_points
 from ..surfaces.observed.derived import BlockNumbers
+from ..surfaces.rock_input import RockInput
 from .closed_form import ClosedForm, closed_forms
 
 _SAMPLES = 16  # places at which an interval is looked at
+_OFF_GROUND = 0.1  # of an edge length
 _NEAR = 1e-9  # of the range of heights: a place so near to a block lies in it, a bound so near is kept
 
 
@@ -23,7 +26,8 @@ _NEAR = 1e-9  # of the range of heights: a place so near to a block lies in it, 
 class ObservedBlock:
     """One block of a rock mass. observations: of it, places and intervals, as far as they are used and lie
     over the region. outside: how many more lie beside it. share: of the observations that lie in the block,
-    from 0 to 1; of an interval the part that does. None where there are none."""
+    from 0 to 1; of an interval the part that does. A place of no hole up to a tenth of an edge length
+    above the youngest surface is looked at on that. None where there are none."""
 
     rock: str
     block: str
@@ -174,9 +178,10 @@ def _blocks(
     used = wanted >= 0
     if entry.used is not None:
         used &= entry.used
-    samples, owner, of_block = _samples(given, wanted, used)
+    samples, owner, of_block, on_ground = _samples(given, wanted, used)
     inside = np.zeros(len(samples), bool)
     near = _NEAR * float(np.ptp(given.places[:, 2]))
+    samples[on_ground, 2] = _lowered(work, entry, form, samples[on_ground])
     for shift in (near, -near):
         moved = samples + np.array([0.0, 0.0, shift])
         inside |= form.blocks_at(work, moved) == of_block[owner]
@@ -199,12 +204,26 @@ def _blocks(
     return found
 
 
+def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray) -> np.ndarray:
+    """(N,) heights at which places (N, 3) are looked at: those a little above the youngest surface on it, as
+    the ground between the nodes of the planar mesh is not just where it was seen."""
+    if entry.region is None:
+        return places[:, 2]
+    above = places[:, 2] - form.youngest_heights(work, places)
+    return np.where(
+        (above > 0) & (above < _OFF_GROUND * median_edge(*entry.region.arrays)),
+        places[:, 2] - above,
+        places[:, 2],
+    )
+
+
 def _samples(
     given: Observations, wanted: np.ndarray, used: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places at which observations are looked at (N, 3), of which observation each is (N,), and the block of
-    each observation. wanted: (R,) the blocks of rows; used: (R,) bool, those that count. An interval is the
-    way along a hole through rows of the same block."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Places at which observations are looked at (N, 3), of which observation each is (N,), the block of
+    each observation, and (N,) bool whether a place may be seen on the ground, as it is in no hole. wanted:
+    (R,) the blocks of rows; used: (R,) bool, those that count. An interval is the way along a hole through
+    rows of the same block."""
     follows = np.zeros(len(given), bool)
     follows[1:] = (
         (given.holes[1:] == given.holes[:-1])
@@ -224,4 +243,6 @@ def _samples(
     first = np.cumsum(~follows) - 1  # the number of the observation that a row is of
     rows = np.concatenate([np.repeat(ends, _SAMPLES), alone])
     numbers, owner = np.unique(first[rows], return_inverse=True)
-    return np.concatenate([along, given.places[alone]]), owner.ravel(), wanted[~follows][numbers]
+    on_ground = np.concatenate([np.zeros(len(along), bool), given.holes[alone] == ""])
+    places = np.concatenate([along, given.places[alone]])
+    return places, owner.ravel(), wanted[~follows][numbers], on_ground

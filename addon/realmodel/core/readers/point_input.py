@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import tokenize
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -220,12 +220,33 @@ def head_of(file: Path) -> bytes:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
 
 
-def _raster_points(
-    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces, kept: JoinPieces
-) -> tuple[np.ndarray, list[str]]:
+def read_raster_heights(
+    given: PointFile, plan: np.ndarray, model_unit: str = MODEL_UNIT
+) -> np.ndarray | None:
+    """(N,) heights of a raster at places in plan (N, 2), in the model's unit, NaN where there are none; None:
+    the file is no raster. Raises InputRefused."""
+    file = Path(given.file)
+    head = head_of(file)
+    known = next((each for each in RASTER_FORMATS if each.begins(head)), None)
+    if known is None:
+        return None
+    raster = _raster(given, file, known, no_step, in_memory)
+    z = raster.heights_at(plan / factor(given.plan_unit, model_unit))
+    return in_model(np.column_stack([plan, z]), replace(given, units={"z": given.height_unit}), model_unit)[
+        :, 2
+    ]
+
+
+def _raster(given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces) -> Raster:
     chosen = ["where"] if given.where else []
     refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
-    raster = known.read(file, nodata, step, gather)
+    return known.read(file, nodata, step, gather)
+
+
+def _raster_points(
+    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces, kept: JoinPieces
+) -> tuple[np.ndarray, list[str]]:
+    raster = _raster(given, file, known, step, gather)
     warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]
     return raster.points(file, kept), warnings

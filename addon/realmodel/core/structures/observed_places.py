@@ -38,9 +38,10 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             within = np.array(inside, bool).reshape(len(bodies), len(places)).T
             return sides_of(work, places, entry.divided().faults), within
 
-        places = observations.places
+        places, parted = observations.places, None
         if entry.region is not None:
             reach = _NEAR * median_edge(*entry.planar_mesh().arrays)
+            parted = _parted(observations, reach, sides)
             places = _off_structures(observations, reach, sides)
         of_faults, within = sides(places)
         situation = Situation(
@@ -49,6 +50,7 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             after=[after for _, after in bodies],
             bodies=[body.name for body, _ in bodies],
             voids=[body.void for body, _ in bodies],
+            parted=parted,
         )
         apply_observations(work, entry, situation, places)
 
@@ -59,6 +61,27 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
         return np.zeros(0, bool)
     given: list[tuple] = [(*body.arrays, True, [], False)]
     return work.native(native_module().structure_sides, given, np.ascontiguousarray(places)) < 0
+
+
+def _parted(observations: Observations, reach: float, sides) -> np.ndarray:
+    """(N,) bool: places without a hole where blocks meet, as on a map, and a fault or the border of a body
+    passes nearer in plan than `reach`: it may be this that divides them. sides: as of _off_structures."""
+    alone = np.flatnonzero(observations.holes == "")
+    places, place = np.unique(observations.places[alone], axis=0, return_inverse=True)
+    place, blocks = place.ravel(), observations.blocks[alone]
+    first = np.full(len(places), "", blocks.dtype)
+    first[place] = blocks
+    meets = np.zeros(len(places), bool)
+    meets[place[first[place] != blocks]] = True
+    parted = np.zeros(len(observations), bool)
+    if meets.any():
+        shifts = reach * np.array([[0, 0, 0], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], float)
+        around = (places[meets] + shifts[:, None]).reshape(-1, 3)
+        found = np.concatenate([each.astype(np.int8) for each in sides(around)], axis=1)
+        found = found.reshape(len(shifts), -1, found.shape[1])
+        meets[meets] = (found != found[:1]).any(axis=(0, 2))
+        parted[alone] = meets[place]
+    return parted
 
 
 def _off_structures(observations: Observations, reach: float, sides) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What boreholes and observations tell of the surfaces of a rock mass: read, and applied to them."""
+"""What boreholes, observations and maps tell of the surfaces of a rock mass: read, and applied to them."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ..project.project import Project, Rock, Surface
 from ..project.structure_history import body_times
 from ..readers import Picks, UnitNames, read_boreholes, read_observed_places
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
+from .map_data import read_map, with_ground
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -27,18 +28,20 @@ class FieldData:
     """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
     boreholes. surfaces: of each surface, as it was before it is read, without contacts of earlier readings,
     the points to be added to it, or None. unnamed: names of picks that no surface from points has. left_out:
-    rows of tables that are not used."""
+    rows of tables that are not used. map_warnings: sentences."""
 
     rock: Rock
     picks: Picks
     surfaces: list[tuple[Surface, np.ndarray | None]]
     unnamed: list[str]
     left_out: list[LeftOut]
+    map_warnings: list[str]
 
 
 def read_field_data(project: Project, rock: Rock) -> FieldData:
-    """Reads the boreholes and observations of a rock mass. Contacts are those of surfaces that reach
+    """Reads the boreholes, observations and map of a rock mass. Contacts are those of surfaces that reach
     everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    rock, map_warnings = with_ground(rock), list[str]()
     bodies = [body.name for body in project.bodies]
     names = [surface.name for surface in rock.surfaces]
     units = UnitNames(names, rock.block_names(), bodies, rock.names)
@@ -53,6 +56,10 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             observed, not_used = read_observed_places(rock.observation_file, units, project.units)
             found.append(observed)
             left_out += not_used
+    if rock.map is not None:
+        observed, not_used, map_warnings = read_map(project, rock, units)
+        found.append(observed)
+        left_out += not_used
     observations = Observations.joined(found).along_holes() if found else None
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
@@ -65,10 +72,11 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         rock,
         boreholes=None,
         observations=observations,
+        map=None,
         names={},
         hole_picks=picks.holes or rock.hole_picks,
     )
-    return FieldData(read, picks, surfaces, list(picks.points), left_out)
+    return FieldData(read, picks, surfaces, list(picks.points), left_out, map_warnings)
 
 
 def _of_bodies(project: Project, rock: Rock) -> Situation:

@@ -48,6 +48,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         rock = _read_constraints(rock, project.units)
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
+        warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
         asked += [SurfaceInput.of(rock, *each, project.units) for each in field.surfaces]
         rocks.append(field.rock)
         all_warnings.append((warnings, _unnamed(rock, field)))
@@ -85,7 +86,7 @@ def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
 
 def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
-    or of text, boreholes, observations and dips, which are read into arrays. Raises InputRefused."""
+    or of text, boreholes, observations, maps and dips, which are read into arrays. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)

@@ -48,8 +48,8 @@ class ReadSurface:
 @dataclass(frozen=True)
 class SurfaceInput:
     """A surface before it is read, with all that reading it needs: another process may read it. rock: the
-    name of its rock mass; boreholes: the last file of boreholes or observations, if any; met: the points
-    where they meet it."""
+    name of its rock mass; boreholes: the last file of boreholes, or that of observations or of a map, if
+    any; met: the points where they meet it."""
 
     rock: str
     surface: Surface
@@ -62,6 +62,8 @@ class SurfaceInput:
         boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
         if boreholes is None and rock.observation_file is not None:
             boreholes = Path(rock.observation_file.file)
+        if boreholes is None and rock.map is not None:
+            boreholes = Path(rock.map.file)
         return cls(rock.name, surface, boreholes, met, units)
 
     def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:

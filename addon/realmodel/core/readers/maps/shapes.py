@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -72,10 +72,13 @@ class Shapes:
         """The shapes in another unit."""
         if scale == 1.0:
             return self
-        return Shapes(
-            [Polygon(p.item, [ring * scale for ring in p.rings], p.has_roles) for p in self.polygons],
-            [(item, line * scale) for item, line in self.lines],
-            [(item, point * scale) for item, point in self.points],
+        return replace(
+            self,
+            polygons=[
+                Polygon(p.item, [ring * scale for ring in p.rings], p.has_roles) for p in self.polygons
+            ],
+            lines=[(item, line * scale) for item, line in self.lines],
+            points=[(item, point * scale) for item, point in self.points],
         )
 
     def without_area(self, file: Path) -> list[str]:
@@ -113,7 +116,7 @@ class Selection:
 
     def height(self, attributes: Mapping, name: str, item: str) -> float:
         """The height that an attribute of a feature holds; NaN where it holds nothing."""
-        key = name if name in attributes else _same_name(name, attributes)
+        key = of_name(name, attributes)
         if key is None:
             there = names_shown(list(attributes)) if attributes else "no attributes"
             raise self._no_height(f"it has no attribute '{name}'", item, f"it has {there}")
@@ -138,7 +141,7 @@ class Selection:
         self.known.update(dict.fromkeys(attributes))
         matches = True
         for name, wanted in self.where.items():
-            key = name if name in attributes else _same_name(name, attributes)
+            key = of_name(name, attributes)
             value = attributes.get(key)
             if key is not None:
                 self.seen[name][str(value)] = None
@@ -168,7 +171,11 @@ class Selection:
         return error
 
 
-def _same_name(name: str, attributes: Mapping) -> str | None:
+def of_name(name: str, attributes: Mapping) -> str | None:
+    """The attribute of this name, else one that differs from it in upper and lower case; None: there is
+    none."""
+    if name in attributes:
+        return name
     return next((key for key in attributes if str(key).lower() == name.lower()), None)
 
 

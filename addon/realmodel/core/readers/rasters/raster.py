@@ -12,6 +12,8 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 
+_ON_CELL = 1e-9  # of a cell: a place so near to its middle is there
+
 
 @dataclass(frozen=True)
 class Raster:
@@ -36,6 +38,33 @@ class Raster:
         if not len(points):
             raise InputRefused("no cell of the raster has a height", file=file)
         return points
+
+    def heights_at(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) heights at places in plan (N, 2): bilinear between the middles of four cells, up to half a
+        cell beyond the outermost as there; NaN where a cell that counts has none."""
+        (ax, ay), (dx, dy) = self.across, self.down
+        x, y = (plan - np.array(self.origin)).T
+        area = ax * dy - ay * dx
+        found = np.zeros(len(plan))
+        places, low, shares = [], [], []
+        for at, count in (
+            ((ax * y - ay * x) / area, len(self.z)),
+            ((x * dy - y * dx) / area, self.z.shape[1]),
+        ):
+            # up to rounding
+            on = np.where(np.abs(at - np.rint(at)) < _ON_CELL, np.rint(at), at)
+            found[(on < -0.5 - _ON_CELL) | (on > count - 0.5 + _ON_CELL)] = np.nan
+            on = np.clip(on, 0, count - 1)
+            first = np.minimum(on.astype(np.int64), max(count - 2, 0))
+            places.append(count)
+            low.append(first)
+            shares.append(on - first)
+        for i in (0, 1):
+            for j in (0, 1):
+                weight = np.abs(1 - i - shares[0]) * np.abs(1 - j - shares[1])
+                row, column = np.minimum(low[0] + i, places[0] - 1), np.minimum(low[1] + j, places[1] - 1)
+                found += np.where(weight > 0, weight * self.z[row, column], 0.0)
+        return found
 
     def _pieces(self) -> Iterator[np.ndarray]:
         height, width = self.z.shape

@@ -111,10 +111,10 @@ class LeftOut:
 
 # Why observations are not used, by the kind of their warning: found in their tables, or from their places.
 IN_TABLES = {
-    "overlap": "intervals of different blocks overlap, and what both claim is not used",
+    "overlap": "intervals or polygons of different blocks overlap, and what both claim is not used",
     "from_to": "intervals end above where they begin, and are not used",
     "no_depth": "intervals have no depth, and are not used",
-    "unknown_block": "intervals and observations are of no known block, and say nothing",
+    "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
 }
 KINDS = {
     **IN_TABLES,

@@ -19,7 +19,8 @@ class Situation:
     """Where the places of observations (N) lie, as far as it is known. covered: (N, S) bool, over or under
     which surfaces of the rock mass. sides: (N, F) int8, of the faults that act in it. inside: (N, B) bool, in
     which bodies; after: of each body, the surface after which it came; bodies: their names; voids: which of
-    them are voids. None and empty: everywhere covered, without faults and bodies."""
+    them are voids. parted: (N,) bool, where blocks meet that a fault or a body may divide. None and empty:
+    everywhere covered, without faults and bodies."""
 
     covered: np.ndarray | None = None
     sides: np.ndarray | None = None
@@ -27,6 +28,7 @@ class Situation:
     after: Sequence[int] = ()
     bodies: Sequence[str] = ()
     voids: Sequence[bool] = ()
+    parted: np.ndarray | None = None
 
 
 @dataclass
@@ -71,6 +73,8 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     left_out = _Listed(observations)
     left_out.add(blocks < 0, "no_surface", "no block, surface or body of the rock mass has this name")
     used = blocks >= 0
+    if situation.parted is not None:
+        used &= ~situation.parted
     used &= ~_without_surface(rock, situation, blocks, left_out)
     used &= ~_against_bodies(rock, situation, blocks, left_out)
     rows = np.flatnonzero(used)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Polygons of a geological map, each with the name of its unit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.algebra import begins_run
+from ...base.errors import InputRefused
+from ...base.units import MODEL_UNIT
+from ...settings.map_file import MapFile
+from ..tables.table_layout import names_shown
+from .map_input import read_shapes
+from .shapes import Heights, Shapes, of_name
+
+
+@dataclass(frozen=True, eq=False)
+class UnitPolygon:
+    """item: its name in messages, "feature 3". unit: what its attribute says, "" for nothing. rings: (N, 2)
+    float64 each, open, no corner repeated in a row. has_roles: as of a Polygon."""
+
+    item: str
+    unit: str
+    rings: list[np.ndarray]
+    has_roles: bool
+
+
+def read_unit_polygons(given: MapFile, model_unit: str = MODEL_UNIT) -> tuple[list[UnitPolygon], list[str]]:
+    """The polygons of a map, in the model's unit, and warnings about rings that bound no area. Raises
+    InputRefused naming the file, and the feature where there is one."""
+    shapes = read_shapes(given.polygons, model_unit, heights=Heights(with_attributes=True))
+    if not shapes.polygons:
+        advice = "a map needs polygons: Polygon or MultiPolygon"
+        raise InputRefused("there is no polygon in it", file=given.file, advice=advice)
+    units = _units(shapes, given)
+    found, warnings = [], []
+    for polygon in shapes.polygons:
+        item = polygon.item.partition(",")[0]
+        rings = [_corners(ring) for ring in polygon.rings]
+        flat = [len(ring) < 3 for ring in rings]
+        if any(flat):
+            warnings.append(f"{given.file}, {polygon.item}: a ring with fewer than three corners is left out")
+        kept = [ring for ring, is_flat in zip(rings, flat, strict=True) if not is_flat]
+        if kept and not (flat[0] and polygon.has_roles):
+            found.append(UnitPolygon(item, units[item], kept, polygon.has_roles))
+    if not found:
+        raise InputRefused("no polygon in it has an area", file=given.file)
+    return found, warnings
+
+
+def _corners(ring: np.ndarray) -> np.ndarray:
+    plan = ring[:, :2] + 0.0  # no -0.0
+    plan = plan[begins_run(plan)]
+    plan = plan[:-1] if len(plan) > 1 and (plan[0] == plan[-1]).all() else plan
+    return plan if len(np.unique(plan, axis=0)) > 2 else plan[:0]
+
+
+def _units(shapes: Shapes, given: MapFile) -> dict[str, str]:
+    """What the attribute says of each feature, by its name in messages."""
+    if shapes.attributes is None:
+        what = "well-known text has no attributes, so no unit is known"
+        raise InputRefused(what, file=given.file, advice="save it as GeoJSON or a GeoPackage")
+    found, known = {}, {}
+    has_any = False
+    for polygon in shapes.polygons:
+        item = polygon.item.partition(",")[0]
+        attributes: Mapping = shapes.attributes.get(item, {})
+        known.update(dict.fromkeys(map(str, attributes)))
+        key = of_name(given.block, attributes)
+        has_any |= key is not None
+        value = None if key is None else attributes[key]
+        found[item] = "" if value is None else str(value).strip()
+    if not has_any:
+        advice = f"they have {names_shown(list(known))}" if known else "they have no attributes"
+        raise InputRefused(f"its features have no attribute '{given.block}'", file=given.file, advice=advice)
+    return found

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The geological map of a rock mass: its polygons, the ground and the faults, read and put together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import InputRefused, naming
+from ..base.text import no_step
+from ..base.units import MODEL_UNIT
+from ..base.work import native_module
+from ..heights.interpolate import interpolate
+from ..project.field_checks import ground_file
+from ..project.plan_input import read_rings, shapes_of
+from ..project.project import Project, Rock, Surface
+from ..readers import UnitNames, is_mesh_file
+from ..readers.fault_trace import read_fault_trace
+from ..readers.maps.unit_polygons import read_unit_polygons
+from ..readers.point_input import read_raster_heights
+from ..readers.tables.observations import LeftOut, Observations
+from ..settings.map_file import MapFile
+from ..settings.map_layer import MapLayer
+from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS
+from ..settings.point_file import MeshFile, PointFile
+from .observed.map_places import MapFrame, observed_on_map
+from .surface_input import SurfaceInput
+
+_PARTS = 100  # of the diagonal of the region: the spacing of places for an automatic edge length
+
+
+def with_ground(rock: Rock) -> Rock:
+    """The rock mass whose youngest surface is made from the ground of its map, where it has no points and no
+    mesh."""
+    youngest = rock.surfaces[-1]
+    if rock.map is None or not (youngest.interpolated and youngest.points is None and youngest.needs_points):
+        return rock
+    if (shape := _ground_shape(rock)) is None:
+        return rock
+    return replace(rock, surfaces=[*rock.surfaces[:-1], replace(youngest, **shape)])
+
+
+def _ground_shape(rock: Rock) -> dict | None:
+    """The points or the mesh of the ground; None where it is a surface."""
+    ground = ground_file(rock)
+    if ground is None:
+        return None
+    if isinstance(ground, (PointFile, MeshFile)):
+        return {"mesh" if isinstance(ground, MeshFile) else "points": ground}
+    return {"mesh" if is_mesh_file(ground) else "points": ground}
+
+
+def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observations, list[LeftOut], list[str]]:
+    """The observations of the map of a rock mass, what of it is not used, and warnings, sentences. Raises
+    InputRefused."""
+    given = rock.map
+    assert given is not None
+    surface = _ground(rock, given)
+    with naming(rock.item):
+        polygons, warnings = read_unit_polygons(given, project.units)
+        faults = _fault_lines(project, given)
+        region, holes, _ = read_rings(rock.region, rock.holes, project.units)
+    rings = region if isinstance(region, list) else [region, *holes]
+    corners = np.concatenate(rings)
+    box = np.array([corners.min(axis=0), corners.max(axis=0)])
+
+    def heights(plan: np.ndarray) -> np.ndarray:
+        return _heights(rock, surface, plan, project.units)
+
+    frame = MapFrame(box, _spacing(rock, rings, box), faults, heights)
+    observations, left_out, more = observed_on_map(polygons, units, frame)
+    if not len(observations) and not left_out:
+        what = "no polygon of it lies in the region, or the ground is known nowhere there"
+        advice = "check the coordinates of the map, the ground and the region"
+        raise InputRefused(what, file=given.file, item=f"{rock.item}, map", advice=advice)
+    return observations, left_out, [*warnings, *(f"{given.file}: {text}" for text in more)]
+
+
+def _ground(rock: Rock, given: MapFile) -> Surface:
+    """The surface that the map is on."""
+    shape = _ground_shape(rock)
+    if shape is not None:
+        return Surface("ground of the map", **shape)
+    names = [each.name for each in rock.surfaces]
+    return rock.surfaces[names.index(given.ground) if given.ground in names else -1]
+
+
+def _spacing(rock: Rock, rings: list[np.ndarray], box: np.ndarray) -> float:
+    """About the edge length of the planar mesh."""
+    if isinstance(rock.edge_length, (int, float)):
+        return float(rock.edge_length)
+    if rock.triangles is not None:
+        area = abs(sum(_twice_area(ring) for ring in rings)) / 2
+        return float(np.sqrt(4 / np.sqrt(3) * area / rock.triangles))
+    return float(np.sqrt(((box[1] - box[0]) ** 2).sum())) / _PARTS
+
+
+def _twice_area(ring: np.ndarray) -> float:
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def _fault_lines(project: Project, given: MapFile) -> list[np.ndarray]:
+    """(N, 2) the lines of faults in plan: those of the map, and the traces of the project."""
+    found = []
+    if given.faults is not None:
+        shapes = shapes_of(given.faults, project.units)
+        if shapes is None or not shapes.lines:
+            file = given.faults.file if isinstance(given.faults, MapLayer) else None
+            raise InputRefused("there are no lines of faults in it", file=file)
+        found += [line for _, line in shapes.lines]
+    for fault in project.faults:
+        trace = fault.trace
+        if trace is None:
+            continue
+        if (traced := fault.trace_file) is not None:
+            trace = read_fault_trace(traced, project.units).lines
+        elif isinstance(trace, str):
+            trace = read_fault_trace(trace).lines
+        assert not isinstance(trace, (Path, PointFile))
+        several = len(trace) and np.ndim(trace[0]) > 1
+        found += [np.asarray(line, np.float64)[:, :2] for line in (trace if several else [trace])]
+    return found
+
+
+def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_UNIT) -> np.ndarray:
+    """(N,) heights of the ground at places (N, 2), NaN where they are not known: bilinear in a raster, on the
+    triangles of a mesh, by natural neighbors between points."""
+    if surface.point_file is not None:
+        z = read_raster_heights(surface.point_file, plan, units)
+        if z is not None:
+            return z
+    level = surface.options.get("value")
+    if surface.method == "constant" and isinstance(level, (int, float)):
+        return np.full(len(plan), float(level))
+    if surface.interpolated and surface.points is None:
+        what = f"the ground of the map is not known: surface '{surface.name}' has no points or mesh"
+        raise rock.refused(what, "map", 'give its heights: ground = "dem.tif"')
+    read = SurfaceInput.of(rock, surface, None, units).read(no_step)
+    if read.shape is not None:
+        return native_module().surface_heights(*read.shape.arrays, np.ascontiguousarray(plan))
+    options: dict[str, Any] = dict(CONTINUATION_OPTIONS)
+    return interpolate(read.surface.point_array(), plan, CONTINUATION, **options).z

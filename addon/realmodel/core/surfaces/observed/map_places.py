@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Observations of blocks on a geological map: two at each place on the line between two of them, which make a
+contact, and places within polygons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.errors import number_list, place_text
+from ...base.work import native_module, on_threads
+from ...readers.maps.unit_polygons import UnitPolygon
+from ...readers.tables.observations import LeftOut, Observations
+from ...readers.tables.unit_names import UnitNames
+from .polygon_borders import Apart, BorderLine, border_lines, inside, places_along
+
+_NEAR_BORDER = 0.25  # of the spacing: places within polygons are farther from their borders
+_NEAR_FAULT = 0.25  # of the spacing: nearer to a fault, it may be this that divides two blocks
+_LISTED = 6
+
+Heights = Callable[[np.ndarray], np.ndarray]  # of places (N, 2), (N,), NaN where the ground is not known
+
+
+@dataclass(frozen=True)
+class MapFrame:
+    """Where and how densely a map is read. box: (2, 2) low and high corners in plan; spacing: of places;
+    faults: (N, 2) lines that no contact lies on; heights: of the ground."""
+
+    box: np.ndarray
+    spacing: float
+    faults: Sequence[np.ndarray]
+    heights: Heights
+
+    def covers(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) bool: which places (N, 2) lie in the box."""
+        return ((plan >= self.box[0]) & (plan <= self.box[1])).all(axis=1)
+
+
+def observed_on_map(
+    polygons: list[UnitPolygon], units: UnitNames, frame: MapFrame
+) -> tuple[Observations, list[LeftOut], list[str]]:
+    """The observations of a map, what of it is not used, and warnings, sentences. Places on a line between
+    two blocks are about a spacing apart, at its corners where there are some; so are those within polygons,
+    each of which has at least one."""
+    blocks, left_out = _blocks(polygons, units)
+    names = sorted(set(blocks) - {""})
+    classes = np.array([names.index(block) if block else -1 for block in blocks])
+    lines, apart = border_lines(polygons, classes, frame.spacing)
+    warnings = _gaps(polygons, classes, apart)
+    borders = _Near([_closed(ring) for each in polygons for ring in each.rings], frame.spacing / 8)
+    on_lines = _contacts(polygons, classes, lines, frame)
+    within, overlaps = _within(polygons, classes, borders, frame)
+    left_out += overlaps
+    plan = np.concatenate([np.repeat(on_lines[0], 2, axis=0), within[0]])
+    of_class = np.concatenate([on_lines[1].ravel(), within[1]])
+    z = frame.heights(plan) if len(plan) else np.empty(0)
+    known = np.isfinite(z)
+    if not known.all():
+        missing = len(np.unique(plan[~known], axis=0))
+        warnings.append(f"{missing} places of the map are where the ground is not known, and are left out")
+    places = np.column_stack([plan, z])[known]
+    return Observations(places, np.array([*names, ""])[of_class[known]]), left_out, warnings
+
+
+def _blocks(polygons: list[UnitPolygon], units: UnitNames) -> tuple[list[str], list[LeftOut]]:
+    """The block of each polygon, by the name that UnitNames gives it; "" for none."""
+    found, left_out = [], []
+    for each in polygons:
+        block = "" if units.says_nothing(each.unit) else units.block(each.unit)
+        if block is None:
+            what = "this is no block, surface or body, or several blocks; give its meaning in names"
+            left_out.append(LeftOut("unknown_block", f"{each.item}, '{each.unit}': {what}", each.unit))
+        found.append(block or "")
+    return found, left_out
+
+
+def _gaps(polygons: list[UnitPolygon], classes: np.ndarray, apart: list[Apart]) -> list[str]:
+    said = []
+    for joined, what in ((True, "which count as one line"), (False, "where no contact is seen")):
+        listed = [
+            f"{polygons[a].item} and {polygons[b].item} (up to {each.width:.3g} along {each.length:.3g})"
+            for each in apart
+            for a, b in [each.polygons]
+            if each.joined == joined and classes[a] >= 0 and classes[b] >= 0
+        ]
+        if listed:
+            text = f"{len(listed)} pairs of polygons have gaps or overlaps between their borders, {what}"
+            said.append(f"{text}: {number_list(listed, _LISTED)}")
+    return said
+
+
+class _Near:
+    """Lines (N, 2), and how far places are from them, to a part of a step."""
+
+    def __init__(self, lines: Sequence[np.ndarray], step: float):
+        parts = [np.empty((0, 2))]
+        for line in lines:
+            way = np.diff(line, axis=0)
+            count = np.maximum(np.ceil(np.sqrt((way**2).sum(axis=1)) / step), 1).astype(np.int64)
+            edge = np.repeat(np.arange(len(way)), count)
+            part = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+            parts += [line[edge] + (part / count[edge])[:, None] * way[edge], line[-1:]]
+        self._points = np.concatenate(parts)
+
+    def distance(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) of places (N, 2)."""
+        if not (len(self._points) and len(plan)):
+            return np.full(len(plan), np.inf)
+        return native_module().nearest_points(self._points, plan, execution=on_threads(0))[1][:, 0]
+
+
+def _closed(ring: np.ndarray) -> np.ndarray:
+    return np.concatenate([ring, ring[:1]])
+
+
+def _contacts(
+    polygons: list[UnitPolygon], classes: np.ndarray, lines: list[BorderLine], frame: MapFrame
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places (C, 2) on lines between blocks, and the two classes (C, 2) there."""
+    plan, beside = [np.empty((0, 2))], [np.empty((0, 2), np.int64)]
+    for line in lines:
+        if min(line.classes) >= 0:
+            places, edge = places_along(line, frame.spacing)
+            plan.append(places)
+            beside.append(line.polygons[edge])
+    found, sides = np.concatenate(plan), np.concatenate(beside)
+    kept = frame.covers(found)
+    kept[kept] = _Near(frame.faults, frame.spacing / 16).distance(found[kept]) > _NEAR_FAULT * frame.spacing
+    found, sides = found[kept], sides[kept]
+    # another polygon lies over both, as of a unit that was drawn later
+    hidden = np.zeros(len(found), bool)
+    for number, rows in _in_boxes(polygons, found):
+        own = rows[(classes[sides[rows]] != classes[number]).all(axis=1)]
+        hidden[own] |= inside(polygons[number].rings, found[own])
+    return found[~hidden], classes[sides[~hidden]]
+
+
+def _within(
+    polygons: list[UnitPolygon], classes: np.ndarray, borders: _Near, frame: MapFrame
+) -> tuple[tuple[np.ndarray, np.ndarray], list[LeftOut]]:
+    """Places (N, 2) within polygons and the class of each (N,); and the polygons that overlap."""
+    low, high = frame.box
+    axes = [np.arange(low[k] + 0.5 * frame.spacing, high[k], frame.spacing) for k in (0, 1)]
+    plan = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+    plan = plan[borders.distance(plan) > _NEAR_BORDER * frame.spacing]
+    owner = np.full(len(plan), -1)
+    seen = np.zeros(len(polygons), bool)
+    for number, rows in _in_boxes(polygons, plan):
+        own = rows[inside(polygons[number].rings, plan[rows])]
+        seen[number] = len(own) > 0
+        owner[own] = np.where(owner[own] < 0, number, owner[own])
+    more = [_middle(each) for number, each in enumerate(polygons) if not seen[number]]
+    alone = np.flatnonzero(~seen)
+    at = np.array(more).reshape(-1, 2)
+    is_here = np.isfinite(at).all(axis=1)
+    is_here[is_here] = frame.covers(at[is_here])
+    plan, owner = np.concatenate([plan, at[is_here]]), np.concatenate([owner, alone[is_here]])
+    claimed: dict[tuple[int, int], list[int]] = {}
+    for number, rows in _in_boxes(polygons, plan):
+        others = rows[(owner[rows] >= 0) & (classes[owner[rows]] != classes[number])]
+        for row in others[inside(polygons[number].rings, plan[others])].tolist():
+            claimed.setdefault((int(min(owner[row], number)), int(max(owner[row], number))), []).append(row)
+    left_out = []
+    for (a, b), rows in claimed.items():
+        text = (
+            f"{polygons[a].item} and {polygons[b].item} overlap, as at {place_text(plan[rows[0]].tolist())}"
+        )
+        left_out.append(LeftOut("overlap", text, polygons[a].unit))
+    twice = np.unique([row for rows in claimed.values() for row in rows]).astype(np.int64)
+    kept = owner >= 0
+    kept[twice] = False
+    kept &= classes[owner] >= 0
+    return (plan[kept], classes[owner[kept]]), left_out
+
+
+def _in_boxes(polygons: list[UnitPolygon], plan: np.ndarray):
+    """The number of each polygon whose box has places (N, 2), and their rows."""
+    order = np.argsort(plan[:, 0], kind="stable")
+    x = plan[order, 0]
+    for number, each in enumerate(polygons):
+        corners = np.concatenate(each.rings)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        rows = order[np.searchsorted(x, low[0]) : np.searchsorted(x, high[0], "right")]
+        rows = rows[(plan[rows, 1] >= low[1]) & (plan[rows, 1] <= high[1])]
+        if len(rows):
+            yield number, np.sort(rows)
+
+
+def _middle(polygon: UnitPolygon) -> np.ndarray:
+    """A place (2,) within a polygon: the middle of the longest part of a line across it; NaN for one that has
+    no area."""
+    begin = np.concatenate(polygon.rings)
+    end = np.concatenate([np.roll(ring, -1, axis=0) for ring in polygon.rings])
+    heights = np.unique(begin[:, 1])
+    best, found = 0.0, np.full(2, np.nan)
+    steps = np.diff(heights)
+    for at in np.argsort(-steps, kind="stable")[:3]:
+        y = heights[at] + 0.5 * steps[at]
+        crosses = (begin[:, 1] < y) != (end[:, 1] < y)
+        share = (y - begin[crosses, 1]) / (end[crosses, 1] - begin[crosses, 1])
+        x = np.sort(begin[crosses, 0] + share * (end[crosses, 0] - begin[crosses, 0]))
+        for left, right in zip(x[::2].tolist(), x[1::2].tolist(), strict=True):
+            if right - left > best:
+                best, found = right - left, np.array([0.5 * (left + right), y])
+    return found
