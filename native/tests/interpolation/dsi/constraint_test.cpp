@@ -32,5 +32,20 @@ TEST(Constraint, ValuesAndViolations) {
     EXPECT_EQ(met.next_multiplier(z), 0);  // -1.5 + 2 is not below 0
 }
 
+TEST(Constraint, ARiseIsTheDifferenceAlongAVector) {
+    const Vector z{1, 2, 4};
+    // Of the triangle (0, 0), (4, 0), (0, 8) along (1, 0), whose first weight may be anything.
+    Constraint rise{{0, 1, 2}, {-0.25, 0.25, 0}, 2, Kind::kEqual, 1};
+    EXPECT_FALSE(rise.is_rise());
+    rise.along = {1, 0};
+    EXPECT_TRUE(rise.is_rise());
+    EXPECT_EQ(rise.value(z), 0.25);
+    EXPECT_EQ(rise.violation(z), 0.75);
+    EXPECT_EQ(rise.position(std::vector<Position>{{0, 0}, {6, 0}, {0, 9}}), (Position{2, 3}));
+    rise.weights = {1, -1, 0};
+    EXPECT_EQ(rise.corners(), 3U);
+    EXPECT_EQ(rise.value(z), -1);
+}
+
 }  // namespace
 }  // namespace realmodel::interpolation

@@ -9,10 +9,12 @@
 #include <string>
 
 #include "../dense_kriging.hpp"
+#include "interpolation/data_points.hpp"
 #include "interpolation/dsi/vectors.hpp"
 #include "lattice.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
+#include "spatial/mesh_locator.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -89,6 +91,86 @@ TEST(Dsi, EqualNodesAndBoundsAreMetToTheLastDigit) {
     EXPECT_EQ(*std::min_element(found.z.begin(), found.z.end()), low);
     EXPECT_EQ(*std::max_element(found.z.begin(), found.z.end()), high);
     EXPECT_LT(found.misfit, 2e-3);
+}
+
+/// Height at a position, of heights of a lattice's nodes.
+double height_at(const Lattice& mesh, const std::vector<double>& z, const Position& at) {
+    const auto found = spatial::MeshLocator(mesh.nodes, mesh.triangles).find(at);
+    double sum = 0;
+    for (std::size_t k = 0; found && k < 3; ++k)
+        sum += found->weights[k] * z[mesh.triangles[found->triangle][k]];
+    return found ? sum : std::nan("");
+}
+
+TEST(Dsi, TrianglesHaveTheirDips) {
+    const Lattice mesh = lattice(30, 20);
+    const Points points = on(mesh, 12, [](double x, double y) { return std::sin(x / 3) + y / 5; });
+    const Nodes positions{{4.3, 5.6}, {22.7, 11.2}, {15.1, 3.4}, {-3, 2}};
+    const Nodes slopes{{0.5, -0.2}, {0, 0.3}, {-0.4, 0}, {9, 9}};
+    DsiConstraints constraints;
+    constraints.dips = {positions, slopes, 1, 0};
+    const DsiHeights found = dsi(points, mesh.nodes, mesh.triangles, constraints, 0, {1});
+    EXPECT_EQ(found.dips_outside, 1);
+    EXPECT_EQ(found.dips_missed, 0);
+    EXPECT_EQ(found.missed, 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            Position to = positions[i], from = to;
+            to[axis] += 1e-3;
+            from[axis] -= 1e-3;
+            const double rise = height_at(mesh, found.z, to) - height_at(mesh, found.z, from);
+            EXPECT_NEAR(rise / 2e-3, slopes[i][axis], 1e-5);
+        }
+    }
+    // Two slopes of one triangle.
+    const Nodes twice{positions[0], positions[0]}, both{{0.5, 0}, {0.7, 0}};
+    constraints.dips = {twice, both, 1, 0};
+    EXPECT_GT(dsi(points, mesh.nodes, mesh.triangles, constraints, 0, {1}).dips_missed, 0);
+    constraints.dips = {positions, both, 1, 0};
+    EXPECT_THROW(dsi(points, mesh.nodes, mesh.triangles, constraints, 0), InputError);
+}
+
+TEST(Dsi, OnePointAndDipsMakeAPlane) {
+    const Lattice mesh = lattice(30, 20);
+    const Nodes positions{{4.3, 5.6}, {22.7, 11.2}}, slopes{{0.5, -0.2}, {0.5, -0.2}};
+    DsiConstraints constraints;
+    constraints.dips = {positions, slopes, 1, 0};
+    const Points point{{10, 10, 100}};
+    for (const double weight : {0.0, 1.0}) {
+        const DsiHeights found = dsi(point, mesh.nodes, mesh.triangles, constraints, weight, {1});
+        for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+            const auto& [x, y] = mesh.nodes[i];
+            EXPECT_NEAR(found.z[i], 100 + 0.5 * (x - 10) - 0.2 * (y - 10), 1e-9);
+        }
+    }
+}
+
+TEST(Dsi, BoundsHoldWithinTriangles) {
+    const Lattice mesh = lattice(30, 20);
+    const Points points = on(mesh, 12, [](double x, double y) { return std::sin(x / 3) + y / 5; });
+    const DsiHeights free = dsi(points, mesh.nodes, mesh.triangles, {}, 0, {1});
+    Points lower, upper;
+    for (const Position& p : {Position{4.3, 5.6}, {22.7, 11.2}, {15.1, 3.4}, {8.8, 17.3}}) {
+        const double z = height_at(mesh, free.z, p);
+        lower.push_back({p[0], p[1], z + 0.5});
+        upper.push_back({p[0] + 1, p[1] + 1, height_at(mesh, free.z, {p[0] + 1, p[1] + 1}) - 0.1});
+    }
+    lower.push_back({-5, -5, 99});  // outside
+    DsiConstraints constraints;
+    constraints.lower = lower;
+    constraints.upper = upper;
+    const DsiHeights found = dsi(points, mesh.nodes, mesh.triangles, constraints, 0, {1});
+    EXPECT_EQ(found.bounds_missed, 0);
+    for (std::size_t i = 0; i + 1 < lower.size(); ++i) {
+        EXPECT_GE(height_at(mesh, found.z, {lower[i][0], lower[i][1]}), lower[i][2]);
+        EXPECT_LE(height_at(mesh, found.z, {upper[i][0], upper[i][1]}), upper[i][2]);
+    }
+    upper = {{4.3, 5.6, lower[0][2] - 1}};
+    constraints.upper = upper;
+    EXPECT_GT(dsi(points, mesh.nodes, mesh.triangles, constraints, 0, {1}).bounds_missed, 0);
+    upper = {{4.3, 5.6, std::nan("")}};
+    constraints.upper = upper;
+    EXPECT_THROW(dsi(points, mesh.nodes, mesh.triangles, constraints, 0), InputError);
 }
 
 TEST(Dsi, SameBytesForAnyNumberOfThreads) {

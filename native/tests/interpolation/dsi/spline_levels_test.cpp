@@ -46,17 +46,21 @@ TEST(SplineLevels, OnTheCoarsestGridItSolvesExactly) {
     const SplineGrid grid({0, 0}, 2, 4, 4);
     const auto of_mesh = hinges(mesh.nodes, mesh.triangles);
     SplineLevels levels(grid, mesh.nodes, of_mesh, 1, [] {});
-    const std::vector<WeightedPosition> constraints{{{1, 1}, 5}, {{7, 2}, 5}, {{4, 7}, 5}};
+    const std::vector<WeightedPosition> constraints{
+        {{1, 1}, 5}, {{7, 2}, 5}, {{4, 7}, 5}, {{3, 4}, 8, {1, 2}}, {{5, 5}, 8, {-1, 1}}};
     levels.set_constraints(constraints);
     // A plane has no roughness: the right side of its heights at the constraints gives it.
     const auto plane = [](const Position& p) { return 2 + 0.5 * p[0] - p[1]; };
     levels.right().assign(grid.length(), 0.0);
-    for (const auto& [position, strength] : constraints) {
+    for (const auto& [position, strength, along] : constraints) {
         const std::size_t cell = grid.cell_of(position);
-        const auto weights = grid.values(position, cell);
+        const bool is_rise = along != Position{};
+        const auto weights =
+            is_rise ? grid.rises(position, cell, along) : grid.values(position, cell);
+        const double value = is_rise ? 0.5 * along[0] - along[1] : plane(position);
         for (std::size_t k = 0; k < SplineGrid::kReach; ++k) {
             levels.right()[grid.first_of(cell) + k / 3 * grid.stride() + k % 3] +=
-                strength * weights[k] * plane(position);
+                strength * weights[k] * value;
         }
     }
     levels.solve();

@@ -279,5 +279,54 @@ TEST(Kriging, NoNodesIsNoWork) {
     EXPECT_TRUE(krige(Points{{0, 0, 1}}, {}, spherical(1, 1), {}).z.empty());
 }
 
+TEST(Kriging, SlopesOverTheBaselineAreThoseOfTheDips) {
+    const Points points = hills(40, 100, {4e5, 5e6});
+    const Nodes positions{{4e5 + 20, 5e6 + 30}, {4e5 + 70, 5e6 + 55}};
+    const Nodes slopes{{0.4, -0.3}, {0, 0.2}};
+    for (const VariogramModel model : kAllVariogramModels) {
+        for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
+            SCOPED_TRACE(std::string(name_of(model)));
+            const Variogram variogram{model, 60, 9, 0, {2, 30}, {}};
+            KrigingOptions options{{0}, drift, {positions, slopes, 6, 0}};
+            for (std::size_t i = 0; i < 2; ++i) {
+                const auto [x, y] = positions[i];
+                const Nodes ends{{x + 3, y}, {x - 3, y}, {x, y + 3}, {x, y - 3}};
+                const Kriged all = krige(points, ends, variogram, options);
+                EXPECT_NEAR((all.z[0] - all.z[1]) / 6, slopes[i][0], 1e-8);
+                EXPECT_NEAR((all.z[2] - all.z[3]) / 6, slopes[i][1], 1e-8);
+            }
+        }
+    }
+}
+
+TEST(Kriging, WaysOfKrigingAgreeOnDips) {
+    const Points points = hills(40, 100, {4e5, 5e6});
+    const Nodes positions{{4e5 + 20, 5e6 + 30}, {4e5 + 70, 5e6 + 55}, {4e5 + 40, 5e6 + 90}};
+    const Nodes slopes{{0.4, -0.3}, {0, 0.2}, {0.1, 0.1}},
+        nodes = scattered_nodes(60, 100, {4e5, 5e6});
+    const Variogram variogram{VariogramModel::kMatern52, 60, 9, 0.1, {}, {}};
+    for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
+        const Dips dips{positions, slopes, 0.5, 0};
+        const Kriged all = krige(points, nodes, variogram, {{0}, drift, dips});
+        const Kriged far = krige(points, nodes, variogram, {{40, 0, 1e6}, drift, dips});
+        const Kriged few =
+            krige(points, nodes, variogram, {{16}, drift, {positions, slopes, 0.5, 2}});
+        const Kriged within =
+            krige(points, nodes, variogram, {{16, 0, 1e6}, drift, {positions, slopes, 0.5, 2}});
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            EXPECT_NEAR(all.z[i], far.z[i], 1e-8);
+            EXPECT_NEAR(all.variance[i], far.variance[i], 1e-8);
+            EXPECT_NEAR(few.z[i], within.z[i], 1e-8);
+            EXPECT_NEAR(few.variance[i], within.variance[i], 1e-8);
+        }
+        const Kriged left_out = krige_left_out(points, variogram, {{0}, drift, dips});
+        Points others(points.begin() + 1, points.end());
+        const Kriged first =
+            krige(others, Nodes{{points[0][0], points[0][1]}}, variogram, {{0}, drift, dips});
+        EXPECT_NEAR(left_out.z[0], first.z[0], 1e-7);
+        EXPECT_NEAR(left_out.variance[0], first.variance[0], 1e-7);
+    }
+}
+
 }  // namespace
 }  // namespace realmodel::interpolation

@@ -30,6 +30,21 @@ TEST(ThinPlate, PlanesComeOutAndPointsAreMet) {
     }
 }
 
+TEST(ThinPlate, SlopesOverTheBaselineAreThoseOfTheDips) {
+    const Points points = hills(40, 100, {4e5, 5e6});
+    const Nodes positions{{4e5 + 20, 5e6 + 30}, {4e5 + 70, 5e6 + 55}};
+    const Nodes slopes{{0.4, -0.3}, {0, 0.2}};
+    ThinPlateOptions options{0, {0}};
+    options.dips = {positions, slopes, 6, 0};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto [x, y] = positions[i];
+        const Nodes ends{{x + 3, y}, {x - 3, y}, {x, y + 3}, {x, y - 3}};
+        const std::vector<double> z = thin_plate(points, ends, options);
+        EXPECT_NEAR((z[0] - z[1]) / 6, slopes[i][0], 1e-9);
+        EXPECT_NEAR((z[2] - z[3]) / 6, slopes[i][1], 1e-9);
+    }
+}
+
 TEST(ThinPlate, FourPointsByHand) {
     // A square with one corner lifted by 1: z = 1/4 + (x + y) / 4 + bump. By symmetry the bump is 0
     // in the middle, and the diagonal through the lifted corner keeps its sign.
