@@ -62,9 +62,9 @@ def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:
 
 def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(E, 2) edges that an odd number of triangles have; vertices at one position count as one."""
-    edges = np.sort(edges_of(welded(vertices)[triangles]), axis=1)
-    edges, count = np.unique(edges, axis=0, return_counts=True)
-    return edges[count % 2 == 1]
+    edges = edges_of(welded(vertices)[triangles])
+    numbers, times = np.unique(edge_numbers(edges, len(vertices)), return_counts=True)
+    return np.column_stack(np.divmod(numbers[times % 2 == 1], len(vertices)))
 
 
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:

@@ -90,12 +90,14 @@ def close_gaps(
     faults, warnings = list(structures.faults), []
     number_of = {fault.name: number for number, fault in enumerate(faults)}
     waiting = list(range(len(faults)))
+    displaced = sorted({rock for each in structures.displaced for rock in each})
+    widths = {rock: _GAP * edge_length(inputs[rock]) for rock in displaced}
     while waiting:  # each after those at which it ends
         number = next(n for n in waiting if not any(number_of[each] in waiting for each in faults[n].ends_at))
         waiting.remove(number)
         ends = [faults[number_of[name]] for name in faults[number].ends_at]
         around = [
-            _Around(work, structures, inputs[rock], number, last)
+            _Around(work, structures, inputs[rock], (number, last), widths[rock])
             for rock, last in structures.displaced[number].items()
             if not has_sheets or inputs[rock].divided().is_made(last)
         ]
@@ -126,12 +128,14 @@ def tops_of_faults(structures: Structures, number: int, rock) -> set[int]:
 
 
 class _Around:
-    """A fault in one rock mass. last: the youngest surface of it that the fault displaces."""
+    """A fault in one rock mass. of: its number, and the youngest surface of the rock mass that it displaces.
+    width: of the gaps that are closed."""
 
-    def __init__(self, work: Work, structures: Structures, entry: RockInput, number: int, last: int):
-        self.work, self.structures, self.entry = work, structures, entry
-        self.number, self.last = number, last
-        self.width = _GAP * edge_length(entry)
+    def __init__(
+        self, work: Work, structures: Structures, entry: RockInput, of: tuple[int, int], width: float
+    ):
+        self.work, self.structures, self.entry, self.width = work, structures, entry, width
+        self.number, self.last = of
 
     def closed(
         self, fault: Fault, ends: list[Fault], box, has_sheets: bool
