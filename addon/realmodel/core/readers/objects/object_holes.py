@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.algebra import norm
 from ...base.errors import InputRefused
 from ...settings.boreholes import Boreholes
 from ..tables.boreholes import Picks
@@ -153,8 +154,8 @@ def _depths(begins: np.ndarray, ends: np.ndarray, holes: list[str]) -> np.ndarra
     depths = []
     for hole, begin, end in zip(holes, begins, ends, strict=True):
         depth, place = last.get(hole, (0.0, begin))
-        depth += float(np.linalg.norm(begin - place))
-        depths.append((depth, depth + float(np.linalg.norm(end - begin))))
+        depth += float(norm(begin - place))
+        depths.append((depth, depth + float(norm(end - begin))))
         last[hole] = depths[-1][1], end
     return np.array(depths).reshape(-1, 2)
 
