@@ -6,6 +6,7 @@ import numpy as np
 from driver import hue_differs
 from realmodel.bl import live
 from realmodel.ui import start
+from realmodel.ui.panel import TabPanel
 
 
 def model():
@@ -22,6 +23,12 @@ def volumes():
 
 def nothing_left_to_do():
     return not live.is_working()
+
+
+def tab_panels():
+    """The panels of the tab, each after the one that it is within."""
+    of_tab = [cls for cls in bpy.types.Panel.__subclasses__() if issubclass(cls, TabPanel)]
+    return sorted((cls for cls in of_tab if cls.is_registered), key=lambda cls: hasattr(cls, "bl_parent_id"))
 
 
 def open_the_tab(walk):

@@ -5,8 +5,7 @@ import bpy
 import numpy as np
 from realmodel.bl import compartments, meshes
 from realmodel.bl.display import bodies, shades
-from realmodel.ui.panel import TabPanel
-from steps_1_panel import idle, open_the_tab
+from steps_1_panel import idle, open_the_tab, tab_panels
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked
 
@@ -66,9 +65,7 @@ def compartments_apart(walk):
 
 def _show_alone(wanted):
     """Registers these panels of the tab alone, unfolded; returns all that there were."""
-    known = [cls for cls in bpy.types.Panel.__subclasses__() if issubclass(cls, TabPanel)]
-    found = [cls for cls in known if cls.is_registered]
-    found.sort(key=lambda cls: hasattr(cls, "bl_parent_id"))
+    found = tab_panels()
     for cls in reversed(found):
         bpy.utils.unregister_class(cls)
     for cls in found:

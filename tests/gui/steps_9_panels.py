@@ -4,18 +4,13 @@
 import bpy
 from realmodel.bl import viewports
 from realmodel.ui.panel import TabPanel
-from steps_1_panel import idle, model, nothing_left_to_do, open_the_tab
-
-
-def _panels():
-    found = [cls for cls in TabPanel.__subclasses__() if cls.is_registered]
-    return sorted(found, key=lambda cls: hasattr(cls, "bl_parent_id"))
+from steps_1_panel import idle, model, nothing_left_to_do, open_the_tab, tab_panels
 
 
 def _wanted():
     """Names of the panels that are to be drawn now: none without its parent."""
     found = set()
-    for cls in _panels():
+    for cls in tab_panels():
         if getattr(cls, "bl_parent_id", None) in (None, *found) and (
             not hasattr(cls, "poll") or cls.poll(bpy.context)
         ):
@@ -25,7 +20,7 @@ def _wanted():
 
 def _unfold():
     """No panel is folded when it is drawn for the first time."""
-    panels = _panels()
+    panels = tab_panels()
     for cls in reversed(panels):
         bpy.utils.unregister_class(cls)
     for cls in panels:
