@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import grid_surface
+from object_models import assert_closed, volume
 from realmodel.core import Library, Project, Property, Rock, Surface, build, build_surfaces
 from realmodel.core.readers import read_mesh
 
@@ -37,22 +38,6 @@ def folder(model, tmp_path_factory):
     for ending in (".obj", ".ply", ".stl", ".glb", ".dxf", ".ts"):
         model.save(path / f"m{ending}")
     return path
-
-
-def volume(vertices, triangles):
-    """Of what triangles close."""
-    origin = vertices.mean(axis=0)
-    a, b, c = (vertices[triangles] - origin).transpose(1, 0, 2)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
-
-
-def assert_closed(triangles):
-    """Each edge is used as often one way as the other."""
-    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    ways, counts = np.unique(edges, axis=0, return_counts=True)
-    back, back_counts = np.unique(edges[:, ::-1], axis=0, return_counts=True)
-    assert np.array_equal(ways, back)
-    assert np.array_equal(counts, back_counts)
 
 
 def test_obj_has_a_group_for_each_block(model, folder):

@@ -32,6 +32,17 @@ def begins_run(rows: np.ndarray) -> np.ndarray:
     return found
 
 
+def ranks_in_runs(sizes: np.ndarray) -> np.ndarray:
+    """The numbers from 0 on within each of runs of these sizes (N,), one run after another."""
+    return np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+
+
+def twice_area(ring: np.ndarray) -> float:
+    """Twice the area of a ring in plan (N, 2): positive where it goes counter-clockwise."""
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
 def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The principal axes of points (N, D): the spread around their mean along D directions, and these, in
     rows.

@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 
-from .algebra import dot, norm
+from .algebra import begins_run, dot, norm
 from .errors import InputRefused, place_text
 from .work import native_module
 
@@ -17,8 +17,7 @@ _EDGES = ((0, 1), (1, 2), (2, 0))
 def welded(vertices: np.ndarray) -> np.ndarray:
     """(V,) the least vertex at the same position as each."""
     order = np.lexsort(vertices.T)  # of equal ones the least comes first
-    is_first = np.ones(len(order), bool)
-    is_first[1:] = (vertices[order[1:]] != vertices[order[:-1]]).any(axis=1)
+    is_first = begins_run(vertices[order])
     same = np.empty_like(order)
     same[order] = order[is_first][np.cumsum(is_first) - 1]
     return same

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 MODEL_UNIT = "m"  # of a project without units
@@ -34,6 +35,12 @@ UNIT_NAMES = {
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
     """The factor from a unit to the model's unit; 1 where none is given."""
     return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
+
+
+def factors(units: str | Mapping | None, model_unit: str = MODEL_UNIT) -> tuple[float, float]:
+    """Of plan coordinates and of heights, whose units are the same, or {"xy": ..., "z": ...}."""
+    units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
+    return factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
 
 
 def number_text(value: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.algebra import ranks_in_runs
 from .drawing import ANCHORS, WHITE, Dots, Drawing, Line, Polygon, Text
 from .glyphs import text_rings, text_width
 
@@ -122,7 +123,7 @@ def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> Non
     last = np.clip(np.ceil(np.maximum(begin[:, 1], end[:, 1]) - 0.5), 0, rows * _SUBROWS).astype(np.int64)
     count = last - first
     edge = np.repeat(np.arange(len(count)), count)
-    row = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count) + first[edge]
+    row = ranks_in_runs(count) + first[edge]
     step = end - begin
     share = (row + 0.5 - begin[edge, 1]) / step[edge, 1]
     x = np.clip(begin[edge, 0] + share * step[edge, 0], 0.0, columns)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.errors import InputRefused, place_text
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Bounds
@@ -232,6 +233,4 @@ def _worst_of_cells(positions: np.ndarray, missing: np.ndarray, cell: float) -> 
         return np.array([int(np.abs(missing).argmax())])
     place = np.floor((positions - positions.min(axis=0)) / cell)
     order = np.lexsort([-np.abs(missing), place[:, 1], place[:, 0]])
-    is_first = np.ones(len(order), bool)
-    is_first[1:] = (place[order[1:]] != place[order[:-1]]).any(axis=1)
-    return np.sort(order[is_first])
+    return np.sort(order[begins_run(place[order])])

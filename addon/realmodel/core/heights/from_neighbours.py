@@ -64,13 +64,9 @@ def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
 
 
 def _spacing(points: np.ndarray, dips: Dips) -> float:
-    """The side of a square as large as the share of each point and dip in the box of all; as
-    native_module().mean_spacing."""
-    low = np.minimum(points[:, :2].min(axis=0), dips.positions.min(axis=0))
-    extent = np.maximum(points[:, :2].max(axis=0), dips.positions.max(axis=0)) - low
-    count = len(points) + len(dips)
-    width, height = extent.tolist()
-    return max((width * height / count) ** 0.5, max(width, height) / count) or 1.0
+    """The mean spacing of points and dips together."""
+    every = np.vstack([points, np.column_stack([dips.positions, np.zeros(len(dips))])])
+    return native_module().mean_spacing(every, are_apart=True)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.errors import place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeZeros, in_memory, in_pieces
 
@@ -162,8 +163,7 @@ def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     heights there."""
     keys = np.delete(points, 2, axis=1)
     order = np.lexsort(keys.T[::-1])
-    new = np.ones(len(points), bool)
-    new[1:] = (keys[order[1:]] != keys[order[:-1]]).any(axis=1)
+    new = begins_run(keys[order])
     first = order[new]  # the point with the least number: the sort is stable
     place = np.empty(len(points), np.int64)
     place[order] = np.cumsum(new) - 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ..base.units import METERS, MODEL_UNIT
 from ..readers import is_mesh_file
 from ..settings.boreholes import Boreholes
 from ..settings.dips import DipFile
+from ..settings.field_table import FieldTable
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.method_options import checked
@@ -27,6 +29,8 @@ from .library import load_library
 from .plan_input import is_place_elsewhere
 from .project import Project, Rock, Surface, check_project
 from .structure_entries import Body, Fault
+
+SomeTable = TypeVar("SomeTable", bound=FieldTable)
 
 FORMAT = 1
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
@@ -76,7 +80,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         size=_read_size(table, folder),
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
-        observations=_read_observations(table, folder),
+        observations=_read_field_table(table, "observations", folder, ObservationFile, "outcrops.csv"),
         map=_read_map(table, folder),
         names=table.content.get("names", {}),
         source=Source(table.document, table.path),
@@ -190,20 +194,21 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     return Boreholes(**values)
 
 
-def _read_observations(table: Table, folder: Path) -> ObservationFile | None:
-    given = table.content.get("observations")
+def _read_field_table(
+    table: Table, key: str, folder: Path, kind: type[SomeTable], example: str
+) -> SomeTable | None:
+    given = table.content.get(key)
     if given is None:
         return None
     if isinstance(given, str):
-        return ObservationFile(folder / table.text("observations", required=True))
+        return kind(folder / table.text(key, required=True))
     if not isinstance(given, dict):
-        advice = 'write observations = "outcrops.csv"'
-        raise table.refuse("'observations' must be a file or a table", "observations", advice)
-    keys = _inner(table, "observations", given)
+        raise table.refuse(f"'{key}' must be a file or a table", key, f'write {key} = "{example}"')
+    keys = _inner(table, key, given)
     said = ("columns", "separator", "decimal", "units")
     keys.allow_only(("file", *said))
     values = {name: given[name] for name in said if name in given}
-    return ObservationFile(folder / keys.text("file", required=True), **values)
+    return kind(folder / keys.text("file", required=True), **values)
 
 
 def _read_map(table: Table, folder: Path) -> MapFile | None:
@@ -268,25 +273,12 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     return Surface(
         name=name,
         method=table.text("method"),
-        dips=_read_dips(table, folder),
+        dips=_read_field_table(table, "dips", folder, DipFile, "dips.csv"),
         options=options,
         source=Source(table.document, table.path),
         **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness", "correlation")),
         **_shape_files(table, folder),
     )
-
-
-def _read_dips(table: Table, folder: Path) -> DipFile | Path | None:
-    given = table.content.get("dips")
-    if given is None:
-        return None
-    if not isinstance(given, dict):
-        return folder / table.text("dips", required=True)
-    keys = _inner(table, "dips", given)
-    said = ("columns", "separator", "decimal", "units")
-    keys.allow_only(("file", *said))
-    values = {name: given[name] for name in said if name in given}
-    return DipFile(folder / keys.text("file", required=True), **values)
 
 
 def _shape_files(table: Table, folder: Path) -> dict:

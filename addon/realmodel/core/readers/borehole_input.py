@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factor
+from ..base.units import MODEL_UNIT, factors
 from ..settings.boreholes import Boreholes
 from .objects.object_file import is_object_file
 from .objects.object_holes import read_hole_objects
@@ -28,8 +26,8 @@ def read_boreholes(
     """The points of every surface that the picks name, in the model's unit, and what intervals say: of
     tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
     read_intervals. Raises InputRefused naming file and line, or object."""
-    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
-    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
+    plan, height = factors(given.units, model_unit)
+    scale = np.array([plan, plan, height])
     units = units or UnitNames()
     of_objects = [file for file in given.files if is_object_file(file)]
     if not of_objects and given.layer is not None:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.algebra import dot, norm
+from ..base.algebra import dot, norm, twice_area
 from ..base.errors import BuildFailed, InputRefused
 from ..base.work import native_module
 from ..project.region_rings import checked_region, given_rings
@@ -270,5 +270,4 @@ def _heights(planes: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 
 def _area(ring: np.ndarray) -> float:
-    x, y = (ring - ring[0]).T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+    return twice_area(ring) / 2

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.algebra import ranks_in_runs
+
 _WALL = -1  # face_surface
 
 
@@ -83,7 +85,7 @@ def _heights(model, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, 
     """The heights of faces at a position, and whether each faces up out of its first cell."""
     begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
     first = np.repeat(begin, size)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
+    step = ranks_in_runs(size)
     here = model.vertices[model.face_vertices[first + step]]
     origin = model.vertices[model.face_vertices[begin]]
     here = here - np.repeat(origin, size, axis=0)

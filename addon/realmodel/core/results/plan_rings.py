@@ -7,7 +7,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from ..base.algebra import dot
+from ..base.algebra import dot, twice_area
 from ..base.errors import BuildFailed
 from ..base.work import native_module
 
@@ -39,11 +39,11 @@ def polygons_of(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> list[
     holes: list[np.ndarray] = []
     for walk in _walks(points, start, end):
         for ring in _simple_rings(walk):
-            (outlines if _twice_area(points[ring]) > 0 else holes).append(np.array(ring))
+            (outlines if twice_area(points[ring]) > 0 else holes).append(np.array(ring))
     polygons: list[Polygon] = [[ring] for ring in outlines]
     if not holes:
         return polygons
-    areas = np.array([_twice_area(points[ring]) for ring in outlines])
+    areas = np.array([twice_area(points[ring]) for ring in outlines])
     around = _Around(points, outlines)
     for hole in holes:
         own = around.rings_around(hole)
@@ -155,11 +155,6 @@ def _simple_rings(walk: list[int]) -> list[list[int]]:
             path.append(vertex)
     rings.append(path)
     return [ring for ring in rings if len(ring) > 2]
-
-
-def _twice_area(corners: np.ndarray) -> float:
-    x, y = (corners - corners[0]).T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 
 
 def _contains(points: np.ndarray, outline: np.ndarray, ring: np.ndarray) -> bool:

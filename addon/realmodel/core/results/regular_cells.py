@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.algebra import ranks_in_runs
 from ..base.errors import UsageError
 from ..base.work import native_module
 
@@ -211,7 +212,7 @@ def _over_centers(triangles: np.ndarray, nx: int, ny: int):
         of = np.repeat(part, pairs[part])
         if not len(of):
             continue
-        rank = np.arange(len(of)) - np.repeat(np.cumsum(pairs[part]) - pairs[part], pairs[part])
+        rank = ranks_in_runs(pairs[part])
         x, y = low[of, 0] + rank % wide[of, 0], low[of, 1] + rank // wide[of, 0]
         center = np.stack([x + 0.5, y + 0.5], axis=1)
         corners = triangles[of]

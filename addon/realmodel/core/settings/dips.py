@@ -3,21 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
-from .boreholes import check_column_names
-from .point_file import check_units
+from .field_table import FieldTable
 
 COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y")
 
 
 @dataclass(frozen=True)
-class DipFile:
+class DipFile(FieldTable):
     """file: a table of dips of a surface: x, y, z (optional), dip, and dip_direction or strike, in degrees.
 
     dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
@@ -28,16 +25,7 @@ class DipFile:
     model.
     """
 
-    file: str | Path
-    columns: Mapping = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    units: str | Mapping | None = None
-
-    def check(self) -> None:
-        """Raises OptionRefused for a key that makes no sense."""
-        check_column_names(self.columns, COLUMNS)
-        check_units(self.units)
+    known = COLUMNS
 
 
 @dataclass(frozen=True, eq=False)

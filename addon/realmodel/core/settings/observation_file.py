@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
-from .boreholes import check_column_names
-from .point_file import check_units
+from .field_table import FieldTable
 
 COLUMNS = ("x", "y", "z", "block", "hole", "depth")
 
 
 @dataclass(frozen=True)
-class ObservationFile:
+class ObservationFile(FieldTable):
     """file: a table with a row for each place that lies in a block: x, y, z and the block; where they are
     known the hole, and the depth along it.
 
@@ -22,13 +19,4 @@ class ObservationFile:
     decimal: as of a PointFile. units: "ft", or {"xy": "m", "z": "ft"}; None: those of the model.
     """
 
-    file: str | Path
-    columns: Mapping = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    units: str | Mapping | None = None
-
-    def check(self) -> None:
-        """Raises OptionRefused for a key that makes no sense."""
-        check_column_names(self.columns, COLUMNS)
-        check_units(self.units)
+    known = COLUMNS

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..base.units import METERS, factor
+from ..base.units import METERS, factors
 from .method_options import OptionRefused
 
 
@@ -108,9 +108,8 @@ class MeshFile:
 
     def scale(self, model_unit: str) -> tuple[float, float]:
         """The factors of plan coordinates and heights."""
-        units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
-        upward = -1.0 if self.z_axis == "down" else 1.0
-        return factor(units.get("xy"), model_unit), upward * factor(units.get("z"), model_unit)
+        plan, height = factors(self.units, model_unit)
+        return plan, -height if self.z_axis == "down" else height
 
 
 def list_of(value) -> list:

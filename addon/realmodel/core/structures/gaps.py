@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.algebra import dot, norm, principal_axes
+from ..base.algebra import dot, norm, principal_axes, ranks_in_runs
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
@@ -343,8 +343,7 @@ def _spread(vertices: np.ndarray, border: Border, width: float):
     size = norm(end - begin)
     count = np.clip(np.ceil(2 * size / width), *_SAMPLES).astype(np.int64)
     edge = np.repeat(np.arange(len(size)), count)
-    at = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-    share = (at + 0.5) / count[edge]
+    share = (ranks_in_runs(count) + 0.5) / count[edge]
     return begin[edge] + share[:, None] * (end - begin)[edge], edge, (size / count)[edge]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.algebra import norm
 from ..base.sheet import Sheet
 from ..base.triangles import median_edge
 from ..base.work import Work, native_module
@@ -103,7 +104,7 @@ def _off_structures(observations: Observations, reach: float, sides) -> np.ndarr
     ends = np.concatenate([upper, lower])
     same = (inward >= 0) & (blocks[inward] == blocks[ends]) & (holes[inward] == holes[ends])
     way = np.where(same[:, None], places[inward] - places[ends], 0.0)
-    length = np.sqrt((way**2).sum(axis=1, keepdims=True))
+    length = norm(way)[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
         step = np.where(length > 0, way * np.minimum(1.0, reach / length), 0.0)
     inner = places[ends] + step

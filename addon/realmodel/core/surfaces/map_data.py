@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.algebra import norm, twice_area
 from ..base.errors import InputRefused, naming
 from ..base.text import no_step
 from ..base.units import MODEL_UNIT
@@ -93,14 +94,9 @@ def _spacing(rock: Rock, rings: list[np.ndarray], box: np.ndarray) -> float:
     if isinstance(rock.edge_length, (int, float)):
         return float(rock.edge_length)
     if rock.triangles is not None:
-        area = abs(sum(_twice_area(ring) for ring in rings)) / 2
+        area = abs(sum(twice_area(ring) for ring in rings)) / 2
         return float(np.sqrt(4 / np.sqrt(3) * area / rock.triangles))
-    return float(np.sqrt(((box[1] - box[0]) ** 2).sum())) / _PARTS
-
-
-def _twice_area(ring: np.ndarray) -> float:
-    x, y = (ring - ring[0]).T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+    return float(norm(box[1] - box[0])) / _PARTS
 
 
 def _fault_lines(project: Project, given: MapFile) -> list[np.ndarray]:

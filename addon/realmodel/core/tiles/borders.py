@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.algebra import begins_run
+from ..base.algebra import begins_run, ranks_in_runs
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..cells.model_data import SomeModel
 
@@ -219,7 +219,7 @@ def _insertion(
     backward = first > second
     size = count[place]
     inserted = _spread(first_new[place], size)
-    step = np.arange(len(inserted)) - np.repeat(np.cumsum(size) - size, size)
+    step = ranks_in_runs(size)
     inserted = np.where(
         np.repeat(backward, size), np.repeat(first_new[place] + size - 1, size) - step, inserted
     )
@@ -248,8 +248,7 @@ def _numbered(
 
 def _spread(begin: np.ndarray, count: np.ndarray) -> np.ndarray:
     """begin[0], begin[0] + 1, ... count[0] of them, then those of the next."""
-    before = np.cumsum(count) - count
-    return np.repeat(begin - before, count) + np.arange(int(count.sum()))
+    return np.repeat(begin, count) + ranks_in_runs(count)
 
 
 @dataclass(frozen=True)

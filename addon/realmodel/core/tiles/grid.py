@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.algebra import ranks_in_runs
 from ..base.errors import UsageError
 from ..base.mapped_arrays import in_pieces
 from ..base.sheet import Sheet
@@ -149,7 +150,7 @@ def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, 
         if int(tiles.sum()) > len(corners):
             own = np.repeat(own, tiles)
             column, row = column[own], row[own]
-            nth = np.arange(len(own)) - np.repeat(np.cumsum(tiles) - tiles, tiles)
+            nth = ranks_in_runs(tiles)
             column, row = column + nth // count[1][own], row + nth % count[1][own]
         for tile, which in _grouped(column, row, grid):
             yield tile, (own[which] + begin).astype(np.int32)

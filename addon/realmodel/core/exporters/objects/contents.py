@@ -17,6 +17,7 @@ from ..shapes.parts import FaceTriangles, Part, distinct_names, model_parts, sur
 WALL, BASE, CUT = "wall", "base", "cut"
 _OF_NO_SURFACE = (CUT, BASE, WALL)  # face_surface -3, -2, -1
 _KINDS = ("Interfaces", "Faults", "Bodies")  # surface_kind
+_OF_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,12 @@ class BlockShell:
     surface: np.ndarray
     neighbor: np.ndarray
     entry: Property | None
+
+    @property
+    def known(self) -> dict[str, str | float]:
+        """What the library says of it, but for its looks."""
+        values = {key: getattr(self.entry, key, None) for key in _OF_PROPERTY}
+        return {key: value for key, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +67,11 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a file of objects holds; no two parts have one name, and no two holes. block_names: of all blocks
-    of the model, in the file. boundary_names: of surfaces, then of walls, base and cuts."""
+    """What a file of objects holds; no two parts have one name, and no two holes. triangles: of the blocks.
+    block_names: of all blocks of the model, in the file. boundary_names: of surfaces, then of walls, base and
+    cuts."""
 
+    triangles: FaceTriangles
     blocks: list[BlockShell]
     surfaces: list[SurfaceShape]
     holes: list[Hole]
@@ -72,13 +81,13 @@ class Contents:
     @classmethod
     def of(cls, model) -> Contents:
         """Those of a model."""
-        parts, library = model_parts(model), model.project.library
+        triangles = FaceTriangles.of(model)
+        parts, library = model_parts(model, triangles), model.project.library
         shapes, holes = surface_parts(model), _holes(model)
         names = distinct_names(part.name for part in (*parts, *shapes))
         parts = [replace(part, name=name) for part, name in zip(parts, names, strict=False)]
         shapes = [replace(part, name=name) for part, name in zip(shapes, names[len(parts) :], strict=True)]
         named = zip(holes, distinct_names(hole.name for hole in holes), strict=True)
-        triangles = FaceTriangles.of(model)
         existing = [number for number, block in enumerate(model.blocks) if block.cells]
         block_names = [block.name for block in model.blocks]
         count = len(model.surface_names)
@@ -93,6 +102,7 @@ class Contents:
             entry = library.get(part.property) if library else None
             blocks.append(BlockShell(number, part, surface, neighbor, entry))
         return cls(
+            triangles,
             blocks,
             [
                 SurfaceShape(part, _KINDS[model.surface_kind[number]], _known_values(model, number))

@@ -17,6 +17,7 @@ import numpy as np
 from ...base.atomic import Outputs
 from ...base.packages import extra
 from ...results.regular_cells import RegularCells, regular_cells
+from ...results.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _UNITS = {"m": "meter", "ft": "feet"}  # those that a workspace has
@@ -93,10 +94,8 @@ class _Objects:
         return made
 
     def _block(self, shell: BlockShell) -> None:
-        block, entry = self._model.blocks[shell.number], shell.entry
+        block = self._model.blocks[shell.number]
         made = self._triangles(shell, "Blocks")
-        keys = ("name", "rock", "age", "structure", "density", "description") if entry else ()
-        known = {key: getattr(entry, key) for key in keys}
         made.metadata = {
             **(made.metadata or {}),
             "RealModel": {
@@ -104,7 +103,7 @@ class _Objects:
                 "block": block.name,
                 "property": block.property,
                 "volume": block.volume,
-                **{key: value for key, value in known.items() if value is not None},
+                **shell.known,
             },
         }
         self._named(made, "surface", "CELL", shell.surface, self._contents.boundary_names)
@@ -120,7 +119,7 @@ class _Objects:
         part = shape.part
         cells = part.triangles.astype(np.int32)
         made = self._create("Surface", part.name, group, vertices=part.vertices, cells=cells)
-        color = np.rint(255 * np.array(part.color)).astype(int).tolist()
+        color = rgb_bytes(np.array(part.color)).tolist()
         self._add(made, "Visual Parameters", "OBJECT", _visual_parameters(color), {"primitive_type": "TEXT"})
         return made
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import extra
-from ..shapes.parts import FaceTriangles
+from ...results.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole
 from .ifc_entities import Entities
 
@@ -39,7 +39,7 @@ class _Writer:
 
     def __init__(self, entities: Entities, model, contents: Contents):
         self.entities, self._model, self._contents = entities, model, contents
-        self._triangles = FaceTriangles.of(model)
+        self._triangles = contents.triangles
         self._materials: dict[int, list] = {}  # elements by the number of their property
 
     def write(self, step: Callable[[float], None]) -> None:
@@ -76,19 +76,16 @@ class _Writer:
         return made
 
     def _describe(self, made, shell: BlockShell) -> None:
-        entities, block, entry = self.entities, self._model.blocks[shell.number], shell.entry
-        red, green, blue = (int(value) for value in np.rint(255 * np.array(shell.part.color)))
-        entities.properties(
-            made, "Pset_GeotechnicalStratumCommon", {"StratumColour": f"#{red:02x}{green:02x}{blue:02x}"}
-        )
+        entities, block = self.entities, self._model.blocks[shell.number]
+        color = rgb_bytes(np.array(shell.part.color)).tobytes().hex()
+        entities.properties(made, "Pset_GeotechnicalStratumCommon", {"StratumColour": f"#{color}"})
         known = {
             "RockMass": self._model.project.rocks[block.rock].name,
             "Surface": self._model.surface_names[block.surface],
             "Property": block.property,
             "Components": block.components,
         }
-        for key in ("name", "rock", "age", "structure", "density", "description") if entry else ():
-            known[f"Property{key.capitalize()}"] = getattr(entry, key)
+        known |= {f"Property{key.capitalize()}": value for key, value in shell.known.items()}
         entities.properties(made, "RealModel_Block", known)
         entities.volume(made, "Qto_VolumetricStratumBaseQuantities", block.volume)
 

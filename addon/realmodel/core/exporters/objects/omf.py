@@ -19,11 +19,11 @@ import numpy as np
 from ...base.atomic import Outputs
 from ...base.packages import omf_library, quiet
 from ...results.regular_cells import regular_cells
+from ...results.section_data import rgb_bytes
 from ..shapes.parts import Part
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _LONG_AGO = datetime.datetime(1970, 1, 1)  # of all that the library dates: the same model has the same bytes
-_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
 
 
 def write_omf(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
@@ -105,12 +105,14 @@ class _Elements:
         indices = np.zeros(len(shell.surface), np.int64)
         data = self._mapped("property", "faces", indices, [shell.part.material])
         legends = [self._legend("id", self._omf.ScalarArray(np.array([shell.part.property])))]
-        for key in _PROPERTY[1:] if shell.entry else ():
-            value = getattr(shell.entry, key)
-            if isinstance(value, float):
-                legends.append(self._legend(key, self._omf.ScalarArray(np.array([value]))))
-            elif value is not None:
-                legends.append(self._legend(key, self._omf.StringArray(array=[value])))
+        for key, value in shell.known.items():
+            if key == "name":  # it is the legend of the numbers
+                continue
+            is_text = isinstance(value, str)
+            array = (
+                self._omf.StringArray(array=[value]) if is_text else self._omf.ScalarArray(np.array([value]))
+            )
+            legends.append(self._legend(key, array))
         data.legends = [*data.legends, *legends]
         return data
 
@@ -126,7 +128,7 @@ class _Elements:
         return omf.SurfaceElement(
             name=part.name,
             description=description,
-            color=tuple(int(value) for value in np.rint(255 * np.array(part.color))),
+            color=tuple(rgb_bytes(np.array(part.color)).tolist()),
             geometry=omf.SurfaceGeometry(
                 vertices=omf.Vector3Array(part.vertices),
                 triangles=omf.Int3Array(part.triangles.astype(np.int64)),

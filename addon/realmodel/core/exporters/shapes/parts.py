@@ -77,12 +77,13 @@ class FaceTriangles:
         return own, corners
 
 
-def model_parts(model) -> list[Part]:
-    """The closed boundary of each existing block, named after it. Blocks share the triangles between them."""
+def model_parts(model, triangles: FaceTriangles | None = None) -> list[Part]:
+    """The closed boundary of each existing block, named after it. Blocks share the triangles between them.
+    triangles: those of the model, where they are known already."""
     names = distinct_names(block.name for block in model.blocks)
     materials, colors = block_materials(model), model.block_colors.tolist()
     parts = []
-    triangles = FaceTriangles.of(model)
+    triangles = triangles or FaceTriangles.of(model)
     for number, block in enumerate(model.blocks):
         if not block.cells:
             continue

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factor
+from ...base.units import MODEL_UNIT, factors
 from ...settings.dips import DipFile, Dips
 from ...settings.directions import unit_vector
 from .hole_tables import Row, rows
@@ -43,8 +42,7 @@ def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
     """The dips of a table, in the model's unit. Raises InputRefused naming file and line."""
     file = Path(given.file)
-    units = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
-    plan, height = factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
+    plan, height = factors(given.units, model_unit)
     places, gradients, z = [], [], []
     for row in rows(given, file, DIPS, ("x", "y"), step):
         places.append((plan * row.number("x"), plan * row.number("y")))

@@ -16,7 +16,7 @@ from ...base.errors import InputRefused
 from ...base.text import Step
 from .hole_tables import INTERVALS, Row, rows
 from .holes import Holes
-from .observations import LeftOut, Observations
+from .observations import LeftOut, Observations, unknown_block
 from .unit_names import UnitNames
 
 _ALIKE = 1e-6  # of the largest depth in a hole: depths that are nearer are one, which digits have parted
@@ -118,8 +118,7 @@ def known_interval(
         return None
     block = units.block(code)
     if block is None:
-        text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
-        left_out.append(LeftOut("unknown_block", text, code, hole, begin))
+        left_out.append(unknown_block(where, code, hole, begin))
         return None
     return (begin, end, block) if begin < end else None  # of no thickness: the unit is absent
 

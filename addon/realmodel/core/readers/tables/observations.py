@@ -109,6 +109,14 @@ class LeftOut:
     place: tuple[float, ...] | None = None
 
 
+def unknown_block(
+    where: str, code: str, hole: str = "", depth: float | None = None, place: tuple[float, ...] | None = None
+) -> LeftOut:
+    """What is left out as its name, `code`, means no block. where: it in messages."""
+    text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
+    return LeftOut("unknown_block", text, code, hole, depth, place)
+
+
 # Why observations are not used, by the kind of their warning: found in their tables, or from their places.
 IN_TABLES = {
     "overlap": "intervals or polygons of different blocks overlap, and what both claim is not used",

@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factor
+from ...base.units import MODEL_UNIT, factors
 from ...settings.observation_file import ObservationFile
 from .hole_tables import OBSERVED, rows
-from .observations import LeftOut, Observations
+from .observations import LeftOut, Observations, unknown_block
 from .unit_names import UnitNames
 
 
@@ -22,8 +21,8 @@ def read_observed_places(
 ) -> tuple[Observations, list[LeftOut]]:
     """The places of a table, in the model's unit and in its order, and those that are not used. Raises
     InputRefused naming file and line."""
-    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
-    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
+    plan, height = factors(given.units, model_unit)
+    scale = np.array([plan, plan, height])
     places, blocks, holes, depths = [], [], [], []
     left_out: list[LeftOut] = []
     count = 0
@@ -41,9 +40,7 @@ def read_observed_places(
             continue
         place = np.array([row.number(axis) for axis in "xyz"]) * scale
         if block is None:
-            text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
-            at = tuple(place.tolist())
-            left_out.append(LeftOut("unknown_block", text, code, hole, None, at))
+            left_out.append(unknown_block(where, code, hole, place=tuple(place.tolist())))
             continue
         places.append(place)
         blocks.append(block)

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.algebra import norm, ranks_in_runs
 from ...base.errors import number_list, place_text
 from ...base.work import native_module, on_threads
 from ...readers.maps.unit_polygons import UnitPolygon
-from ...readers.tables.observations import LeftOut, Observations
+from ...readers.tables.observations import LeftOut, Observations, unknown_block
 from ...readers.tables.unit_names import UnitNames
 from .polygon_borders import Apart, BorderLine, border_lines, inside, places_along
 
@@ -70,8 +71,7 @@ def _blocks(polygons: list[UnitPolygon], units: UnitNames) -> tuple[list[str], l
     for each in polygons:
         block = "" if units.says_nothing(each.unit) else units.block(each.unit)
         if block is None:
-            what = "this is no block, surface or body, or several blocks; give its meaning in names"
-            left_out.append(LeftOut("unknown_block", f"{each.item}, '{each.unit}': {what}", each.unit))
+            left_out.append(unknown_block(f"{each.item}, '{each.unit}'", each.unit))
         found.append(block or "")
     return found, left_out
 
@@ -98,10 +98,10 @@ class _Near:
         parts = [np.empty((0, 2))]
         for line in lines:
             way = np.diff(line, axis=0)
-            count = np.maximum(np.ceil(np.sqrt((way**2).sum(axis=1)) / step), 1).astype(np.int64)
+            count = np.maximum(np.ceil(norm(way) / step), 1).astype(np.int64)
             edge = np.repeat(np.arange(len(way)), count)
-            part = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-            parts += [line[edge] + (part / count[edge])[:, None] * way[edge], line[-1:]]
+            share = ranks_in_runs(count) / count[edge]
+            parts += [line[edge] + share[:, None] * way[edge], line[-1:]]
         self._points = np.concatenate(parts)
 
     def distance(self, plan: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.algebra import norm, ranks_in_runs, twice_area
 from ...base.work import native_module, on_threads
 from ...readers.maps.unit_polygons import UnitPolygon
 
@@ -91,8 +92,7 @@ def _turned(polygon: UnitPolygon) -> list[np.ndarray]:
         else:
             others = polygon.rings[:number] + polygon.rings[number + 1 :]
             is_hole = bool(inside(others, 0.5 * (ring[:1] + ring[1:2]))[0])
-        x, y = (ring - ring[0]).T
-        is_left = float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum()) > 0
+        is_left = twice_area(ring) > 0
         found.append(ring if is_left != is_hole else ring[::-1])
     return found
 
@@ -110,8 +110,7 @@ def inside(rings: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
     last = np.searchsorted(y, np.maximum(begin[:, 1], end[:, 1]))
     count = last - first
     edge = np.repeat(np.arange(len(begin)), count)
-    row = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
-    at = order[row]
+    at = order[ranks_in_runs(count) + np.repeat(first, count)]
     rises = begin[edge, 1] < end[edge, 1]
     lower, upper = (
         np.where(rises[:, None], *each) for each in ((begin[edge], end[edge]), (end[edge], begin[edge]))
@@ -153,7 +152,7 @@ def _at_ends(plan: np.ndarray, edges: _Edges, near: float) -> _Edges:
     pairs = native_module().meeting_boxes(boxes, plan[among][:, None])
     edge, vertex = pairs[:, 0], among[pairs[:, 1]]
     way, to = end[edge] - begin[edge], plan[vertex] - begin[edge]
-    length = np.sqrt((way**2).sum(axis=1))
+    length = norm(way)
     along = (to * way).sum(axis=1) / length
     across = np.abs(way[:, 0] * to[:, 1] - way[:, 1] * to[:, 0]) / length
     on = (
@@ -183,11 +182,11 @@ def _near(
     if len(np.unique(edges.owner)) < 2:
         return plan, nothing, []
     begin, way = plan[edges.ends[:, 0]], plan[edges.ends[:, 1]] - plan[edges.ends[:, 0]]
-    length = np.sqrt((way**2).sum(axis=1))
+    length = norm(way)
     reach = _BESIDE * spacing
     count = np.maximum(np.ceil(length / (_PIECES * reach)), 1).astype(np.int64)
     edge = np.repeat(np.arange(len(count)), count)
-    part = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    part = ranks_in_runs(count)
     middle = begin[edge] + ((part + 0.5) / count[edge])[:, None] * way[edge]
     owner = edges.owner[edge]
     number, away = native_module().nearest_points(middle, middle, _NEIGHBORS, execution=on_threads(0))
@@ -282,7 +281,7 @@ def places_along(line: BorderLine, spacing: float) -> tuple[np.ndarray, np.ndarr
     (N,) the edge that each lies on or begins."""
     corners = np.concatenate([line.corners, line.corners[:1]]) if line.closed else line.corners
     way = np.diff(corners, axis=0)
-    length = np.sqrt((way**2).sum(axis=1))
+    length = norm(way)
     reached = np.concatenate([[0.0], np.cumsum(length)])
     count = max(int(np.rint(reached[-1] / spacing)), 1)
     wanted = (np.arange(count) + 0.5) * (reached[-1] / count)
