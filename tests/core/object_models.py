@@ -11,8 +11,8 @@ COLLARS = "hole,x,y,z,azimuth,dip\nB1,400000.75,5300001,9,,\nB2,400000.5,5300000
 PICKS = "hole,surface,depth\nB1,S3,7.5\nB1,S2,8\nB1,S0,9\nB2,S2,8.25\nB2,S1,8.5\n"
 
 
-def crossing_model(write, crs="EPSG:25832"):
-    """Three layers that cross and a base, some of them in several parts, and two boreholes, one inclined."""
+def crossing_surfaces(shift):
+    """Four that cross, with two blocks of one name."""
 
     def height(k):
         return lambda x, y: 0.3 * k + 0.4 * np.sin(5 * x + k) * np.cos(4 * y - k)
@@ -21,7 +21,13 @@ def crossing_model(write, crs="EPSG:25832"):
     surfaces = []
     for k in range(4):
         vertices, triangles = grid_surface(7 + k, height(k))
-        surfaces.append(Surface(f"S{k}", vertices + SHIFT, triangles, property=k % 3, block=names[k]))
+        surfaces.append(Surface(f"S{k}", vertices + shift, triangles, property=k % 3, block=names[k]))
+    return surfaces
+
+
+def crossing_model(write, crs="EPSG:25832"):
+    """Three layers that cross and a base, some of them in several parts, and two boreholes, one inclined."""
+    surfaces = crossing_surfaces(SHIFT)
     region = [[400_000.25, 5_300_000.5], [400_001.25, 5_300_000.5], [400_001.25, 5_300_001.5]]
     region.append([400_000.25, 5_300_001.5])
     surfaces.append(Surface("cover", method="constant", options={"value": 3.0}, block="Cover"))

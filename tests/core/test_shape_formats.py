@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import grid_surface
-from object_models import assert_closed, volume
-from realmodel.core import Library, Project, Property, Rock, Surface, build, build_surfaces
+from object_models import assert_closed, crossing_surfaces, volume
+from realmodel.core import Library, Project, Property, Rock, build, build_surfaces
 from realmodel.core.readers import read_mesh
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -15,15 +14,7 @@ NAMES = ["base block", "Grès à Voltzia", "Clay", "Clay (2)"]
 
 
 def rocks(shift):
-    def height(k):
-        return lambda x, y: 0.3 * k + 0.4 * np.sin(5 * x + k) * np.cos(4 * y - k)
-
-    names = [None, "Grès à Voltzia", "Clay", "Clay"]
-    surfaces = []
-    for k in range(4):
-        vertices, triangles = grid_surface(7 + k, height(k))
-        surfaces.append(Surface(f"S{k}", vertices + shift, triangles, property=k % 3, block=names[k]))
-    return [Rock("rock", surfaces, base_elevation=-2.0)]
+    return [Rock("rock", crossing_surfaces(shift), base_elevation=-2.0)]
 
 
 @pytest.fixture(scope="module")
