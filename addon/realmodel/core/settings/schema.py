@@ -90,6 +90,7 @@ ROCK = {
     "constraints": _OTHER,
     "boreholes": _OTHER,
     "observations": _OTHER,
+    "dips": _OTHER,
     "map": _OTHER,
     "names": _OTHER,
 }
