@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-
 from realmodel.core.fields import Lattice, ScalarField
 
 LATTICE = Lattice((-1.0, 2.0, 10.0), (0.5, 1.0, 2.0), (4, 3, 5))

@@ -80,7 +80,7 @@ class Lattice:
         last = np.subtract(self.counts, 2)
         cells = np.clip(np.floor(np.nan_to_num(places)), 0, last).astype(np.int64)
         shares = places - cells
-        inside = ((shares >= 0) & (shares <= 1)).all(axis=1)
+        inside = np.all((shares >= 0) & (shares <= 1), axis=1, keepdims=True)
         walk = np.argsort(-shares, axis=1, kind="stable")
         down = np.take_along_axis(shares, walk, axis=1)
         weights = np.empty((len(places), 4))
@@ -89,7 +89,7 @@ class Lattice:
         strides = self.strides
         first = (cells * strides).sum(axis=1)
         nodes = np.column_stack([first, first[:, None] + np.cumsum(strides[walk], axis=1)])
-        return nodes, np.where(inside[:, None], weights, np.nan)
+        return nodes, np.where(inside, weights, np.nan)
 
 
 @dataclass(frozen=True, eq=False)
