@@ -61,8 +61,9 @@ def ground_number(rock) -> int | None:
     ground = ground_file(rock)
     if ground is None:
         return names.index(rock.map.ground) if rock.map.ground in names else youngest
-    file, own = getattr(ground, "file", ground), rock.surfaces[-1].input_file
-    return youngest if own is None or Path(own) == Path(file) else None
+    file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
+    own = rock.surfaces[-1].input_file
+    return youngest if own is None or Path(own) == file else None
 
 
 def files_of_map(rock) -> list[Path]:

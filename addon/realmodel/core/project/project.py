@@ -173,9 +173,9 @@ class Rock(Entry):
     blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
     they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
-    those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it. `names`
-    says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface or body, or ""
-    for nothing.
+    those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
+    `names` says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface
+    or body, or "" for nothing.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.

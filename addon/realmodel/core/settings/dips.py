@@ -41,10 +41,10 @@ class Dips:
     along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
     says on which side of a fault a dip is, and in which block one is that names none.
 
-    Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None. blocks:
-    (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or None. A
-    dip of a block counts for the surfaces under and over it that are conformable with it, one without a name
-    for all that no unconformity parts from it."""
+    Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
+    blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
+    None. A dip of a block counts for the surfaces under and over it that are conformable with it, one
+    without a name for all that no unconformity parts from it."""
 
     positions: np.ndarray
     gradients: np.ndarray
@@ -83,7 +83,9 @@ class Dips:
             for key in ("positions", "gradients")
         )
         z = np.concatenate([np.empty(0), *(part.heights for part in parts)])
-        names = [np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)]
+        names = [
+            np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
+        ]
         if not names or not any((each != "").any() for each in names):
             return cls(positions, gradients, z)
         return cls(positions, gradients, z, *names)

@@ -46,8 +46,8 @@ class FieldData:
 
 
 def read_field_data(project: Project, rock: Rock) -> FieldData:
-    """Reads the boreholes, observations, map and dips of a rock mass. Contacts are those of surfaces that reach
-    everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    """Reads the boreholes, observations, map and dips of a rock mass. Contacts are those of surfaces that
+    reach everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
     given = rock
     rock, map_warnings = with_ground(rock), list[str]()
     bodies = [body.name for body in project.bodies]
@@ -88,7 +88,9 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         names={},
         hole_picks=picks.holes or rock.hole_picks,
     )
-    return FieldData(read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped)
+    return FieldData(
+        read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped
+    )
 
 
 def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, list[LeftOut]]:

@@ -82,8 +82,8 @@ def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observatio
 
 
 def blocks_on_map(project: Project, rock: Rock, units: UnitNames, plan: np.ndarray) -> np.ndarray:
-    """(N,) texts: the blocks that the map shows at places (N, 2), by the surfaces over them; "" where it shows
-    none. Raises InputRefused."""
+    """(N,) texts: the blocks that the map shows at places (N, 2), by the surfaces over them; "" where it
+    shows none. Raises InputRefused."""
     assert rock.map is not None
     with naming(rock.item):
         polygons, _ = read_unit_polygons(rock.map, project.units)

@@ -30,10 +30,7 @@ from .rock_input import RockInput
 from .wrong_sides import heights_at
 
 
-
-def apply_dips(
-    work: Work, entry: RockInput, ground: int | None, mapped: np.ndarray | None
-) -> None:
+def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndarray | None) -> None:
     """Gives each surface of a RockInput that is read, but not interpolated, the dips of its rock mass that
     count for it. ground: the number of the surface that is the ground of a map; mapped: (D,) texts, the
     blocks that this shows at dips, as of FieldData. Raises InputRefused where a dip names a surface that uses
@@ -58,7 +55,7 @@ def apply_dips(
         own = Dips(dips.positions[rows], dips.gradients[rows], dips.heights[rows])
         given[number] = replace(surface, rock_dips=own if len(own) else None)
     entry.rock = replace(rock, surfaces=given)
-    for row in np.flatnonzero(is_known & ~counts.any(axis=1)):
+    for row in np.flatnonzero(is_known & ~counts.any(axis=1)).tolist():
         entry.left_out.append(LeftOut("dip_surface", _called(dips, row), place=_place(dips, row)))
 
 
@@ -83,7 +80,7 @@ def _named(entry: RockInput, dips: Dips, ground: int | None) -> tuple[np.ndarray
     is_known = np.where(by_block, blocks >= 0, (of_surfaces == "") | np.isin(of_surfaces, names))
     beside = beside_blocks([surface.rule for surface in rock.surfaces], ground)
     counts[blocks >= 0] = beside[blocks[blocks >= 0]]
-    for row in np.flatnonzero(~is_known):
+    for row in np.flatnonzero(~is_known).tolist():
         name = str(of_surfaces[row] or of_blocks[row])
         entry.left_out.append(LeftOut("dip_unit", _called(dips, row), name, place=_place(dips, row)))
     return counts, is_known
@@ -95,8 +92,8 @@ def _of_default_rules(rock: Rock, count: int) -> list[BuildWarning]:
     if not count or len(rules) < 2 or not all(RULES[rule].cuts for rule in rules[1:]):
         return []
     text = (
-        f"{count} dips of blocks count for the surface under their block only, as each surface cuts the block "
-        "beneath it: give those that are parallel to it the rule conformable"
+        f"{count} dips of blocks count for the surface under their block only, as each surface cuts the "
+        "block beneath it: give those that are parallel to it the rule conformable"
     )
     return [BuildWarning(text, "dips", rock.name)]
 

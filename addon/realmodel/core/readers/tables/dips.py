@@ -48,7 +48,7 @@ def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
     """The dips of a table, all of one surface, in the model's unit. Raises InputRefused naming file and
     line."""
-    return _dips(given, [row for row in rows(given, Path(given.file), DIPS, ("x", "y"), step)], model_unit)
+    return _dips(given, list(rows(given, Path(given.file), DIPS, ("x", "y"), step)), model_unit)
 
 
 def read_dips_of_rock(
