@@ -164,7 +164,7 @@ def test_methods_without_dips():
     assert found == [["S0"]]
     assert any("surface 'S1': 1 dips of blocks of the rock mass would count for it" in t for t in warnings)
     rock = replace(rock, dips=dips_of(surfaces=["S1"]))
-    with pytest.raises(InputRefused, match="name it, and method 'tin' does not use dips"):
+    with pytest.raises(InputRefused, match="name it, but method 'tin' does not use dips"):
         counted(rock)
 
 

@@ -20,13 +20,15 @@ from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..base.units import MODEL_UNIT
 from ..readers import UnitNames
-from ..settings.dips import Dips
+from ..settings.dips import Dips, SpaceDips
 from ..settings.meshers import DEFAULT_MESHER
 from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
+from ..settings.series import AUTO, FIELD
 from .library import Library, Property
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
+from .series import Series
 from .structure_entries import Body, Fault
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -89,6 +91,8 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
                 meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
                 text = dips_text(replace(rock.dips, surfaces=surfaces, blocks=meant))
                 lines.append(f"dips = {toml_value(write(target, text))}")
+            for series in rock.series:
+                lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
                 files = _surface_files(rock, surface, beside, write)
                 lines += ["", "[[rock.surface]]", *_surface_lines(surface, files)]
@@ -156,11 +160,26 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
+def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
+    if series.dip_file is not None:
+        raise UsageError(f"{series.item}: its file has not been read; build the model first")
+    dips, file = series.space_dips(), None
+    if dips is not None and len(dips):
+        file = write(beside(rock.name, series.name, "dips", ending=".csv"), space_dips_text(dips))
+    values = {
+        "name": series.name,
+        "kind": series.kind if series.kind != FIELD else None,
+        "dips": file,
+        "resolution": series.resolution if series.resolution != AUTO else None,
+    }
+    return _lines(values)
+
+
 def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str]:
     """The names of the files of a surface, by their keys."""
     if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
-    if surface.interpolated:
+    if surface.interpolated or surface.is_level_set:
         points = surface.own_points()  # its contacts follow from the observations again
         dips, files = surface.own_dips(), {}
         if points is not None and len(points):
@@ -176,7 +195,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
 
 def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     given = surface
-    values: dict[str, object] = {"name": given.name, **files}
+    values: dict[str, object] = {"name": given.name, "series": given.series, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     values |= {
@@ -268,6 +287,11 @@ def _block_codes(rock: Rock) -> dict[str, str]:
         name: next((each for each in (name, block) if units.block(each) == name), name)
         for name, block in zip(surfaces, rock.block_names(), strict=True)
     }
+
+
+def space_dips_text(dips: SpaceDips) -> bytes:
+    """Dips in space as CSV: their normals, of which angles would not give back each bit."""
+    return b"x,y,z,normal_x,normal_y,normal_z\n" + _rows(np.hstack([dips.positions, dips.normals]), ",")
 
 
 def observations_text(rock: Rock) -> bytes:

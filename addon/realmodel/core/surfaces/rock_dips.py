@@ -103,20 +103,29 @@ def _require_dips(rock: Rock, number: int) -> None:
     surface = rock.surfaces[number]
     if uses_dips(surface):
         return
-    what = "dips of the rock mass name it, and a ready mesh uses none"
-    advice = "leave them out, or give it points"
-    if surface.interpolated:
-        what = f"dips of the rock mass name it, and method '{surface.method}' does not use dips"
+    advice = "leave them out"
+    if surface.is_level_set:
+        advice = "give them to its series"
+    elif surface.interpolated:
         advice = f"{', '.join(name for name, each in METHODS.items() if each.is_constrained)} use them"
     file, line = rock.place_of("dips")
+    what = f"dips of the rock mass name it, but {_why_none(surface)}"
     raise InputRefused(what, file=file, line=line, item=surface_item(rock, surface), advice=advice)
 
 
 def _not_used(rock: Rock, number: int, count: int) -> BuildWarning:
     surface = rock.surfaces[number]
-    why = f"method '{surface.method}' does not use dips" if surface.interpolated else "a ready mesh uses none"
-    text = f"{count} dips of blocks of the rock mass would count for it, but {why}"
+    text = f"{count} dips of blocks of the rock mass would count for it, but {_why_none(surface)}"
     return BuildWarning(text, "dips", rock.name, surface.name)
+
+
+def _why_none(surface: Surface) -> str:
+    """Why dips of the rock mass have no effect on a surface."""
+    if surface.is_level_set:
+        return f"it is a level set of series '{surface.series}', which has its own"
+    return (
+        f"method '{surface.method}' does not use dips" if surface.interpolated else "a ready mesh uses none"
+    )
 
 
 def _blocks_of(work: Work, entry: RockInput, dips: Dips, shown: np.ndarray | None) -> np.ndarray:
