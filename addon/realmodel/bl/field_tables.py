@@ -39,7 +39,8 @@ class FieldTables:
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: of one surface, rock_dips: with their surfaces and blocks; None where there are none. new: units that no surface, block or body is called, to be added."""
+    dips: of one surface, rock_dips: with their surfaces and blocks; None where there are none. new: units
+    that no surface, block or body is called, to be added."""
 
     picks: Picks
     observations: Observations

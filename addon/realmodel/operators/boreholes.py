@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
 
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
