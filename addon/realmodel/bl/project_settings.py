@@ -388,7 +388,11 @@ def fill(scene, project):
 
 
 def add_rock(group, rock):
-    """A row for a realmodel.core.Rock."""
+    """A row for a realmodel.core.Rock. Raises InputRefused for one with series, which no row has yet."""
+    for series in rock.series:
+        raise series.refused(
+            "series are not in the panel yet", None, "build it by build_model.py without --blend", rock.item
+        )
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
