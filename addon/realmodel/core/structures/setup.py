@@ -16,6 +16,7 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
+from ..settings.series import FIELD
 from ..surfaces.field_data import left_out_warnings
 from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_input import RockInput
@@ -38,7 +39,7 @@ def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tup
     """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
     surfaces are read. Raises InputRefused."""
     for rock in project.rocks:
-        for series in rock.series:
+        for series in (each for each in rock.series if each.kind == FIELD):
             raise series.refused("series cannot be built yet", item=f"{rock.item}, {series.item}")
     inputs = read_rocks(work, project, reader)
     faults, bodies, warnings = read_structures(work, project, inputs)

@@ -27,6 +27,7 @@ from .field_data import FieldData, apply_observations, left_out_warnings, read_f
 from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
+from .sheet_series import with_least_thickness
 from .surface_heights import give_heights, interpolation_order, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
 from .wrong_order import points_above_younger
@@ -67,7 +68,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
             for text in each.warnings
         ]
         warnings += of_picks
-        rock = replace(rock, surfaces=[each.surface for each in own])
+        rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:

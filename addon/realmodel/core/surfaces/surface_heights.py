@@ -21,6 +21,7 @@ from ..heights.surface_reference import heights_of
 from ..project.project import Rock, surface_item
 from ..settings.methods import checked_options
 from .rock_input import RockInput, named_surfaces
+from .sheet_series import bounds_beside, companions_of
 from .wrong_sides import heights_at, listed
 
 
@@ -97,8 +98,10 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
+            companions = companions_of(rock, number)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            result = give(method, replace(task, dips=surface.known_dips(), bounds=surface.bounds))
+            task = replace(task, dips=surface.known_dips(), companions=companions)
+            result = give(method, replace(task, bounds=bounds_beside(surface, companions)))
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
