@@ -6,5 +6,17 @@ each tetrahedron of the lattice, and the level of each surface.
 """
 
 from .lattice import Lattice, ScalarField
+from .level_sets import level_solids, with_contacts, within_lattice
+from .solve import Anisotropy, FieldData, SolvedField, solve_field
 
-__all__ = ["Lattice", "ScalarField"]
+__all__ = [
+    "Anisotropy",
+    "FieldData",
+    "Lattice",
+    "ScalarField",
+    "SolvedField",
+    "level_solids",
+    "solve_field",
+    "with_contacts",
+    "within_lattice",
+]
