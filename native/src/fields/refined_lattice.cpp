@@ -232,15 +232,20 @@ void RefinedLattice::add_point(std::size_t point, const Position& p) {
     }
 }
 
-/// By the tetrahedron that p is in but for rounding.
+/// By the tetrahedron that p is in but for rounding. Of those that are flat but for rounding their
+/// neighbors have the same values.
 double RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
                                      const Position& p) const {
+    const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
     double best = -HUGE_VAL, found = 0;
     for (const Tetrahedron& tetrahedron : tetrahedra) {
         std::array<Position, 4> at{};
-        for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t i = 0; i < 4; ++i) {
             at[i] = position(tetrahedron[i]);
+            if (at[i] == p) return value(tetrahedron[i]);
+        }
         const double whole = volume(at[0], at[1], at[2], at[3]);
+        if (whole < least_whole) continue;
         double least = HUGE_VAL, sum = 0;
         for (std::size_t i = 0; i < 4; ++i) {
             auto with = at;

@@ -349,7 +349,7 @@ TEST(BuildParts, PartsThatDoNotFitTheRestAreRefused) {
         {1, [](Faulted& own) { own.input.parts[1].rocks.emplace_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces.pop_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces[1].number = 3; }},
-        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -3; }},
+        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -4; }},
         {1, [](Faulted& own) { own.stack(1).surfaces[1].block = 3; }},
         {1, [](Faulted& own) { own.stack(1).surfaces[1].block = -2; }},
         {1, [&](Faulted& own) { own.stack(1).surfaces[1].triangles = numbers; }},

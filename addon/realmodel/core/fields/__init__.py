@@ -6,7 +6,7 @@ tetrahedron of the lattice, and the level of each surface.
 """
 
 from .lattice import Lattice, ScalarField
-from .level_sets import level_solids, with_contacts, within_lattice
+from .level_sets import are_on, level_solids, with_contacts, within_lattice
 from .solve import Anisotropy, FieldData, SolvedField, solve_field
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Lattice",
     "ScalarField",
     "SolvedField",
+    "are_on",
     "level_solids",
     "solve_field",
     "with_contacts",

@@ -20,8 +20,8 @@ _SHOWN = 5  # offenders of each test
 
 def check_points(work: Work, model, arrays: dict, places: int, seed: int) -> list[dict]:
     """The tests "places" and "surfaces" of a model with structures or level sets, as the native part gives
-    those of others: about so many points spread in the model, beside its faces, and beside faults and bodies. arrays: of the
-    model, as native tests take it."""
+    those of others: about so many points spread in the model, beside its faces, and beside faults and bodies.
+    arrays: of the model, as native tests take it."""
     random = np.random.default_rng(seed)
     began = time.perf_counter()
     points = _points(model, places, random)

@@ -7,9 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import InputRefused, naming
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, naming, place_text
+from ..base.sheet import Sheet
 from ..base.work import Work, refused_as
-from ..fields import FieldData, Lattice, level_solids, solve_field, with_contacts, within_lattice
+from ..fields import (
+    FieldData,
+    Lattice,
+    ScalarField,
+    are_on,
+    level_solids,
+    solve_field,
+    with_contacts,
+    within_lattice,
+)
 from ..project.series import Series, members
 from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
@@ -171,6 +182,21 @@ def _lattice(entry: RockInput, series: Series, data: SeriesData, top: float) -> 
     return Lattice(tuple(origin.tolist()), (step,) * 3, tuple(counts.tolist()))
 
 
+def _warn_of_missed(
+    entry: RockInput, own: SeriesField, number: int, sheets: dict[ScalarField, Sheet]
+) -> None:
+    """Adds the warning about contacts of a surface that its level set does not pass through."""
+    missed = []
+    for field, sheet in sheets.items():
+        contacts = field.points[field.point_values == field.levels[number - own.first]]
+        missed += contacts[~are_on(contacts, sheet)].tolist()
+    if missed:
+        count = "a contact lies" if len(missed) == 1 else f"{len(missed)} contacts lie"
+        text = f"{count} beside it, one at {place_text(tuple(missed[0]))}: use a finer resolution"
+        surface = entry.rock.surfaces[number].name
+        entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name, surface))
+
+
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
     """Sets the surfaces of a rock mass, and its sheets in compartments, that are level sets of a field."""
     with refused_as(lambda error: InputRefused(str(error), item=entry.rock.item, place=error.place)):
@@ -179,6 +205,7 @@ def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
             for field in own.distinct()
         }
     for number in own.numbers:
+        _warn_of_missed(entry, own, number, {field: sheets[field][number - own.first] for field in sheets})
         each = [sheets[field][number - own.first] for field in own.fields]
         if entry.structure is not None:
             for compartment, sheet in zip(entry.structure.sheets, each, strict=True):

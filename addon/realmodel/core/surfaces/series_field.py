@@ -45,10 +45,11 @@ class SeriesField:
 
     def excess(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) how much f is above the level of a surface at points (N, 3) in the compartments `where`; NaN
-        outside the lattice, or where the compartment is below 0."""
+        outside the lattice, or where the compartment is below 0; infinite above all rock."""
         found = np.full(len(points), np.nan)
         for field, compartments in self.distinct().items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
                 found[here] = field.at(points[here]) - field.levels[surface - self.first]
+        found[points[:, 2] > self.top] = np.inf
         return found
