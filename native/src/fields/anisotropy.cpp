@@ -171,15 +171,18 @@ Map3 map_of(const Anisotropy& anisotropy) {
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
                    const Execution& execution) {
     const Search search(known, execution);
-    Candidate exact = search.best(std::array{Likely{}});
-    Candidate rough = exact;
+    const auto climb = [&](Candidate best) {
+        search_first(search, normals, best);
+        search_second(search, best);
+        search_errors(search, best);
+        return best;
+    };
+    const Candidate start = search.best(std::array{Likely{}});
+    Candidate rough = start;
     search_errors(search, rough);
-    for (Candidate* best : {&exact, &rough}) {
-        search_first(search, normals, *best);
-        search_second(search, *best);
-        search_errors(search, *best);
-    }
-    return rough.likelihood > exact.likelihood + kWorth ? rough.what : exact.what;
+    Candidate best = climb(start);
+    if (rough.likelihood > start.likelihood) Search::improve(best, climb(rough), kWorth);
+    return best.what;
 }
 
 }  // namespace realmodel::fields

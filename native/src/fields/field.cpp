@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "fields/anisotropy.hpp"
 #include "fields/known_data.hpp"
+#include "fields/lattice_values.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -102,24 +103,17 @@ public:
         Field out;
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        out.values.resize(lattice.nodes());
-        parallel_ranges(
-            out.values.size(), 512, execution_,
-            [&](std::size_t from, std::size_t to) {
-                std::vector<Vec3> at(to - from);
-                const auto nx = static_cast<std::size_t>(lattice.counts[0]);
-                const auto ny = static_cast<std::size_t>(lattice.counts[1]);
-                for (std::size_t n = from; n < to; ++n) {
-                    at[n - from] = known_.frame().to_local(
-                        lattice.position(static_cast<int>(n % nx), static_cast<int>(n / nx % ny),
-                                         static_cast<int>(n / nx / ny)));
-                }
-                const std::span<double> values(out.values.data() + from, to - from);
-                spline_->values_at(at, values);
+        out.values = lattice_values(
+            lattice,
+            [&](std::span<const Vec3> positions, std::span<double> values) {
+                std::vector<Vec3> local(positions.size());
+                std::transform(positions.begin(), positions.end(), local.begin(),
+                               [&](const Vec3& at) { return known_.frame().to_local(at); });
+                spline_->values_at(local, values);
                 for (double& value : values)
                     value *= unit;
             },
-            1.0);
+            execution_);
         for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
             out.levels.push_back(unit * level(k));
         out.anisotropy = likely_.anisotropy;
@@ -304,40 +298,57 @@ private:
             level_of_.push_back(level(k));
     }
 
-    /// Those of the contacts that are missed most, no two of them near each other.
+    /// Those of the contacts that are missed most, no two of them near each other, of all surfaces
+    /// by turns.
     bool add_centers() {
         set_levels();
         const std::vector<double> missed = misfits();
         misfit_ = *std::max_element(missed.begin(), missed.end());
-        const double tolerance = std::max(options_.tolerance / known_.frame().unit, 1e3 * kMet);
         const auto have =
             static_cast<std::size_t>(std::count(is_center_.begin(), is_center_.end(), 1));
         const auto most = static_cast<std::size_t>(std::max(options_.most_centers, 1));
-        std::vector<std::size_t> order;
-        for (std::size_t n = 0; n < missed.size(); ++n) {
-            if (is_center_[n] == 0 && missed[n] > tolerance) order.push_back(n);
-        }
-        if (have >= most || order.empty()) return false;
-        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return missed[a] != missed[b] ? missed[a] > missed[b] : a < b;
-        });
+        if (have >= most) return false;
+        const std::vector<std::size_t> order = by_turns(missed);
         // Cubes as large as a center's share of the contacts' sheets.
         const double size = 1 / std::sqrt(static_cast<double>(have + most));
-        std::map<std::array<std::int64_t, 4>, char> taken;
+        std::set<std::array<std::int64_t, 4>> taken;
         std::size_t left = std::min(most - have, have);
-        bool added = false;
         for (const std::size_t n : order) {
+            if (left == 0) break;
             std::array<std::int64_t, 4> key{0, 0, 0, known_.surface_of(n)};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 key[axis] =
                     static_cast<std::int64_t>(std::floor(known_.contacts()[n][axis] / size));
             }
-            if (!taken.emplace(key, 1).second) continue;
+            if (!taken.insert(key).second) continue;
             is_center_[n] = 1;
-            added = true;
-            if (--left == 0) break;
+            --left;
         }
-        return added;
+        return !order.empty();
+    }
+
+    /// The contacts that are missed by more than the tolerance, on each surface the worst first.
+    std::vector<std::size_t> by_turns(const std::vector<double>& missed) const {
+        const double error = std::sqrt(std::max(0.0, likely_.errors.value * spline_->scale()));
+        const double tolerance =
+            std::max({options_.tolerance / known_.frame().unit, 1e3 * kMet, 2 * error});
+        std::vector<std::vector<std::size_t>> on(known_.data().surfaces);
+        for (std::size_t n = 0; n < missed.size(); ++n) {
+            if (is_center_[n] == 0 && missed[n] > tolerance) on[known_.surface_of(n)].push_back(n);
+        }
+        std::vector<std::pair<std::size_t, std::size_t>> ranked;
+        for (std::vector<std::size_t>& numbers : on) {
+            std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
+                return missed[a] != missed[b] ? missed[a] > missed[b] : a < b;
+            });
+            for (std::size_t rank = 0; rank < numbers.size(); ++rank)
+                ranked.emplace_back(rank, numbers[rank]);
+        }
+        std::sort(ranked.begin(), ranked.end());
+        std::vector<std::size_t> out;
+        for (const auto& [rank, n] : ranked)
+            out.push_back(n);
+        return out;
     }
 
     /// Inequalities that do not hold.
