@@ -11,17 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.work import native_module
+from ..base.work import Work, native_module
 from ..settings.dips import Dips
 from ..settings.variogram import Variogram
 from .mis_ties import without_mis_ties
-
-if TYPE_CHECKING:
-    from .interpolation import Task
 
 _LEAST, _MOST = 1e-3, 0.5  # of the sill of heights: the variance of one thickness
 _FEW = 8  # thicknesses at shared positions: fewer show no variance
@@ -41,11 +37,11 @@ class Companions:
     points: Sequence[np.ndarray]
     dips: Sequence[Dips | None]
 
-    def data(self, task: Task) -> tuple[list[np.ndarray], list[Dips | None]]:
+    def data(self, own: np.ndarray, own_dips: Dips | None) -> tuple[list[np.ndarray], list[Dips | None]]:
         """The points and dips of each sheet, with those of the Task."""
         points = [without_mis_ties(each)[0] if len(each) else each for each in self.points]
         dips = [None if each is None or not len(each) else each.merged()[0] for each in self.dips]
-        points[self.own], dips[self.own] = task.points, task.dips
+        points[self.own], dips[self.own] = own, own_dips
         return points, dips
 
 
@@ -102,7 +98,7 @@ def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     return np.column_stack([plan, np.bincount(place, every[:, 2]) / np.bincount(place)])
 
 
-def first_offsets(task: Task, points: Sequence[np.ndarray]) -> np.ndarray:
+def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: the median of how far its points lie above
     those of the sheet next to it whose offset is known, nearby; 0 for sheets without points."""
     count = [len(each) for each in points]
@@ -115,13 +111,17 @@ def first_offsets(task: Task, points: Sequence[np.ndarray]) -> np.ndarray:
         nearest = min(known.tolist(), key=lambda each: (abs(each - number), each))
         others = pooled([points[nearest]], offsets[[nearest]])
         plan = np.ascontiguousarray(points[number][:, :2])
-        z = task.run(native_module().idw, others, plan, neighborhood=_NEAR)
+        z = work.native(native_module().idw, others, plan, neighborhood=_NEAR)
         offsets[number] = np.median(points[number][:, 2] - z)
     return np.nan_to_num(offsets)
 
 
 def thickness_model(
-    task: Task, points: Sequence[np.ndarray], variogram: Variogram, offsets: np.ndarray
+    work: Work,
+    points: Sequence[np.ndarray],
+    variogram: Variogram,
+    offsets: np.ndarray,
+    anisotropy: dict | None,
 ) -> SheetModel:
     """The sheets' model with these offsets. Thicknesses vary as they do where two
     sheets were met at one position; where there are few such positions, as what remains of heights where the
@@ -135,10 +135,10 @@ def thickness_model(
         variance = float(np.mean(np.concatenate(away) ** 2))
         largest = max(met, key=len)
         if len(largest) >= _SHOWN:
-            fitted = Variogram.from_fit(task.run(native_module().fit_variogram, largest), False)
+            fitted = Variogram.from_fit(work.native(native_module().fit_variogram, largest), False)
             own = replace(own, model=fitted.parts()[0].model, range=fitted.range)
     else:
-        variance = _remaining(task, points, offsets, variogram)
+        variance = _remaining(work, points, offsets, variogram.native(anisotropy))
     share = float(np.clip(variance / variogram.sill, _LEAST, _MOST * structured / variogram.sill))
     variances = share * np.arange(len(points), dtype=np.float64)
     return SheetModel(offsets, variances, own)
@@ -158,7 +158,7 @@ def _met(older: np.ndarray, younger: np.ndarray) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-def _remaining(task: Task, points, offsets: np.ndarray, variogram: Variogram) -> float:
+def _remaining(work: Work, points, offsets: np.ndarray, variogram: dict) -> float:
     """The mean square of what heights of a sheet differ from those kriged from its neighbors, less the part
     that these do not know."""
     found = []
@@ -167,8 +167,6 @@ def _remaining(task: Task, points, offsets: np.ndarray, variogram: Variogram) ->
             continue
         others = pooled([points[number - 1]], offsets[[number - 1]])
         plan = np.ascontiguousarray(points[number][:, :2])
-        z, variance, _ = task.run(
-            native_module().krige, others, plan, variogram.native(task.settings["anisotropy"])
-        )
+        z, variance, _ = work.native(native_module().krige, others, plan, variogram)
         found.append((points[number][:, 2] - offsets[number] - z) ** 2 - variance)
     return float(np.median(np.concatenate(found))) if found else 0.0

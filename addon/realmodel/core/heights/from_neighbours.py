@@ -124,15 +124,15 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
 def _joint_structure(task: Task, companions: Companions) -> Structure:
     """structure of the sheets of a series: of all their points around what they lie apart, which is estimated
     from all data. Once this is known the variogram is fitted again."""
-    points, dips = companions.data(task)
+    points, dips = companions.data(task.points, task.dips)
     alone = replace(task, companions=None, bounds=None)
     data = JointData.of(points, dips, np.zeros(len(points)), companions.own)
     alone = replace(alone, dips=None if data.dips is None else data.dips.merged()[0])
     count = len(data.points) + 2 * len(data.of_dips)
-    offsets = first_offsets(task, points)
+    offsets = first_offsets(task.work, points)
     for _ in range(ROUNDS):
         found = structure(replace(alone, points=pooled(points, offsets)))
-        model = thickness_model(task, points, found.variogram, offsets)
+        model = thickness_model(task.work, points, found.variogram, offsets, task.settings["anisotropy"])
         neighbours, use = found.neighbours, found.dips
         if task.settings["neighbours"] is None:
             neighbours = 0 if count <= MOST_AT_ONCE else min(neighbours * len(points), MOST_NEIGHBOURS)
@@ -179,7 +179,7 @@ def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.n
     """Heights of one sheet at the nodes, or at its own points, each left out; their variances, and how many
     have no point within the radius."""
     assert known.sheets is not None
-    points, dips = companions.data(task)
+    points, dips = companions.data(task.points, task.dips)
     own, offset = companions.own, known.sheets.offsets[companions.own]
     data = JointData.of(points, dips, known.sheets.offsets, own)
     arguments = _joint_arguments(task, known, data, own)

@@ -14,7 +14,7 @@ from ..heights.cross_validation import CrossValidation, distinct_points, validat
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
 from ..settings.variogram import Variogram
-from ..surfaces.sheet_series import companions_of
+from ..surfaces.observed.sheet_series import companions_of
 
 DEFAULT_FOLDS = 10
 

@@ -24,10 +24,10 @@ from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
+from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
-from .sheet_series import with_least_thickness
 from .surface_heights import give_heights, interpolation_order, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
 from .wrong_order import points_above_younger

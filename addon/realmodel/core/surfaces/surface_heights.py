@@ -20,8 +20,8 @@ from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..project.project import Rock, surface_item
 from ..settings.methods import checked_options
+from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
-from .sheet_series import bounds_beside, companions_of
 from .wrong_sides import heights_at, listed
 
 

@@ -22,8 +22,8 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
-from ...surfaces.sheet_series import sheets_beside
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ...surfaces.wrong_sides import heights_at

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..heights.companions import Companions
-from ..project.project import Rock, Surface
-from ..project.series import members
-from ..readers.tables.observations import Bounds
-from ..settings.series import SHEETS
+from ...heights.companions import Companions
+from ...project.project import Rock, Surface
+from ...project.series import members
+from ...readers.tables.observations import Bounds
+from ...settings.series import SHEETS
 
 
 def sheets_beside(rock: Rock, number: int) -> list[int]:
