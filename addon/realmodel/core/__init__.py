@@ -14,6 +14,7 @@ from .base.errors import (
 from .cells.blocks import Block, BlockBoundary
 from .exporters.meshes import save_mesh
 from .exporters.report import Report
+from .filling import Strata, fill_with_strata
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -102,6 +103,7 @@ __all__ = [
     "Series",
     "SimulationMesh",
     "SpaceDips",
+    "Strata",
     "Structure",
     "SubBlock",
     "SubSurface",
@@ -118,6 +120,7 @@ __all__ = [
     "cross_validate",
     "estimate",
     "estimate_mesh",
+    "fill_with_strata",
     "interpolate",
     "intersect",
     "load_library",
