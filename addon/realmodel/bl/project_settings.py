@@ -110,6 +110,7 @@ def compose(scene, depsgraph, whole=True):
         rock = Rock(row.name, [], base_elevation=base, hole_picks=picks)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
+            rock.dips = surface_dips.of_row(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
@@ -138,7 +139,7 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = surface_dips.of_surface(row)
+        surface.dips = surface_dips.of_row(row)
     return surface
 
 
@@ -196,8 +197,8 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
-    if row.source == "TRACE_OBJECT":
-        _trace_of_object(source, composed, surface, row)
+    if row.source in ("TRACE_OBJECT", "STICKS_OBJECT"):
+        _lines_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
@@ -281,10 +282,14 @@ def _from_object(source, composed, place, surface, row):
     _take_mesh(composed, surface, row.object, given, triangles, base)
 
 
-def _trace_of_object(source, composed, fault, row):
+def _lines_of_object(source, composed, fault, row):
+    """The trace of a fault, or its sticks."""
     if row.object is None:
-        raise InputRefused("it has no object", advice="choose the curve or mesh along its trace")
+        raise InputRefused("it has no object", advice="choose the curve or mesh with its trace or its sticks")
     lines = [line + composed.origin for line in shapes.lines(row.object, source.depsgraph)]
+    if row.source == "STICKS_OBJECT":
+        fault.points = lines
+        return
     structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
 
 
@@ -407,6 +412,7 @@ def add_rock(group, rock):
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
         observed_blocks.keep(row, rock.observed)
+        surface_dips.keep(row, rock.dips)
     return row
 
 
@@ -419,7 +425,7 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        surface_dips.keep(row, surface.known_dips())
+        surface_dips.keep(row, surface.own_dips())
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

@@ -81,6 +81,12 @@ def read_dips_of_rock(
     return replace(found, surfaces=np.array(surfaces, str), blocks=np.array(blocks, str)), left_out
 
 
+def names_units(given: DipFile, step: Step = no_step) -> bool:
+    """Whether a table of dips names surfaces or blocks, in any row. Raises InputRefused."""
+    every = rows(given, Path(given.file), {**DIPS, **_NAMED}, ("x", "y"), step)
+    return any(row.has(key) for row in every for key in _NAMED)
+
+
 def _dips(given: DipFile, kept: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
     """The dips of rows of a table."""
     plan, height = factors(given.units, model_unit)

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "fields/functional.hpp"
+#include "fields/spline.hpp"
+#include "realmodel/base/execution.hpp"
+#include "realmodel/fields/field.hpp"
+
+namespace realmodel::fields {
+
+inline constexpr Anisotropy kIsotropic{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {1, 1, 1}};
+
+/// Scales space by the ratios along the axes.
+Map3 map_of(const Anisotropy& anisotropy);
+
+/// What kind of random function data are most likely to be of.
+struct Likely {
+    Anisotropy anisotropy = kIsotropic;
+    Errors errors;
+};
+
+/// The anisotropy and the errors of measurement under which what is known is most likely. The
+/// anisotropy is along the fold axis, to which the normals are most nearly perpendicular, or where
+/// they show none along the best of some directions; then along a direction across it.
+Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
+                   const Execution& execution);
+
+}  // namespace realmodel::fields

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/vectors.hpp"
+
+namespace realmodel::fields {
+
+/// A linear map of space, by its rows.
+using Map3 = std::array<Vec3, 3>;
+
+inline Vec3 mapped(const Map3& map, const Vec3& v) {
+    return {dot(map[0], v), dot(map[1], v), dot(map[2], v)};
+}
+
+struct ValueAtom {
+    Vec3 at;
+    double weight;
+    bool measured = false;  ///< of the value as it was measured here, with its error
+};
+
+/// The derivative along a vector, which says its weight by its length.
+struct SlopeAtom {
+    Vec3 at, along;
+};
+
+/// What is known of a function f: a sum of values and of derivatives is `right`. The weights of
+/// values sum to 0, since a constant may be added to f.
+struct Functional {
+    std::vector<ValueAtom> values;
+    std::vector<SlopeAtom> slopes;
+    double right = 0;
+    bool measured_slope = false;  ///< it has an error of its own
+
+    /// f(at) - f(from), both measured
+    static Functional difference(const Vec3& at, const Vec3& from) {
+        return {{{at, 1.0, true}, {from, -1.0, true}}, {}, 0, false};
+    }
+    static Functional slope(const Vec3& at, const Vec3& along, bool measured = false) {
+        return {{}, {{at, along}}, 0, measured};
+    }
+
+    Functional mapped_by(const Map3& map) const;
+
+    /// Of the three coordinates.
+    Vec3 of_coordinates() const;
+
+    /// Of the kernel r^3, in both of its arguments. @param error  variance of measured values
+    double with(const Functional& other, double error) const;
+};
+
+}  // namespace realmodel::fields

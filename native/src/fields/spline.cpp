@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/spline.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <map>
+
+namespace realmodel::fields {
+
+namespace {
+
+// Added to the kernel as products of coordinates: it changes nothing, since forces have no moment,
+// and makes the matrix positive definite.
+constexpr double kProducts = 100;
+// Of a row's variance: what the rows before it leave of a row that follows from them.
+constexpr double kRedundant = 1e-13;
+constexpr Eigen::Index kBlock = 64;
+
+}  // namespace
+
+Spline::Spline(std::span<const Functional> known, const Map3& map, const Errors& errors,
+               const Execution& execution)
+    : map_(map), errors_(errors) {
+    known_.reserve(known.size());
+    for (const Functional& f : known)
+        known_.push_back(f.mapped_by(map));
+    factor(execution);
+    solve(execution);
+    collect_centers();
+}
+
+void Spline::set_right(std::span<const Functional> known) {
+    for (std::size_t i = 0; i < known.size(); ++i)
+        known_[i].right = known[i].right;
+    solve({});
+    collect_centers();
+}
+
+void Spline::factor(const Execution& execution) {
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    Eigen::MatrixXd terms(n, 3);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Vec3 of = known_[i].of_coordinates();
+        terms.row(i) << of[0], of[1], of[2];
+    }
+    const auto entry = [&](Eigen::Index i, Eigen::Index j) {
+        const double error = i == j && known_[i].measured_slope ? errors_.slope : 0;
+        return known_[i].with(known_[j], errors_.value) + error +
+               kProducts * (terms(i, 0) * terms(j, 0) + terms(i, 1) * terms(j, 1) +
+                            terms(i, 2) * terms(j, 2));
+    };
+    scales_.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const double own = entry(i, i);
+        scales_(i) = own > 0 ? 1 / std::sqrt(own) : 0;
+    }
+    const Eigen::Matrix3d moments = terms.transpose() * terms;
+    const auto scaled = [&](Eigen::Index i, Eigen::Index j) {
+        return scales_(i) * scales_(j) * entry(i, j);
+    };
+    factor_.emplace(n, scaled, kRedundant, execution, 0.0);
+    coordinates_ = scales_.asDiagonal() * terms;
+    factor_->solve(coordinates_, execution.progress);
+    const Eigen::Matrix3d inner = coordinates_.transpose() * coordinates_;
+    coordinates_log_determinant_ =
+        elementary::log(std::max(inner.determinant() / moments.determinant(), 1e-300));
+}
+
+void Spline::solve(const Execution& execution) {
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    Eigen::MatrixXd right(n, 1);
+    for (Eigen::Index i = 0; i < n; ++i)
+        right(i, 0) = scales_(i) * known_[i].right;
+    factor_->solve(right, execution.progress);
+    Eigen::MatrixXd sides(n, 4);
+    sides << right, coordinates_;
+    products_ = sides.transpose() * sides;
+    const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
+    const Eigen::Vector3d tilt = inner.ldlt().solve(products_.block<3, 1>(1, 0));
+    tilt_ = {tilt(0), tilt(1), tilt(2)};
+    Eigen::MatrixXd forces = right - coordinates_ * tilt;
+    factor_->solve_transposed(forces, execution.progress);
+    forces_.resize(known_.size());
+    for (Eigen::Index i = 0; i < n; ++i)
+        forces_[i] = scales_(i) * forces(i, 0);
+    if (execution.progress != nullptr) execution.progress->check();
+}
+
+std::optional<double> Spline::log_likelihood() const {
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    double scales = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        if (factor_->left_out(i)) return std::nullopt;
+        scales += elementary::log(scales_(i));
+    }
+    const auto free = static_cast<double>(n - 3);
+    if (!(scale() > 0)) return std::nullopt;
+    return -0.5 * (free * elementary::log(scale()) + factor_->log_determinant() - 2 * scales +
+                   coordinates_log_determinant_);
+}
+
+double Spline::scale() const {
+    const Eigen::Vector3d tilt(tilt_[0], tilt_[1], tilt_[2]);
+    const double misfit = products_(0, 0) - products_.block<1, 3>(0, 1).dot(tilt);
+    return known_.size() > 3 ? misfit / static_cast<double>(known_.size() - 3) : 0;
+}
+
+bool Spline::left_out(std::size_t functional) const {
+    return factor_->left_out(static_cast<Eigen::Index>(functional));
+}
+
+/// Atoms at one place become one.
+void Spline::collect_centers() {
+    value_centers_.clear();
+    slope_centers_.clear();
+    measured_.clear();
+    std::map<Vec3, double> values;
+    std::map<Vec3, Vec3> slopes;
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+        for (const ValueAtom& atom : known_[i].values) {
+            values[atom.at] += forces_[i] * atom.weight;
+            if (atom.measured) measured_[atom.at] += forces_[i] * atom.weight;
+        }
+        for (const SlopeAtom& atom : known_[i].slopes) {
+            Vec3& sum = slopes[atom.at];
+            sum = moved(sum, forces_[i], atom.along);
+        }
+    }
+    for (const auto& [at, weight] : values)
+        value_centers_.push_back({at, weight, false});
+    for (const auto& [at, along] : slopes)
+        slope_centers_.push_back({at, along});
+}
+
+double Spline::value(const Vec3& at) const {
+    const Vec3 p = mapped(map_, at);
+    double sum = dot(tilt_, p);
+    for (const ValueAtom& atom : value_centers_) {
+        const Vec3 d = minus(p, atom.at);
+        const double squared = dot(d, d);
+        sum += atom.weight * squared * std::sqrt(squared);
+    }
+    for (const SlopeAtom& atom : slope_centers_) {
+        const Vec3 d = minus(p, atom.at);
+        sum -= 3 * length(d) * dot(d, atom.along);
+    }
+    return sum;
+}
+
+void Spline::values_at(std::span<const Vec3> positions, std::span<double> values) const {
+    using Lanes = Eigen::Array<double, kBlock, 1>;
+    for (std::size_t first = 0; first < positions.size(); first += kBlock) {
+        const std::size_t count = std::min<std::size_t>(kBlock, positions.size() - first);
+        Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
+        for (std::size_t n = 0; n < count; ++n) {
+            const Vec3 p = mapped(map_, positions[first + n]);
+            x(n) = p[0];
+            y(n) = p[1];
+            z(n) = p[2];
+        }
+        Lanes sum = tilt_[0] * x + tilt_[1] * y + tilt_[2] * z;
+        for (const ValueAtom& atom : value_centers_) {
+            const Lanes squared =
+                (x - atom.at[0]).square() + (y - atom.at[1]).square() + (z - atom.at[2]).square();
+            sum += atom.weight * squared * squared.sqrt();
+        }
+        for (const SlopeAtom& atom : slope_centers_) {
+            const Lanes dx = x - atom.at[0], dy = y - atom.at[1], dz = z - atom.at[2];
+            sum -= (dx.square() + dy.square() + dz.square()).sqrt() *
+                   (dx * (3 * atom.along[0]) + dy * (3 * atom.along[1]) + dz * (3 * atom.along[2]));
+        }
+        std::copy_n(sum.data(), count, values.data() + first);
+    }
+}
+
+Vec3 Spline::gradient(const Vec3& at) const {
+    const Vec3 p = mapped(map_, at);
+    Vec3 sum = tilt_;
+    for (const ValueAtom& atom : value_centers_) {
+        const Vec3 d = minus(p, atom.at);
+        sum = moved(sum, 3 * atom.weight * length(d), d);
+    }
+    for (const SlopeAtom& atom : slope_centers_) {
+        const Vec3 d = minus(p, atom.at);
+        const double r = length(d);
+        if (r > 0) sum = moved(sum, -3 * dot(d, atom.along) / r, d);
+        sum = moved(sum, -3 * r, atom.along);
+    }
+    Vec3 out{};  // by the transposed map
+    for (std::size_t row = 0; row < 3; ++row)
+        out = moved(out, sum[row], map_[row]);
+    return out;
+}
+
+/// By how much what was measured differs from the function.
+double Spline::error_at(const Vec3& at) const {
+    const auto found = measured_.find(mapped(map_, at));
+    return found == measured_.end() ? 0 : errors_.value * found->second;
+}
+
+double Spline::of(const Functional& functional) const {
+    double sum = 0;
+    for (const ValueAtom& atom : functional.values) {
+        sum += atom.weight * value(atom.at);
+        if (atom.measured) sum += atom.weight * error_at(atom.at);
+    }
+    for (const SlopeAtom& atom : functional.slopes)
+        sum += dot(gradient(atom.at), atom.along);
+    return sum;
+}
+
+}  // namespace realmodel::fields
