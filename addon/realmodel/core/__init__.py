@@ -14,6 +14,8 @@ from .base.errors import (
 from .cells.blocks import Block, BlockBoundary
 from .exporters.meshes import save_mesh
 from .exporters.report import Report
+from .fields import Lattice, ScalarField
+from .filling import Strata, fill_with_strata
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -75,6 +77,7 @@ __all__ = [
     "Interpolation",
     "Intersection",
     "Interval",
+    "Lattice",
     "LeftOut",
     "Library",
     "Loop",
@@ -98,10 +101,12 @@ __all__ = [
     "RealModelError",
     "Report",
     "Rock",
+    "ScalarField",
     "Section",
     "Series",
     "SimulationMesh",
     "SpaceDips",
+    "Strata",
     "Structure",
     "SubBlock",
     "SubSurface",
@@ -118,6 +123,7 @@ __all__ = [
     "cross_validate",
     "estimate",
     "estimate_mesh",
+    "fill_with_strata",
     "interpolate",
     "intersect",
     "load_library",
