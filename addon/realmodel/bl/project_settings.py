@@ -110,6 +110,7 @@ def compose(scene, depsgraph, whole=True):
         rock = Rock(row.name, [], base_elevation=base, hole_picks=picks)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
+            rock.dips = surface_dips.of_row(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
@@ -138,7 +139,7 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = surface_dips.of_surface(row)
+        surface.dips = surface_dips.of_row(row)
     return surface
 
 
@@ -388,7 +389,11 @@ def fill(scene, project):
 
 
 def add_rock(group, rock):
-    """A row for a realmodel.core.Rock."""
+    """A row for a realmodel.core.Rock. Raises InputRefused for one with series, which no row has yet."""
+    for series in rock.series:
+        raise series.refused(
+            "series are not in the panel yet", None, "build it by build_model.py without --blend", rock.item
+        )
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
@@ -403,6 +408,7 @@ def add_rock(group, rock):
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
         observed_blocks.keep(row, rock.observed)
+        surface_dips.keep(row, rock.dips)
     return row
 
 
@@ -415,7 +421,7 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        surface_dips.keep(row, surface.known_dips())
+        surface_dips.keep(row, surface.own_dips())
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dips of a surface, stored in its row."""
+"""The dips of a surface or of a rock mass, stored in its row."""
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,20 +18,19 @@ def keep(row, dips):
 
 
 def add(row, dips):
-    """Adds Dips to those that a surface has."""
-    known = of_surface(row)
-    keep(row, dips if known is None else joined([known, dips]))
+    """Adds Dips to those that a row has."""
+    known = of_row(row)
+    keep(row, dips if known is None else Dips.joined([known, dips]))
 
 
-def of_surface(row):
+def of_row(row):
     """The stored Dips; None where there are none. Raises InputRefused for damaged text."""
     return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
 
 
-def joined(parts):
-    """Several Dips, one after another."""
-    heights = [np.full(len(part), np.nan) if part.z is None else part.z for part in parts]
-    positions, gradients = (
-        np.concatenate([getattr(part, key) for part in parts]) for key in ("positions", "gradients")
-    )
-    return Dips(positions, gradients, np.concatenate(heights))
+def rename(row, old, new):
+    """Gives a surface, and the block beneath it, its new name in the dips of a rock mass."""
+    dips = of_row(row)
+    if dips is not None:
+        surfaces, blocks = (np.where(names == old, new, names) for names in dips.named)
+        keep(row, replace(dips, surfaces=surfaces, blocks=blocks))

@@ -21,11 +21,13 @@ from .model.build import build
 from .model.cutting import Cut
 from .model.estimate import Estimate, estimate
 from .model.model import Model
+from .model.planned_hole import PlannedHole
 from .model.section import Fence, Section
 from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property, load_library
 from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
+from .project.series import Series
 from .project.structure_entries import Body, Fault
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
@@ -35,8 +37,9 @@ from .results.contours import Contour
 from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
+from .results.planned_holes import HoleAxis, HoleContact, HoleInterval
 from .settings.boreholes import Boreholes
-from .settings.dips import DipFile, Dips
+from .settings.dips import DipFile, Dips, SpaceDips
 from .settings.map_file import MapFile
 from .settings.map_layer import MapLayer
 from .settings.observation_file import ObservationFile
@@ -65,6 +68,9 @@ __all__ = [
     "Estimate",
     "Fault",
     "Fence",
+    "HoleAxis",
+    "HoleContact",
+    "HoleInterval",
     "InputRefused",
     "Interpolation",
     "Intersection",
@@ -85,6 +91,7 @@ __all__ = [
     "ObservedBlock",
     "ObservedContact",
     "OutputFailed",
+    "PlannedHole",
     "PointFile",
     "Project",
     "Property",
@@ -92,7 +99,9 @@ __all__ = [
     "Report",
     "Rock",
     "Section",
+    "Series",
     "SimulationMesh",
+    "SpaceDips",
     "Structure",
     "SubBlock",
     "SubSurface",

@@ -54,11 +54,10 @@ def _of_picks(rock, logs):
 
 
 def _of_logs(scene, rock, logs):
-    """(property, begin, end) of the tubes of intervals; between those of two blocks there are none."""
+    """(property, begin, end) of the tubes of intervals; between two of them there are none."""
     rows = {row.name: row.property_id for row in (*rock.surfaces, *scene.realmodel.bodies)}
     units = observed_blocks.units_of(scene, rock)
     for log in logs:
         blocks, places = log.blocks.tolist(), log.places.tolist()
-        for (block, begin), (other, end) in pairwise(zip(blocks, places, strict=True)):
-            if block == other:
-                yield rows.get(units.block(block)), begin, end
+        for row in np.flatnonzero(log.goes_on).tolist():
+            yield rows.get(units.block(blocks[row])), places[row - 1], places[row]

@@ -19,7 +19,7 @@ from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
 from ..settings.crs import checked_crs
-from ..settings.dips import DipFile, Dips
+from ..settings.dips import DipFile, Dips, dip_file_of
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
@@ -52,6 +52,7 @@ from .field_checks import check_field_data, files_of_map, names_of_units
 from .library import Library
 from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .region_rings import is_several
+from .series import Series, check_level_set, check_names_series, check_series, mark_level_sets
 from .structure_checks import check_structures
 from .structure_entries import Body, Fault, Shaped
 
@@ -68,10 +69,13 @@ class Surface(Shaped):
     Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. With
     `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
+    `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
+    and is a level set of that field (`is_level_set`, which its rock mass says).
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
+    `rock_dips` are dips of its rock mass that count for it, and
     `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
-    heights that it lies at or above, or at or below; both are found when a project is read, and no input.
+    heights that it lies at or above, or at or below; all are found when a project is read, and no input.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -87,18 +91,22 @@ class Surface(Shaped):
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
     dips: Dips | DipFile | str | Path | None = None
+    series: str | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
+    rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
+    is_level_set: bool = field(default=False, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
         """Whether its heights are made: from points, by a method that needs none, or from boreholes."""
-        return self.points is not None or (
-            self.mesh is None and self.vertices is None and self.triangles is None
+        return not self.is_level_set and (
+            self.points is not None
+            or (self.mesh is None and self.vertices is None and self.triangles is None)
         )
 
     @builtins.property  # a field of this class is called property
@@ -120,14 +128,17 @@ class Surface(Shaped):
     @builtins.property  # a field of this class is called property
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
-        if isinstance(self.dips, (str, Path)):
-            return DipFile(self.dips)
-        return self.dips if isinstance(self.dips, DipFile) else None
+        return dip_file_of(self.dips)
 
-    def known_dips(self) -> Dips | None:
-        """The dips of a surface that is read."""
+    def own_dips(self) -> Dips | None:
+        """The dips of a surface that is read, without those of its rock mass."""
         assert self.dips is None or isinstance(self.dips, Dips)
         return self.dips
+
+    def known_dips(self) -> Dips | None:
+        """All dips that count for a surface that is read."""
+        parts = [each for each in (self.own_dips(), self.rock_dips) if each is not None]
+        return Dips.joined(parts) if len(parts) > 1 else next(iter(parts), None)
 
     @builtins.property  # a field of this class is called property
     def has_bounds(self) -> bool:
@@ -167,15 +178,17 @@ class Rock(Entry):
     `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
     blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
-    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `names`
-    says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface or body, or ""
-    for nothing.
+    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
+    those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
+    `names` says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface
+    or body, or "" for nothing.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
     `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
     as of a region; `size` may be at what is in such files too.
     With `base_elevation` there is a block between this height and the oldest surface.
+    `series` are runs of surfaces that share their structure.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
 
@@ -192,11 +205,16 @@ class Rock(Entry):
     constraints: Sequence = ()
     boreholes: Boreholes | None = None
     observations: str | Path | ObservationFile | Observations | None = None
+    dips: Dips | DipFile | str | Path | None = None
     names: Mapping[str, str] = field(default_factory=dict)
     map: MapFile | None = None
+    series: list[Series] = field(default_factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
+    def __post_init__(self):
+        mark_level_sets(self)
 
     @property
     def observation_file(self) -> ObservationFile | None:
@@ -205,6 +223,11 @@ class Rock(Entry):
         if isinstance(given, (str, Path)):
             return ObservationFile(given)
         return given if isinstance(given, ObservationFile) else None
+
+    @property
+    def dip_file(self) -> DipFile | None:
+        """The file of its dips and how it is read; None where they are arrays, or there are none."""
+        return dip_file_of(self.dips)
 
     @property
     def observed(self) -> Observations | None:
@@ -237,6 +260,12 @@ class Rock(Entry):
         """The points (N, 2) of constraints that are arrays; None where there are none."""
         points = [point for point in self.constraints if len(point) == 1]
         return np.concatenate(points) if points else None
+
+    def stage(self, m: int) -> Rock:
+        """The rock mass with the surfaces up to m, and the series that these belong to."""
+        kept = self.surfaces[: m + 1]
+        names = {surface.series for surface in kept}
+        return replace(self, surfaces=kept, series=[each for each in self.series if each.name in names])
 
     @property
     def interpolates(self) -> bool:
@@ -273,11 +302,13 @@ class Project:
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += files_of_map(rock)
+            files += [Path(rock.dip_file.file)] if rock.dip_file is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
                 if surface.dip_file is not None:
                     files.append(Path(surface.dip_file.file))
+            files += [Path(each.dip_file.file) for each in rock.series if each.dip_file is not None]
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
@@ -285,7 +316,7 @@ class Project:
 
     def stage(self, m: int) -> Project:
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
-        rocks = [replace(rock, surfaces=rock.surfaces[: m + 1]) for rock in self.rocks]
+        rocks = [rock.stage(m) for rock in self.rocks]
         for rock in rocks:
             known = names_of_units(self, rock)
             rock.names = {code: name if name in known else "" for code, name in rock.names.items()}
@@ -317,6 +348,7 @@ def check_project(project: Project) -> None:
 
 def _check_rock(project: Project, rock: Rock) -> None:
     refuse = rock.refused
+    mark_level_sets(rock)  # surfaces may have come later
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
     check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
@@ -334,6 +366,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
         what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
     check_field_data(project, rock)
+    check_series(rock)
     names: set[str] = set()
     for surface in rock.surfaces:
         _check_surface(project, rock, surface)
@@ -369,8 +402,12 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     if not is_name(surface.name):
         raise surface.refused("a surface has no name", "name", item=rock.item)
     refuse = partial(surface.refused, item=surface_item(rock, surface))
-    _check_shape(rock, surface, refuse, bool(project.faults))
-    _check_dips(surface, refuse)
+    check_names_series(rock, surface, refuse)
+    if surface.is_level_set:
+        check_level_set(rock, surface, refuse)
+    else:
+        _check_shape(rock, surface, refuse, bool(project.faults))
+        _check_dips(surface, refuse)
     check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
     check_property(project.library, surface.property, refuse)
 

@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,13 +20,15 @@ from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..base.units import MODEL_UNIT
 from ..readers import UnitNames
-from ..settings.dips import Dips
+from ..settings.dips import Dips, SpaceDips
 from ..settings.meshers import DEFAULT_MESHER
 from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
+from ..settings.series import AUTO, FIELD
 from .library import Library, Property
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
+from .series import Series
 from .structure_entries import Body, Fault
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -75,12 +77,22 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             lines.append(f"library = {toml_value(library)}")
         for rock in project.rocks:
             lines += ["", "[[rock]]", *_rock_lines(rock)]
-            if rock.observation_file is not None or rock.map is not None:
-                what = "observations have" if rock.map is None else "map has"
-                raise UsageError(f"rock '{rock.name}': its {what} not been read; build it first")
+            unread = {"map": rock.map, "observations": rock.observation_file, "dips": rock.dip_file}
+            for what, given in unread.items():
+                if given is not None:
+                    raise UsageError(f"rock '{rock.name}': its {what} was not read yet; build it first")
             if rock.observed is not None and len(rock.observed):
                 target = beside(rock.name, "observations", ending=".csv")
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
+            if isinstance(rock.dips, Dips) and len(rock.dips):
+                target = beside(rock.name, "dips", ending=".csv")
+                surfaces, blocks = rock.dips.named
+                codes = _block_codes(rock)
+                meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
+                text = dips_text(replace(rock.dips, surfaces=surfaces, blocks=meant))
+                lines.append(f"dips = {toml_value(write(target, text))}")
+            for series in rock.series:
+                lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
                 files = _surface_files(rock, surface, beside, write)
                 lines += ["", "[[rock.surface]]", *_surface_lines(surface, files)]
@@ -148,13 +160,28 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
+def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
+    if series.dip_file is not None:
+        raise UsageError(f"{series.item}: its file has not been read; build the model first")
+    dips, file = series.space_dips(), None
+    if dips is not None and len(dips):
+        file = write(beside(rock.name, series.name, "dips", ending=".csv"), space_dips_text(dips))
+    values = {
+        "name": series.name,
+        "kind": series.kind if series.kind != FIELD else None,
+        "dips": file,
+        "resolution": series.resolution if series.resolution != AUTO else None,
+    }
+    return _lines(values)
+
+
 def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str]:
     """The names of the files of a surface, by their keys."""
     if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
-    if surface.interpolated:
+    if surface.interpolated or surface.is_level_set:
         points = surface.own_points()  # its contacts follow from the observations again
-        dips, files = surface.known_dips(), {}
+        dips, files = surface.own_dips(), {}
         if points is not None and len(points):
             target = beside(rock.name, surface.name, ending=".csv")
             files["points"] = write(target, points_text(points))
@@ -168,7 +195,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
 
 def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     given = surface
-    values: dict[str, object] = {"name": given.name, **files}
+    values: dict[str, object] = {"name": given.name, "series": given.series, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     values |= {
@@ -237,22 +264,41 @@ def points_text(points) -> bytes:
 
 def dips_text(dips: Dips) -> bytes:
     """Dips as CSV: their slopes, of which angles would not give back each bit."""
-    columns, names = [dips.positions, dips.gradients], "x,y,slope_x,slope_y"
-    if dips.z is not None and np.isfinite(dips.z).all():
-        columns, names = [*columns, dips.z[:, None]], f"{names},z"
-    return f"{names}\n".encode() + _rows(np.hstack(columns), ",")
+    columns: list = [*dips.positions.T.tolist(), *dips.gradients.T.tolist()]
+    names = ["x", "y", "slope_x", "slope_y"]
+    if np.isfinite(dips.heights).any():
+        names.append("z")
+        columns.append(["" if np.isnan(z) else z for z in dips.heights.tolist()])
+    for name, texts in zip(("surface", "block"), dips.named, strict=True):
+        if (texts != "").any():
+            names.append(name)
+            columns.append(texts.tolist())
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerows([names, *zip(*columns, strict=True)])
+    return text.getvalue().encode()
+
+
+def _block_codes(rock: Rock) -> dict[str, str]:
+    """For each surface of a rock mass, the name that means the block beneath it when a table is read."""
+    surfaces = [surface.name for surface in rock.surfaces]
+    units = UnitNames(surfaces, rock.block_names())
+    return {
+        name: next((each for each in (name, block) if units.block(each) == name), name)
+        for name, block in zip(surfaces, rock.block_names(), strict=True)
+    }
+
+
+def space_dips_text(dips: SpaceDips) -> bytes:
+    """Dips in space as CSV: their normals, of which angles would not give back each bit."""
+    return b"x,y,z,normal_x,normal_y,normal_z\n" + _rows(np.hstack([dips.positions, dips.normals]), ",")
 
 
 def observations_text(rock: Rock) -> bytes:
     """The observations of a rock mass as CSV, each block by a name that means it when the table is read."""
     given = rock.observed
     assert given is not None
-    surfaces = [surface.name for surface in rock.surfaces]
-    units = UnitNames(surfaces, rock.block_names())
-    written = {
-        name: next((each for each in (name, block) if units.block(each) == name), name)
-        for name, block in zip(surfaces, rock.block_names(), strict=True)
-    }
+    written = _block_codes(rock)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(("x", "y", "z", "block", "hole", "depth"))

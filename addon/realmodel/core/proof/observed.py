@@ -223,15 +223,9 @@ def _samples(
     """Places at which observations are looked at (N, 3), of which observation each is (N,), the block of
     each observation, and (N,) bool whether a place may be seen on the ground, as it is in no hole. wanted:
     (R,) the blocks of rows; used: (R,) bool, those that count. An interval is the way along a hole through
-    rows of the same block."""
-    follows = np.zeros(len(given), bool)
-    follows[1:] = (
-        (given.holes[1:] == given.holes[:-1])
-        & (given.holes[1:] != "")
-        & (given.blocks[1:] == given.blocks[:-1])
-        & used[1:]
-        & used[:-1]
-    )
+    its rows."""
+    follows = given.goes_on & used
+    follows[1:] &= used[:-1]
     ends = np.flatnonzero(follows)
     shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     begin, way = given.places[ends - 1], given.places[ends] - given.places[ends - 1]

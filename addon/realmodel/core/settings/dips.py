@@ -1,25 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dips of a surface: arrays, or a table with its import options."""
+"""Dips of a surface or of a rock mass: arrays, or a table with its import options."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
 from .field_table import FieldTable
 
-COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y")
+NORMAL = ("normal_x", "normal_y", "normal_z")
+COLUMNS = (
+    *("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", *NORMAL),
+    *("surface", "block"),
+)
 
 
 @dataclass(frozen=True)
 class DipFile(FieldTable):
-    """file: a table of dips of a surface: x, y, z (optional), dip, and dip_direction or strike, in degrees.
+    """file: a table of dips of a surface, a rock mass or a series: x, y, z (needed for a series alone), dip,
+    and dip_direction or strike, in degrees; of a rock mass also the surface or the block that each is of.
 
     dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
-    dip direction is 90 degrees clockwise from it. polarity: optional, 1; -1, overturned, is refused.
-    slope_x and slope_y, how much the surface rises along x and along y, may take the place of angles.
+    dip direction is 90 degrees clockwise from it. polarity: optional, 1 upright, -1 overturned, which is for
+    series whose kind is "field" alone. slope_x and slope_y, how much the surface rises along x and along y,
+    may take the place of angles; in such a series so may normal_x, normal_y, normal_z, toward younger rock.
+    surface, block: their names, or those that the rock mass's names give them; empty: not known.
     columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
     model.
@@ -29,22 +38,83 @@ class DipFile(FieldTable):
 
 
 @dataclass(frozen=True, eq=False)
+class SpaceDips:
+    """Dips in space, at any angle. positions: (D, 3) float64. normals: (D, 3) float64 of the bedding, of any
+    length, toward younger rock."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def checked(self) -> SpaceDips:
+        """The same as arrays of float64. Raises InputRefused."""
+        positions, normals = (
+            _floats(values, (len(self.positions), 3), f"{name} of dips")
+            for name, values in (("positions", self.positions), ("normals", self.normals))
+        )
+        bad = ~np.isfinite(np.column_stack([positions, normals])).all(axis=1)
+        bad |= ~normals.any(axis=1)
+        if bad.any():
+            raise InputRefused(f"dip {np.flatnonzero(bad)[0]} is not finite, or has no normal", item="dips")
+        return SpaceDips(positions, normals)
+
+
+@dataclass(frozen=True, eq=False)
 class Dips:
     """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
     along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
-    says on which side of a fault a dip is."""
+    says on which side of a fault a dip is, and in which block one is that names none.
+
+    Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
+    blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
+    None. A dip of a block counts for the surfaces under and over it that are conformable with it, one
+    without a name for all that no unconformity parts from it."""
 
     positions: np.ndarray
     gradients: np.ndarray
     z: np.ndarray | None = None
+    surfaces: np.ndarray | None = None
+    blocks: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
 
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
-        z = None if self.z is None else self.z[kept]
-        return Dips(self.positions[kept], self.gradients[kept], z)
+        more = (self.z, self.surfaces, self.blocks)
+        chosen = [None if each is None else each[kept] for each in more]
+        return Dips(self.positions[kept], self.gradients[kept], *chosen)
+
+    @property
+    def heights(self) -> np.ndarray:
+        """(D,) float64 the heights of the positions, NaN where they are not known."""
+        return np.full(len(self), np.nan) if self.z is None else self.z
+
+    @property
+    def named(self) -> tuple[np.ndarray, np.ndarray]:
+        """(D,) texts twice: the surface and the block that each is of, "" for none."""
+        none = np.full(len(self), "", str)
+        return (
+            none if self.surfaces is None else self.surfaces,
+            none if self.blocks is None else self.blocks,
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Dips]) -> Dips:
+        """Several, `parts`, one after another."""
+        positions, gradients = (
+            np.concatenate([np.empty((0, 2)), *(getattr(part, key) for part in parts)])
+            for key in ("positions", "gradients")
+        )
+        z = np.concatenate([np.empty(0), *(part.heights for part in parts)])
+        names = [
+            np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
+        ]
+        if not names or not any((each != "").any() for each in names):
+            return cls(positions, gradients, z)
+        return cls(positions, gradients, z, *names)
 
     def checked(self) -> Dips:
         """The same as arrays of float64. Raises InputRefused."""
@@ -56,7 +126,11 @@ class Dips:
         bad = np.flatnonzero(~np.isfinite(np.column_stack([positions, gradients])).all(axis=1))
         if len(bad):
             raise InputRefused(f"dip {bad[0]} is not finite", item="dips")
-        return Dips(positions, gradients, z)
+        surfaces, blocks = (
+            None if names is None else _texts(names, len(positions), f"{what} of dips")
+            for what, names in (("surfaces", self.surfaces), ("blocks", self.blocks))
+        )
+        return Dips(positions, gradients, z, surfaces, blocks)
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""
@@ -80,6 +154,13 @@ class Dips:
         return kept, f"{many} several dips, one at {where}: their mean slope is used"
 
 
+def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:
+    """The file of dips and how it is read; None where they are arrays, or there are none."""
+    if isinstance(given, (str, Path)):
+        return DipFile(given)
+    return given if isinstance(given, DipFile) else None
+
+
 def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
     try:
         array = np.ascontiguousarray(values, np.float64)
@@ -87,4 +168,11 @@ def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
         raise InputRefused("not an array of numbers", item=item) from error
     if array.shape != shape:
         raise InputRefused(f"must be an array {shape}, not {array.shape}", item=item)
+    return array
+
+
+def _texts(names, count: int, item: str) -> np.ndarray:
+    array = np.asarray(names, str)
+    if array.shape != (count,):
+        raise InputRefused(f"must be {count} names, one for each dip, not {array.shape}", item=item)
     return array

@@ -18,12 +18,14 @@ from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock, surface_item
-from ..readers import read_dips
+from ..project.series import Series
+from ..readers import read_dips, read_space_dips
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
 from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
+from .rock_dips import apply_dips
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
@@ -42,20 +44,21 @@ _EDGE_LENGTH_KINDS = (
 def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None. reader: how surfaces are read."""
-    rocks, all_warnings, all_left_out, asked = [], [], [], []
+    fields, all_warnings, asked = [], [], []
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
+        rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
         asked += [SurfaceInput.of(rock, *each, project.units) for each in field.surfaces]
-        rocks.append(field.rock)
+        fields.append(field)
         all_warnings.append((warnings, _unnamed(rock, field)))
-        all_left_out.append(field.left_out)
     found = dict(reader(work, asked))
     inputs, first = [], 0
-    for rock, (warnings, of_picks), left_out in zip(rocks, all_warnings, all_left_out, strict=True):
+    for field, (warnings, of_picks) in zip(fields, all_warnings, strict=True):
+        rock = field.rock
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
         warnings += [
@@ -66,11 +69,13 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         warnings += of_picks
         rock = replace(rock, surfaces=[each.surface for each in own])
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=left_out)
+        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:
             apply_observations(work, entry)
-            if not (project.faults or project.bodies):  # else once it is known where these are
-                entry.warnings += left_out_warnings(entry)
+        if rock.dips is not None:
+            apply_dips(work, entry, field.ground, field.mapped)
+        if not (project.faults or project.bodies):  # else once it is known where these are
+            entry.warnings += left_out_warnings(entry)
         require_points_near(entry.rock, project.units)
         inputs.append(entry)
     return inputs
@@ -97,6 +102,7 @@ def with_arrays(project: Project) -> Project:
             if not is_plain(rock.region):
                 rock, _ = _read_region(work, rock, project.units)
             rock = _read_constraints(rock, project.units)
+            rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
             field = read_field_data(project, rock)
             surfaces = []
             for surface, met in field.surfaces:
@@ -138,6 +144,15 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
     except InputRefused as error:
         file, line = rock.place_of(key)
         raise error.within(rock.item, file=file, line=line) from error
+
+
+def _read_series(rock: Rock, series: Series, units: str) -> Series:
+    """The series with its dips as arrays."""
+    with naming(f"{rock.item}, {series.item}"):
+        if series.dip_file is not None:
+            return replace(series, dips=read_space_dips(series.dip_file, units))
+        dips = series.space_dips()
+        return series if dips is None else replace(series, dips=dips.checked())
 
 
 def mesh_rock(work: Work, entry: RockInput) -> None:

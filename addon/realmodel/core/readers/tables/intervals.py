@@ -135,16 +135,22 @@ def observed_intervals(
     places: list[np.ndarray] = []
     depths: list[float] = []
     blocks: list[str] = []
+    numbers: list[int] = []
     place = cache(place)
-    for begin, end, block in _divided(intervals, name, left_out):
+    for number, (begin, end, block) in enumerate(_divided(intervals, name, left_out)):
         across = norm((place(end) - place(begin))[:2])
         count = 1 if plan_step <= 0 else min(int(np.ceil(across / plan_step)), _MOST_BETWEEN + 1)
         for depth in [begin, *np.linspace(begin, end, max(count, 1) + 1)[1:-1].tolist(), end]:
             places.append(place(depth))
             depths.append(depth)
             blocks.append(block)
+            numbers.append(number)
     return Observations(
-        np.array(places).reshape(-1, 3), np.array(blocks, str), np.full(len(places), name), np.array(depths)
+        np.array(places).reshape(-1, 3),
+        np.array(blocks, str),
+        np.full(len(places), name),
+        np.array(depths),
+        np.array(numbers, np.int64),
     )
 
 

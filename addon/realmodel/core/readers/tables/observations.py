@@ -12,6 +12,8 @@ import numpy as np
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Observations(ShortRepr):
@@ -21,6 +23,8 @@ class Observations(ShortRepr):
     beneath, of the block, or of a body. holes: (N,) texts, the borehole of each, "" for none; the places of a
     hole follow one another downward along it. depths: (N,) float64 along the hole, NaN where there is none.
     An interval is at least two places, its ends: a place that two intervals share is on the boundary of both.
+    intervals: (N,) int64, equal for the places of one interval, so that two of one block with lost core
+    between them are two; without them places of one block that follow one another in a hole are one interval.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -32,6 +36,7 @@ class Observations(ShortRepr):
     blocks: np.ndarray
     holes: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
+    intervals: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
 
     def __post_init__(self) -> None:
         try:
@@ -51,9 +56,11 @@ class Observations(ShortRepr):
         if not len(blocks) == len(holes) == len(depths) == count:
             what = f"{count} places have {len(blocks)} blocks, {len(holes)} holes and {len(depths)} depths"
             raise InputRefused(what, item="observations", advice="give each place one of each")
-        for name, value in zip(
-            ("places", "blocks", "holes", "depths"), (places, blocks, holes, depths), strict=True
-        ):
+        intervals = np.asarray(self.intervals, np.int64).reshape(-1)
+        if len(intervals) not in (0, count):
+            what = f"{count} places have {len(intervals)} numbers of intervals"
+            raise InputRefused(what, item="observations", advice="give each place one, or none of them")
+        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals), strict=True):
             object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
@@ -61,7 +68,8 @@ class Observations(ShortRepr):
 
     def some(self, chosen: np.ndarray) -> Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
-        return Observations(self.places[chosen], self.blocks[chosen], self.holes[chosen], self.depths[chosen])
+        kept = (getattr(self, name) for name in _ARRAYS)
+        return Observations(*(array[chosen] if len(array) else array for array in kept))
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -74,6 +82,27 @@ class Observations(ShortRepr):
         at = np.where(has_hole, first[number.ravel()] if len(names) else 0, rows)
         return self.some(np.lexsort((rows, np.where(has_hole, along, 0.0), at)))
 
+    @property
+    def goes_on(self) -> np.ndarray:
+        """(N,) bool, the places that are in one interval with the one before."""
+        same = (self.holes[1:] == self.holes[:-1]) & (self.holes[1:] != "")
+        same &= self.blocks[1:] == self.blocks[:-1]
+        if len(self.intervals):
+            _, number = np.unique(self.intervals, return_inverse=True)
+            rows = np.arange(len(self))
+            last = np.zeros(number.max() + 1, np.int64)
+            last[number] = rows  # of several the last one counts
+            same &= np.maximum.accumulate(last[number])[:-1] >= rows[1:]
+        return np.append(False, same)[: len(self)]
+
+    def logs(self) -> dict[str, Observations]:
+        """The places of intervals of each hole that has some, downward along it."""
+        found = self.along_holes()
+        in_interval = found.goes_on
+        in_interval[:-1] |= in_interval[1:]
+        found = found.some(in_interval)
+        return {str(hole): found.some(found.holes == hole) for hole in dict.fromkeys(found.holes.tolist())}
+
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""
         return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
@@ -83,8 +112,12 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        names = ("places", "blocks", "holes", "depths")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        *arrays, intervals = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        if any(map(len, intervals)):
+            intervals = [np.cumsum(~part.goes_on) for part in parts]
+            firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
+            intervals = [own + first for own, first in zip(intervals, firsts.tolist(), strict=True)]
+        return cls(*(np.concatenate(array) for array in (*arrays, intervals)))
 
 
 def source_text(hole: str, depth: float, place) -> str:
@@ -123,6 +156,8 @@ IN_TABLES = {
     "from_to": "intervals end above where they begin, and are not used",
     "no_depth": "intervals have no depth, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
+    "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
+    "dip_surface": "dips count for no surface, as only surfaces that cut them bound their block",
 }
 KINDS = {
     **IN_TABLES,
