@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class History:
         ground = float(self.heights(np.array([[x, y]]))[-1, 0])
         levels = [ground, *heights[(heights < ground) & (heights > ground - depth)].tolist(), ground - depth]
         found: list[tuple[float, int]] = []
-        for top, bottom in zip(levels, levels[1:], strict=False):
+        for top, bottom in pairwise(levels):
             block = int(self.block_at(np.array([[x, y, 0.5 * (top + bottom)]]))[0])
             if not found or found[-1][1] != block:
                 found.append((top, block))
@@ -102,7 +103,9 @@ def _channel(x, y, across, width, depth, level):
 
 def _undulating():
     def bed(level):
-        return lambda x, y: level + 30.0 * _wave(x, y, 1400, 60) + 12.0 * _wave(x, y, 600, 150, 0.7) + 0.02 * x
+        return lambda x, y: (
+            level + 30.0 * _wave(x, y, 1400, 60) + 12.0 * _wave(x, y, 600, 150, 0.7) + 0.02 * x
+        )
 
     return (
         *(Layer(f"H{k}", "conformable", bed(-20.0 + 60.0 * k), 3) for k in range(5)),

@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from realmodel.core import Dips, Observations, Project, Rock, Surface
+from realmodel.core import Dips, Model, Observations, Project, Rock, Surface
+from realmodel.core.base.work import run
+from realmodel.core.proof.closed_form import closed_forms
 
 from .histories import BASE, GRID, LENGTH, History
 
@@ -32,18 +35,22 @@ def measure(history: History, seed: int = 1) -> Measured:
     for hole, (x, y) in enumerate(draw.uniform(0, LENGTH, (history.holes, 2)).tolist()):
         log = history.log(x, y)
         ground = log[0][0]
-        for (top, block), (bottom, _) in zip(log, log[1:], strict=False):
+        for (top, block), (bottom, _) in pairwise(log):
             for z in (top, bottom):
                 rows.append((x, y, z, f"B{block}", f"W{hole}", ground - z))
         for z, _ in log[1:-1]:
             contacts[history.on_surface(x, y, z)].append((x, y, z))
     places, blocks = np.array([row[:3] for row in rows]), np.array([row[3] for row in rows])
-    logs = Observations(places, blocks, np.array([row[4] for row in rows]), np.array([row[5] for row in rows]))
+    logs = Observations(
+        places, blocks, np.array([row[4] for row in rows]), np.array([row[5] for row in rows])
+    )
     plan = draw.uniform(0, LENGTH, (history.outcrops, 2))
     z = history.heights(plan)[-1] - 0.01
     seen = np.column_stack([plan, z])
     outcrops = Observations(seen, np.array([f"B{block}" for block in history.block_at(seen).tolist()]))
-    return Measured([np.array(each).reshape(-1, 3) for each in contacts], logs, outcrops, _dips(history, draw))
+    return Measured(
+        [np.array(each).reshape(-1, 3) for each in contacts], logs, outcrops, _dips(history, draw)
+    )
 
 
 def _dips(history: History, draw: np.random.Generator) -> list[Dips | None]:
@@ -96,3 +103,11 @@ def random_points(history: History, count: int = 20000, seed: int = 7) -> tuple[
     points = draw.uniform([0, 0, BASE], [LENGTH, LENGTH, 400.0], (count, 3))
     block = history.block_at(points)
     return points[block >= 0], block[block >= 0]
+
+
+def right_share(model: Model, points: np.ndarray, block: np.ndarray) -> float:
+    """The share of points (N, 3) that a model has in their blocks (N,)."""
+    form = closed_forms(model)[0]
+    numbers = run(lambda work: form.blocks_at(work, points))
+    names = np.array([*(each.name for each in model.blocks), ""])
+    return float(np.mean(names[numbers] == np.array([f"B{number}" for number in block.tolist()])))

@@ -39,8 +39,8 @@ def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
 
     The baseline is that of the native dip_baseline for a variogram. With a spline (variogram None) a slope at
     a point would have an infinite variance, if only by a logarithm: the slope is that over the mean spacing
-    of points and dips. Of as many dips as lie among the nearest points, on average, but no more than of these,
-    the nearest count.
+    of points and dips. Of as many dips as lie among the nearest points, on average, but no more than of
+    these, the nearest count.
     """
     dips, points = task.dips, task.points
     if dips is None:
