@@ -10,6 +10,7 @@ from . import (
     looks,
     method_settings,
     names,
+    planned_holes,
     project_settings,
     reading_text,
     region_size,
@@ -67,6 +68,12 @@ def triangles(rock, context):
     if not settings.is_filling() and rock.edges_by == "AUTO":
         rock.use_triangles = True
     setting(rock, context)
+
+
+def planned_hole(row, _context):
+    """Where a hole is planned was changed."""
+    if not settings.is_filling():
+        planned_holes.update(row.id_data, row)
 
 
 def switched_on(switch):
@@ -134,7 +141,7 @@ def reading(row, context):
 
 def extended(fault, context):
     """The extension of a fault: what is made from its file depends on it; of a trace the line is kept."""
-    (setting if fault.source in ("MESH_OBJECT", *settings.TRACES) else reading)(fault, context)
+    (setting if fault.source in (*settings.OF_OBJECTS, *settings.TRACES) else reading)(fault, context)
 
 
 def fitted(fault, context):

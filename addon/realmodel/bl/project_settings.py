@@ -197,8 +197,8 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
-    if row.source == "TRACE_OBJECT":
-        _trace_of_object(source, composed, surface, row)
+    if row.source in ("TRACE_OBJECT", "STICKS_OBJECT"):
+        _lines_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
@@ -282,10 +282,14 @@ def _from_object(source, composed, place, surface, row):
     _take_mesh(composed, surface, row.object, given, triangles, base)
 
 
-def _trace_of_object(source, composed, fault, row):
+def _lines_of_object(source, composed, fault, row):
+    """The trace of a fault, or its sticks."""
     if row.object is None:
-        raise InputRefused("it has no object", advice="choose the curve or mesh along its trace")
+        raise InputRefused("it has no object", advice="choose the curve or mesh with its trace or its sticks")
     lines = [line + composed.origin for line in shapes.lines(row.object, source.depsgraph)]
+    if row.source == "STICKS_OBJECT":
+        fault.points = lines
+        return
     structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
 
 

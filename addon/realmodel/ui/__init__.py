@@ -10,6 +10,7 @@ from . import (
     library,
     lists,
     menu,
+    planned_holes,
     results,
     rocks,
     start,
@@ -30,6 +31,7 @@ _MODULES = (
     library,
     results,
     ensemble,
+    planned_holes,
     booleans,
     menu,
 )
