@@ -122,6 +122,7 @@ MADE = {
     "native": lambda m, _: m.native(),
     "of": lambda m, _: Model.of(m),
     "observed": lambda m, _: m.observed(),
+    "misfits": lambda m, _: m.misfits(),
     "require_project": lambda m, _: m.require_project("nothing"),
     "save": saved,
     "save_surfaces": saved_surfaces,

@@ -27,6 +27,7 @@ from .project.library import Library, Property, load_library
 from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
 from .project.structure_entries import Body, Fault
+from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
 from .readers.tables.observations import Bounds, LeftOut, Observations
@@ -77,6 +78,7 @@ __all__ = [
     "MapLayer",
     "MeshEstimate",
     "MeshFile",
+    "Misfit",
     "Model",
     "NotEnoughMemory",
     "ObservationFile",

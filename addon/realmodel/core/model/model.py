@@ -14,6 +14,7 @@ from ..cells.model_data import ModelData
 from ..exporters import save_model
 from ..exporters.report import Report, model_report
 from ..exporters.surfaces import save_surfaces
+from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
@@ -164,3 +165,4 @@ class Model(ModelData):
     fence = cutting.fence
     borehole = borehole
     observed = observed
+    misfits = misfits

@@ -65,7 +65,8 @@ class Surface(Shaped):
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
     (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. With
+    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3)
+    are points that are not used: those of its file, or its array, at these places, model units. With
     `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
@@ -87,6 +88,7 @@ class Surface(Shaped):
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
     dips: Dips | DipFile | str | Path | None = None
+    left_out: np.ndarray | Sequence | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
@@ -125,9 +127,10 @@ class Surface(Shaped):
         return self.dips if isinstance(self.dips, DipFile) else None
 
     def known_dips(self) -> Dips | None:
-        """The dips of a surface that is read."""
+        """The dips of a surface that is read, but for those that are switched off; None where there are
+        none."""
         assert self.dips is None or isinstance(self.dips, Dips)
-        return self.dips
+        return None if self.dips is None else self.dips.in_use()
 
     @builtins.property  # a field of this class is called property
     def has_bounds(self) -> bool:
@@ -391,7 +394,8 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     if not surface.interpolated:
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given = [] if continues else given
-        given += [key for key in ("minimum_thickness", "correlation") if getattr(surface, key) is not None]
+        of_points = ("minimum_thickness", "correlation", "left_out")
+        given += [key for key in of_points if getattr(surface, key) is not None]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         if continues:

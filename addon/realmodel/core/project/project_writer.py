@@ -154,7 +154,8 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
     if surface.interpolated:
         points = surface.own_points()  # its contacts follow from the observations again
-        dips, files = surface.known_dips(), {}
+        dips, files = surface.dips, {}
+        assert dips is None or isinstance(dips, Dips)
         if points is not None and len(points):
             target = beside(rock.name, surface.name, ending=".csv")
             files["points"] = write(target, points_text(points))
@@ -171,6 +172,8 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     values: dict[str, object] = {"name": given.name, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
+    if given.left_out is not None and len(given.left_out):
+        values["left_out"] = np.asarray(given.left_out, np.float64).tolist()
     values |= {
         "minimum_thickness": given.minimum_thickness,
         "correlation": given.correlation,
@@ -240,6 +243,11 @@ def dips_text(dips: Dips) -> bytes:
     columns, names = [dips.positions, dips.gradients], "x,y,slope_x,slope_y"
     if dips.z is not None and np.isfinite(dips.z).all():
         columns, names = [*columns, dips.z[:, None]], f"{names},z"
+    if dips.used is not None and not dips.used.all():
+        rows = zip(np.hstack(columns).tolist(), dips.used.tolist(), strict=True)
+        return "".join(
+            [f"{names},use\n", *(f"{_joined(row, ',')},{used:d}\n" for row, used in rows)]
+        ).encode()
     return f"{names}\n".encode() + _rows(np.hstack(columns), ",")
 
 
@@ -255,15 +263,18 @@ def observations_text(rock: Rock) -> bytes:
     }
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(("x", "y", "z", "block", "hole", "depth"))
-    for place, block, hole, depth in zip(
+    all_used = bool(given.in_use.all())
+    table.writerow(("x", "y", "z", "block", "hole", "depth") + ("use",) * (not all_used))
+    for place, block, hole, depth, used in zip(
         given.places.tolist(),
         given.blocks.tolist(),
         given.holes.tolist(),
         given.depths.tolist(),
+        given.in_use.tolist(),
         strict=True,
     ):
-        table.writerow((*place, written.get(block, block), hole, "" if np.isnan(depth) else depth))
+        row = (*place, written.get(block, block), hole, "" if np.isnan(depth) else depth)
+        table.writerow(row if all_used else (*row, int(used)))
     return text.getvalue().encode()
 
 
@@ -279,5 +290,9 @@ def _rows(numbers: np.ndarray, apart: str) -> bytes:
     """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
-        text.write(apart.join(map(repr, row)) + "\n")
+        text.write(_joined(row, apart) + "\n")
     return text.getvalue().encode()
+
+
+def _joined(row: list[float], apart: str) -> str:
+    return apart.join(map(repr, row))

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
 from .field_table import FieldTable
 
-COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y")
+COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", "use")
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,7 @@ class DipFile(FieldTable):
 
     dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
     dip direction is 90 degrees clockwise from it. polarity: optional, 1; -1, overturned, is refused.
+    use: optional, 0 where a row is switched off.
     slope_x and slope_y, how much the surface rises along x and along y, may take the place of angles.
     columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
@@ -32,19 +33,26 @@ class DipFile(FieldTable):
 class Dips:
     """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
     along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
-    says on which side of a fault a dip is."""
+    says on which side of a fault a dip is. used: (D,) bool, False where one is switched off, which says
+    nothing then; None: all are used."""
 
     positions: np.ndarray
     gradients: np.ndarray
     z: np.ndarray | None = None
+    used: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
 
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
-        z = None if self.z is None else self.z[kept]
-        return Dips(self.positions[kept], self.gradients[kept], z)
+        z, used = (None if each is None else np.asarray(each)[kept] for each in (self.z, self.used))
+        return Dips(self.positions[kept], self.gradients[kept], z, used)
+
+    def in_use(self) -> Dips | None:
+        """Those that are not switched off; None where there are none."""
+        kept = self if self.used is None else replace(self.some(self.used), used=None)
+        return kept if len(kept) else None
 
     def checked(self) -> Dips:
         """The same as arrays of float64. Raises InputRefused."""
@@ -56,7 +64,10 @@ class Dips:
         bad = np.flatnonzero(~np.isfinite(np.column_stack([positions, gradients])).all(axis=1))
         if len(bad):
             raise InputRefused(f"dip {bad[0]} is not finite", item="dips")
-        return Dips(positions, gradients, z)
+        used = None if self.used is None else np.ascontiguousarray(self.used, bool)
+        if used is not None and used.shape != (len(positions),):
+            raise InputRefused(f"{len(positions)} dips have {used.size} of 'used'", item="dips")
+        return Dips(positions, gradients, z, used)
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""

@@ -189,6 +189,7 @@ SURFACE = {
     **READING,
     "mesh": _OTHER,
     "dips": _OTHER,
+    "left_out": _OTHER,
     "method": Setting(
         DEFAULT_METHOD,
         kind="word",

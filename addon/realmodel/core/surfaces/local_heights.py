@@ -191,7 +191,7 @@ def is_local(surface: Surface) -> bool:
     if not surface.interpolated:
         return False
     method, settings = surface.method_options()
-    if METHODS[method].is_constrained and (surface.dips is not None or surface.has_bounds):
+    if METHODS[method].is_constrained and (surface.known_dips() is not None or surface.has_bounds):
         return False  # how dips and bounds count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False

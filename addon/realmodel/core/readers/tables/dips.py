@@ -28,6 +28,7 @@ DIPS = {
     "polarity": ("polarity", "younging", "facing"),
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
+    "use": ("use",),
 }
 _SHEET = "a sheet has one height at each position"
 
@@ -43,14 +44,15 @@ def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step
     """The dips of a table, in the model's unit. Raises InputRefused naming file and line."""
     file = Path(given.file)
     plan, height = factors(given.units, model_unit)
-    places, gradients, z = [], [], []
+    places, gradients, z, used = [], [], [], []
     for row in rows(given, file, DIPS, ("x", "y"), step):
         places.append((plan * row.number("x"), plan * row.number("y")))
         z.append(height * row.number("z") if row.has("z") else math.nan)
         gradients.append(_gradient(row))
+        used.append(row.is_used)
     if not places:
         raise InputRefused("there are no dips in it", file=file)
-    return Dips(np.array(places), np.array(gradients), np.array(z))
+    return Dips(np.array(places), np.array(gradients), np.array(z), None if all(used) else np.array(used))
 
 
 def _gradient(row: Row) -> np.ndarray:

@@ -21,6 +21,7 @@ class Observations(ShortRepr):
     beneath, of the block, or of a body. holes: (N,) texts, the borehole of each, "" for none; the places of a
     hole follow one another downward along it. depths: (N,) float64 along the hole, NaN where there is none.
     An interval is at least two places, its ends: a place that two intervals share is on the boundary of both.
+    used: (N,) bool, False where one is switched off, which says nothing then; None: all are used.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -32,6 +33,7 @@ class Observations(ShortRepr):
     blocks: np.ndarray
     holes: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
+    used: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -51,8 +53,16 @@ class Observations(ShortRepr):
         if not len(blocks) == len(holes) == len(depths) == count:
             what = f"{count} places have {len(blocks)} blocks, {len(holes)} holes and {len(depths)} depths"
             raise InputRefused(what, item="observations", advice="give each place one of each")
+        used = None if self.used is None else np.asarray(self.used, bool).reshape(-1)
+        if used is not None and len(used) != count:
+            advice = "say of each place whether it is used"
+            raise InputRefused(
+                f"{count} places have {len(used)} of 'used'", item="observations", advice=advice
+            )
         for name, value in zip(
-            ("places", "blocks", "holes", "depths"), (places, blocks, holes, depths), strict=True
+            ("places", "blocks", "holes", "depths", "used"),
+            (places, blocks, holes, depths, used),
+            strict=True,
         ):
             object.__setattr__(self, name, value)
 
@@ -61,7 +71,14 @@ class Observations(ShortRepr):
 
     def some(self, chosen: np.ndarray) -> Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
-        return Observations(self.places[chosen], self.blocks[chosen], self.holes[chosen], self.depths[chosen])
+        used = None if self.used is None else self.used[chosen]
+        names = ("places", "blocks", "holes", "depths")
+        return Observations(*(getattr(self, name)[chosen] for name in names), used)
+
+    @property
+    def in_use(self) -> np.ndarray:
+        """(N,) bool: which are not switched off."""
+        return np.ones(len(self), bool) if self.used is None else self.used
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -83,8 +100,9 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        names = ("places", "blocks", "holes", "depths")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        names = ("places", "blocks", "holes", "depths", "in_use")
+        *arrays, used = (np.concatenate([getattr(part, name) for part in parts]) for name in names)
+        return cls(*arrays, None if used.all() else used)
 
 
 def source_text(hole: str, depth: float, place) -> str:
@@ -97,9 +115,9 @@ def source_text(hole: str, depth: float, place) -> str:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """An observation that is not used. kind: a word of KINDS. text: what and why. block: its name. hole: its
-    name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model units, None where
-    it is not known."""
+    """An observation that is not used. kind: a word of KINDS, or SWITCHED_OFF. text: what and why. block: its
+    name. hole: its name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model
+    units, None where it is not known."""
 
     kind: str
     text: str
@@ -124,6 +142,7 @@ IN_TABLES = {
     "no_depth": "intervals have no depth, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
 }
+SWITCHED_OFF = "switched_off"  # by the user: no warning
 KINDS = {
     **IN_TABLES,
     "wrong_order": "observations have an older block above a younger one, or a block twice, and are not used",
