@@ -58,6 +58,7 @@ def test_intervals_say_how_much_of_them_is_elsewhere():
     assert len(found) == 1, found
     only = found[0]
     assert (only.hole, only.depth, only.place) == ("B1", 1.5, (5.0, 5.0, 8.5))
+    assert only.end == (5.0, 5.0, 2.0)
     assert only.says == "clay to 8" and only.has.endswith("most in sand block")
     assert abs(only.by - 2.0) < 0.5
 

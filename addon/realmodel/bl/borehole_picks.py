@@ -27,6 +27,18 @@ def rename(row, old, new):
         row.hole_picks = json.dumps(picks)
 
 
+def move(row, old, new):
+    """Moves the picks at a place, (x, y, z) in model coordinates, to another."""
+    picks = of_rock(row)
+    there = [pick for _, met in picks.values() for pick in met if tuple(pick[1]) == tuple(old)]
+    for pick in there:
+        pick[1] = [float(value) for value in new]
+    if there:
+        for _, met in picks.values():
+            met.sort(key=lambda pick: -pick[1][2])
+        row.hole_picks = json.dumps(picks)
+
+
 def remove_at(row, places):
     """Removes the picks at some places (N, 3), and holes that have no others."""
     removed = {tuple(place) for place in places.tolist()}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The observations of blocks of a rock mass, stored in its row."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,14 +11,17 @@ from ..core.readers import UnitNames
 from . import caches, settings, stored_arrays
 
 _shown = caches.new(most=8)  # by text
-_NAMES = ("places", "blocks", "holes", "depths")
+NAMES = ("places", "blocks", "holes", "depths")
 
 
 def keep(row, observations):
     """Stores realmodel.core.Observations, or None."""
     row.observations = ""
     if observations is not None and len(observations):
-        row.observations = stored_arrays.pack(**{name: getattr(observations, name) for name in _NAMES})
+        arrays = {name: getattr(observations, name) for name in NAMES}
+        if observations.used is not None:
+            arrays["used"] = observations.used
+        row.observations = stored_arrays.pack(**arrays)
 
 
 def add(row, observations):
@@ -45,7 +49,7 @@ def of_rock(row):
     if not row.observations:
         return None
     arrays = stored_arrays.unpack(row.observations)
-    return Observations(*(arrays[name] for name in _NAMES))
+    return Observations(*(arrays[name] for name in NAMES), used=arrays.get("used"))
 
 
 def rename(row, old, new):
@@ -53,7 +57,7 @@ def rename(row, old, new):
     found = of_rock(row)
     if found is not None and (found.blocks == old).any():
         blocks = np.where(found.blocks == old, new, found.blocks)
-        keep(row, Observations(found.places, blocks, found.holes, found.depths))
+        keep(row, replace(found, blocks=blocks))
 
 
 def places_of(row):

@@ -139,6 +139,8 @@ def _plain_surface(row):
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
         surface.dips = surface_dips.of_surface(row)
+        if row.left_out:
+            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     return surface
 
 
@@ -189,7 +191,7 @@ def _shape(source, composed, place, surface, row):
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
-                surface.method, surface.options, surface.dips = None, {}, None
+                surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
                 for key in _OF_INTERPOLATED:
                     setattr(surface, key, None)
             base = _made_of(source.scene, place, row)
@@ -415,7 +417,9 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        surface_dips.keep(row, surface.known_dips())
+        surface_dips.keep(row, surface.dips)
+        if surface.left_out is not None and len(surface.left_out):
+            row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The dips of a surface, stored in its row."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..core import Dips
@@ -32,4 +34,21 @@ def joined(parts):
     positions, gradients = (
         np.concatenate([getattr(part, key) for part in parts]) for key in ("positions", "gradients")
     )
-    return Dips(positions, gradients, np.concatenate(heights))
+    used = np.concatenate([np.ones(len(part), bool) if part.used is None else part.used for part in parts])
+    return Dips(positions, gradients, np.concatenate(heights), None if used.all() else used)
+
+
+def with_used(dips, number, used):
+    """Dips of which one is switched off, or on."""
+    in_use = np.ones(len(dips), bool) if dips.used is None else dips.used.copy()
+    in_use[number] = used
+    return replace(dips, used=None if in_use.all() else in_use)
+
+
+def moved(dips, number, place):
+    """Dips of which one is at a place (x, y, z); a height that is not known stays so."""
+    positions, z = dips.positions.copy(), None if dips.z is None else dips.z.copy()
+    positions[number] = place[:2]
+    if z is not None and not np.isnan(z[number]):
+        z[number] = place[2]
+    return replace(dips, positions=positions, z=z)

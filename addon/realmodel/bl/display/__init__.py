@@ -46,6 +46,7 @@ from . import (
     stages,
 )
 
+_field = None  # see show_field_with
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
 
@@ -111,6 +112,8 @@ def explode_changed(scene):
 
 def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
+    if _field is not None:
+        _field.follow_exaggeration(scene)
     items = [item for item in scene.objects if TAG in item or settings.DATA in item]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
     residuals.follow_exaggeration(scene)
@@ -126,6 +129,19 @@ def residuals_changed(scene):
     except RealModelError as error:
         scene.realmodel.view.message = str(error)
     exaggeration_changed(scene)
+
+
+def field_changed(scene):
+    """Other field data are to be shown, or the data are others; or there is another model."""
+    if scene.library is None and _field is not None:
+        _field.show(scene)
+        exaggeration_changed(scene)
+
+
+def show_field_with(shown):
+    """Sets what shows field data: show(scene), and follow_exaggeration(scene), which shapes them anew."""
+    global _field
+    _field = shown
 
 
 def boreholes_changed(scene):
@@ -183,6 +199,7 @@ def built(scene, bounds, stage=None):
         residuals_changed(scene)
     if group.view.show_boreholes:
         boreholes_changed(scene)
+    field_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -199,6 +216,7 @@ def cleared(scene):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)
+    field_changed(scene)
     cuts.take_off(scene)
     colors.forget(scene)
     modes.without_blocks(scene)

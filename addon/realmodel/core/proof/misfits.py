@@ -15,6 +15,7 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..readers.tables.observations import SWITCHED_OFF
 from ..results.residuals import heights_of_points
+from ..settings.dips import Dips
 from .closed_form import AIR, ClosedForm, closed_forms
 from .observed import sources_of, violated_bounds
 from .seen_places import NEAR, look
@@ -30,9 +31,9 @@ class Misfit:
     "bound", "block" (a place or an interval), "dip", or "left_out". rock: its rock mass. name: its surface or
     block. hole, depth: where it comes from; "" and None where it has none. row: of a point, a dip and an
     observation its row in the data of the surface or the rock mass, from 0; None where there is none. place:
-    (x, y, z), model units, None where it is not known. says: what the datum says; has: what the model has
-    there, or why it is not used. by: how much is between them, model units, of dips degrees; None of what is
-    left out."""
+    (x, y, z), model units, None where it is not known; end: of an interval its lower end. says: what the
+    datum says; has: what the model has there, or why it is not used. by: how much is between them, model
+    units, of dips degrees; None of what is left out."""
 
     kind: str
     rock: str
@@ -44,6 +45,7 @@ class Misfit:
     says: str
     has: str
     by: float | None
+    end: tuple[float, ...] | None = None
 
 
 def misfits(
@@ -147,13 +149,15 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
         has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
         source = str(given.holes[row]), depth, row
         place = tuple(begin[each].tolist())
-        yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]))
+        low = None if is_place[each] else tuple(end[each].tolist())
+        yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)
 
 
 def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
     rock = model.rock_inputs[which[2]].rock
     surface = rock.surfaces[which[1]]
     given = surface.dips
+    assert isinstance(given, Dips)
     rows = np.flatnonzero(given.used) if given.used is not None else np.arange(len(given))
     dips = given.some(rows)
     z = np.full(len(dips), np.nan) if dips.z is None else dips.z
@@ -191,7 +195,7 @@ def _slopes(
 
 def attitude_text(gradient: np.ndarray) -> str:
     """A slope (2,) along x and y as dip direction and dip: "120/35", degrees."""
-    x, y = (float(value) for value in gradient)
+    x, y = (float(value) for value in gradient)  # adding 0.0 makes no -0 of a level plane
     dip = np.degrees(atan2(math.sqrt(x * x + y * y), 1.0))
-    direction = np.degrees(atan2(-x, -y)) % 360.0
+    direction = np.degrees(atan2(-x + 0.0, -y + 0.0)) % 360.0
     return f"{round(direction) % 360:03d}/{dip:02.0f}"

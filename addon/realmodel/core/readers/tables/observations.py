@@ -72,8 +72,8 @@ class Observations(ShortRepr):
     def some(self, chosen: np.ndarray) -> Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
         used = None if self.used is None else self.used[chosen]
-        names = ("places", "blocks", "holes", "depths")
-        return Observations(*(getattr(self, name)[chosen] for name in names), used)
+        places, depths = self.places[chosen], self.depths[chosen]
+        return Observations(places, self.blocks[chosen], self.holes[chosen], depths, used)
 
     @property
     def in_use(self) -> np.ndarray:
@@ -101,8 +101,9 @@ class Observations(ShortRepr):
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
         names = ("places", "blocks", "holes", "depths", "in_use")
-        *arrays, used = (np.concatenate([getattr(part, name) for part in parts]) for name in names)
-        return cls(*arrays, None if used.all() else used)
+        arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+        used = arrays.pop("in_use")
+        return cls(**arrays, used=None if used.all() else used)
 
 
 def source_text(hole: str, depth: float, place) -> str:
