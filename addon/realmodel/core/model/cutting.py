@@ -18,6 +18,7 @@ from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
 from ..results.section_faults import traces_on_fence, traces_on_plane
+from ..results.section_holes import hole_lines
 from ..settings.method_options import check_threads
 from .section import Fence, Section
 
@@ -208,6 +209,7 @@ def section(
             **_section_arrays(model, found),
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
@@ -259,6 +261,7 @@ def fence(
             polyline=polyline,
             panel=np.concatenate(numbers),
             faults=traces_on_fence(model, polyline),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
