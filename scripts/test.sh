@@ -153,8 +153,9 @@ check_tidy() {
 # A shell that starts this script in the background has it ignore Ctrl-C, which some tests send.
 in_time() { timeout --kill-after=10 "$1" env --default-signal=INT "${@:2}"; } # LIMIT COMMAND...
 
-test_core() { # a test that hangs fails after ten minutes, and the others go on
-    in_time 45m "$venv/bin/python" -m pytest tests/core --timeout 600 --junitxml="$logs/core.xml"
+test_core() { # by modules on all processors; a test that hangs fails after ten minutes, and the others go on
+    in_time 45m "$venv/bin/python" -m pytest tests/core --numprocesses "$(nproc)" --dist loadfile --timeout 600 \
+        --junitxml="$logs/core.xml"
 }
 
 test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }

@@ -146,7 +146,7 @@ def _keys(settings, text):
 
 def written(text):
     """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
-    from realmodel.core.settings.schema import BODY, FAULT, PROJECT, READING, ROCK, SURFACE
+    from realmodel.core.settings.schema import BODY, FAULT, PROJECT, READING, ROCK, SERIES, SURFACE
 
     tables = {
         "rules": _rules,
@@ -158,6 +158,7 @@ def written(text):
     keys = {
         "project": PROJECT,
         "rock": ROCK,
+        "series": SERIES,
         "surface": SURFACE,
         "fault": FAULT,
         "body": BODY,

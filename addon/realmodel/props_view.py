@@ -14,6 +14,7 @@ from bpy.props import (
 
 from .bl import changes
 from .bl.display import cuts
+from .bl.field import boreholes
 from .core.proof.misfits import DIP_TOLERANCE
 
 
@@ -91,7 +92,29 @@ class RealModelView(bpy.types.PropertyGroup):
         description="Show the boreholes as tubes, in the colors of the blocks of their intervals, or of the "
         "layer below each pick",
         options=set(),
-        update=changes.boreholes,
+        update=changes.field_data,
+    )
+    boreholes_by: StringProperty(
+        name="Color By",
+        description="Column of the tables of intervals and assays that the tubes show; empty: the blocks",
+        search=lambda self, _context, _text: boreholes.columns(self.id_data),
+        options=set(),
+        update=changes.field_data,
+    )
+    show_hole_names: BoolProperty(
+        name="Hole Names",
+        description="Show the name of each borehole at its collar, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    hole_width: FloatProperty(
+        name="Holes Within",
+        description="Distance from the section plane within which boreholes are shown on the cut, and drawn "
+        "on sections; 0: on the cut all, in their places, and none in drawings",
+        min=0.0,
+        subtype="DISTANCE",
+        options=set(),
+        update=changes.field_data,
     )
     show_contacts: BoolProperty(
         name="Contacts",

@@ -34,6 +34,7 @@ th, td {{ border: 1px solid #ccc; padding: 0.2em 0.6em; text-align: left; vertic
 def web_pages():
     """{path in the add-on's folder: bytes} of all pages and their pictures."""
     documents = [
+        *ROOT.glob("docs/*.md"),
         *ROOT.glob("docs/guide/*.md"),
         *ROOT.glob("docs/reference/*.md"),
         *map(ROOT.joinpath, OTHERS),

@@ -42,6 +42,38 @@ def crossing_model(write, crs="EPSG:25832"):
     return build(Project("crossing", [rock], library, crs=crs))
 
 
+LOGS = """hole,from,to,block
+L1,2,10,soil
+L1,10,14,lost core
+L1,14,25,clay
+L1,25,40,rock
+L2,0,12,soil
+L2,12,16,clay
+L2,16,18,core loss
+L2,18,22,clay
+L2,22,30,rock
+L3,0,8,soil
+L3,8,28,clay
+L3,28,45,rock
+"""
+LOG_COLLARS = "hole,x,y,z,azimuth,dip\nL1,20,20,30,,\nL2,80,30,30,,\nL3,50,60,30,0,-60\n"
+
+
+def logged_model(write):
+    """Three layers from boreholes with intervals: one without its top, two with lost core, one inclined; and
+    picks of one of them."""
+    plan = [[0, 0], [100, 0], [100, 100], [0, 100]]
+    boreholes = Boreholes(
+        intervals=write("logs.csv", LOGS),
+        collars=write("log_collars.csv", LOG_COLLARS),
+        picks=write("log_picks.csv", "hole,surface,depth\nL1,C,12\n"),
+    )
+    names = (("R", "rock"), ("C", "clay"), ("S", "soil"))
+    surfaces = [Surface(name, method="plane", block=block) for name, block in names]
+    rock = Rock("r", surfaces, plan, edge_length=25.0, base_elevation=-20.0, boreholes=boreholes)
+    return build(Project("logged", [rock]))
+
+
 def volume(vertices, triangles):
     """Of what triangles close."""
     origin = vertices.mean(axis=0)

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from object_models import assert_closed, assert_shared, corner_triples, crossing_model, volume
+from object_models import assert_closed, assert_shared, corner_triples, crossing_model, logged_model, volume
 from realmodel.core import Project, Rock, Surface, build
 
 ifcopenshell = pytest.importorskip("ifcopenshell", reason="not installed: scripts/test.sh installs it")
@@ -147,6 +147,29 @@ def test_boreholes_are_made_of_strata(model, file):
     (curve,) = upright.Representation.Representations[0].Items
     assert np.allclose(curve.Points.CoordList, [[0.75, 1.0, z] for z in (9.0, 1.5, 1.0, 0.0)])
     assert parts[0].Representation.Representations[0].Items[0].is_a("IfcSweptDiskSolid")
+
+
+def test_boreholes_are_as_they_were_logged(write, tmp_path):
+    """To their ends, with lost core between; an interval of an inclined hole is one stratum."""
+    import ifcopenshell.util.element as element
+
+    logged_model(write).save(tmp_path / "m.ifc")
+    read = ifcopenshell.open(tmp_path / "m.ifc")
+    assert faults(read) == []
+    found = {}
+    for hole in read.by_type("IfcBorehole"):
+        parts = hole.IsDecomposedBy[0].RelatedObjects
+        own = [(part.Name, element.get_pset(part, "RealModel_Interval")) for part in parts]
+        found[hole.Name] = [(name, round(each["From"], 6), round(each["To"], 6)) for name, each in own]
+    lost = "unknown"
+    assert found == {
+        "L1": [
+            *((lost, 0, 2), ("soil", 2, 10), (lost, 10, 12), (lost, 12, 14)),  # picked at 12
+            *(("clay", 14, 25), ("rock", 25, 40)),
+        ],
+        "L2": [("soil", 0, 12), ("clay", 12, 16), (lost, 16, 18), ("clay", 18, 22), ("rock", 22, 30)],
+        "L3": [("soil", 0, 8), ("clay", 8, 28), ("rock", 28, 45)],
+    }
 
 
 def test_the_place_is_that_of_the_projects_system(model, file, write, tmp_path):

@@ -462,3 +462,22 @@ def test_observations_in_bodies():
     assert {each.block: (each.observations, each.share) for each in found.blocks}["ore"] == (1, 1.0)
     (said,) = [warning.text for warning in model.warnings if warning.kind == "in_body"]
     assert "(7, 5, 4)" in said
+
+
+def test_lost_core_within_a_block_parts_two_intervals():
+    """Also where one hole follows another, and where a place was seen within an interval."""
+    places = [[0, 0, -z] for z in (0, 4, 6, 9)]
+    hole = Observations(places, ["clay"] * 4, ["B"] * 4, [0, 4, 6, 9], [0, 0, 1, 1])
+    assert hole.goes_on.tolist() == [False, True, False, True]
+    assert hole.some(np.array([0, 2, 3])).goes_on.tolist() == [False, False, True]
+    seen = Observations([[0, 0, -7], [5, 5, 0]], ["clay"] * 2, ["B", ""], [7, np.nan])
+    both = Observations.joined([hole, seen, hole]).along_holes()
+    assert both.depths[both.holes == "B"].tolist() == [0, 0, 4, 4, 6, 6, 7, 9, 9]
+    (log,) = Observations.joined([hole, seen]).logs().values()
+    assert log.depths.tolist() == [0, 4, 6, 7, 9]
+    assert log.goes_on.tolist() == [False, True, False, True, True]
+    without = Observations(places, ["clay"] * 4, ["B"] * 4, [0, 4, 6, 9])
+    assert without.goes_on.tolist() == [False, True, True, True]
+    assert Observations.joined([]).logs() == {}
+    with pytest.raises(InputRefused, match="4 places have 3 numbers of intervals"):
+        Observations(places, ["clay"] * 4, intervals=[0, 0, 1])

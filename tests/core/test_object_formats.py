@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from object_models import assert_closed, assert_shared, crossing_model, volume
+from object_models import assert_closed, assert_shared, crossing_model, logged_model, volume
 from realmodel.core import Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters import format_for
 from realmodel.core.results.regular_cells import regular_cells
@@ -86,6 +86,47 @@ def test_omf_has_surfaces_and_boreholes(model, tmp_path):
     assert np.linalg.norm(places[5] - places[4]) == pytest.approx(8.25)
 
 
+def runs(blocks, depths):
+    """(block, from, to) of the pieces of a hole, those of one block that follow one another as one."""
+    found = []
+    for block, begin, end in zip(blocks, depths[:-1], depths[1:], strict=True):
+        if found and found[-1][0] == block:
+            found[-1] = (block, found[-1][1], end)
+        else:
+            found.append((block, begin, end))
+    return [(block, round(begin, 6), round(end, 6)) for block, begin, end in found]
+
+
+LOGGED = {
+    "L1": [("", 0, 2), ("soil", 2, 10), ("", 10, 14), ("clay", 14, 25), ("rock", 25, 40)],
+    "L2": [("soil", 0, 12), ("clay", 12, 16), ("", 16, 18), ("clay", 18, 22), ("rock", 22, 30)],
+    "L3": [("soil", 0, 8), ("clay", 8, 28), ("rock", 28, 45)],
+}
+
+
+def test_omf_has_holes_as_they_were_logged(write, tmp_path):
+    """To their ends; lost core is of no block, also within one."""
+    logged_model(write).save(tmp_path / "m.omf")
+    elements = {element.name: element for element in read_omf(tmp_path / "m.omf").elements}
+    lines = elements["boreholes"]
+    by = {(each.location, each.name): np.array(omf_names(each)) for each in lines.data}
+    places = np.asarray(lines.geometry.vertices.array)
+    for hole, wanted in LOGGED.items():
+        blocks = by["segments", "block"][by["segments", "hole"] == hole].tolist()
+        own = places[by["vertices", "hole"] == hole]
+        steps = np.linalg.norm(np.diff(own, axis=0), axis=1)
+        assert runs(blocks, [0.0, *np.cumsum(steps).tolist()]) == wanted
+    named = {
+        (hole, surface, round(30.0 - place[2], 6))
+        for hole, surface, place in zip(
+            by["vertices", "hole"], by["vertices", "surface"], places.tolist(), strict=True
+        )
+        if surface and hole != "L3"
+    }
+    # between lost core and a block there is no contact; a pick is one
+    assert named == {("L1", "C", 12), ("L1", "R", 25), ("L2", "C", 12), ("L2", "R", 22)}
+
+
 def test_omf_has_cells_where_their_size_is_given(model, tmp_path):
     model.save(tmp_path / "m.omf", cell_size=SIZE)
     elements = {element.name: element for element in read_omf(tmp_path / "m.omf").elements}
@@ -149,6 +190,19 @@ def test_geoh5_has_drillholes(model, tmp_path):
         assert np.allclose(inclined.surveys[:, 1:], [90.0, -80.0], atol=1e-4)
         # by the directions that the file says, in its short numbers
         assert np.allclose(inclined.desurvey([8.25, 8.5]), inclined.vertices[1:], atol=1e-4)
+
+
+def test_geoh5_has_holes_as_they_were_logged(write, tmp_path):
+    logged_model(write).save(tmp_path / "m.geoh5")
+    with read_geoh5(tmp_path / "m.geoh5") as workspace:
+        for hole, wanted in LOGGED.items():
+            (item,) = workspace.get_entity(hole)
+            blocks = [name.replace("Unknown", "") for name in geoh5_names(item, "block")]
+            depths = [item.from_.values[0], *item.to_.values.tolist()]
+            found = runs(blocks, depths)
+            assert [each[0] for each in found] == [each[0] for each in wanted]
+            assert np.allclose([each[1:] for each in found], [each[1:] for each in wanted], atol=1e-4)
+            assert item.end_of_hole == pytest.approx(wanted[-1][2])
 
 
 def test_geoh5_has_cells_where_their_size_is_given(model, tmp_path):

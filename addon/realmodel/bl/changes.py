@@ -36,7 +36,6 @@ def _unless_filling(consequence):
 setting = _unless_filling(live.touch)  # of settings that the model depends on
 coloring = _unless_filling(display.colors_changed)
 view = _unless_filling(display.mode_changed)  # of settings of the display
-boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
 field_data = _unless_filling(display.field_changed)
 ensemble = _unless_filling(display.ensemble_changed)

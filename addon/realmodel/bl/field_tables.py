@@ -15,6 +15,7 @@ from ..core.readers import (
 )
 from ..core.readers.objects.object_file import is_object_file
 from ..core.readers.tables.hole_tables import OBSERVED, PICKS, columns_in
+from ..core.readers.tables.interval_values import read_interval_values
 from ..core.settings.boreholes import COLUMNS as OF_HOLES
 from ..core.settings.boreholes import Boreholes, check_column_names
 from ..core.settings.dips import COLUMNS as OF_DIPS
@@ -27,9 +28,11 @@ _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
 
 @dataclass
 class FieldTables:
-    """boreholes: None where there are none. observations, dips: ObservationFile and DipFile."""
+    """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
+    dips: ObservationFile and DipFile."""
 
     boreholes: Boreholes | None = None
+    assays: list = field(default_factory=list)
     observations: list = field(default_factory=list)
     dips: list = field(default_factory=list)
 
@@ -37,13 +40,14 @@ class FieldTables:
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: None where there are none. new: units that no surface, block or body is called, to be added."""
+    dips: None where there are none. values: IntervalValues of tables of intervals and assays. new: units that no surface, block or body is called, to be added."""
 
     picks: Picks
     observations: Observations
     dips: Dips | None
     left_out: list
     new: list
+    values: list
 
 
 def sorted_out(paths, columns, units=None, **of_holes):
@@ -52,7 +56,7 @@ def sorted_out(paths, columns, units=None, **of_holes):
     and OptionRefused."""
     check_column_names(columns, ALL_COLUMNS)
     tables = {kind: given for kind in _ONE_OF_EACH if (given := of_holes.pop(kind, None)) is not None}
-    found = FieldTables()
+    found, assays = FieldTables(), []
     for path in paths:
         if path in tables.values():
             continue
@@ -61,14 +65,20 @@ def sorted_out(paths, columns, units=None, **of_holes):
             found.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
         elif kind == "dips":
             found.dips.append(DipFile(path, _of(columns, OF_DIPS), units=units))
+        elif kind == "assays":
+            assays.append(path)
         elif kind in tables:
             what = f"{tables[kind].name} and {path.name} both have {kind}"
             raise InputRefused(what, file=path, advice="choose one of them, or name columns that differ")
         else:
             tables[kind] = path
-    if tables:
-        found.boreholes = Boreholes(**tables, **of_holes, columns=_of(columns, OF_HOLES), units=units)
+    of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
+    if tables and not (assays and tables.keys() <= {"collars", "survey"}):
+        found.boreholes = Boreholes(**tables, **of_holes)
         found.boreholes.check()
+    for path in assays:
+        found.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
+        found.assays[-1].check()
     return found
 
 
@@ -106,8 +116,11 @@ def _read(scene, rock, tables, units):
     unit = scene.realmodel.units
     step = rock.edge_length if rock is not None and rock.edge_length > 0.0 else None
     picks = Picks()
+    logged = [*tables.assays]
     if tables.boreholes is not None:
         picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
+        intervals = tables.boreholes.intervals
+        logged += [tables.boreholes] if intervals is not None and not is_object_file(intervals) else []
     seen, left_out = list(picks.observations), list(picks.left_out)
     for file in tables.observations:
         observed, not_used = read_observed_places(file, units, unit)
@@ -123,4 +136,5 @@ def _read(scene, rock, tables, units):
         surface_dips.joined(dips) if dips else None,
         left_out,
         [name for name in meant if name not in known],
+        [read_interval_values(each, unit) for each in logged],
     )

@@ -107,7 +107,8 @@ def compose(scene, depsgraph, whole=True):
     for number, row in enumerate(group.rocks):
         base = method_settings.value(row, "base_elevation", ROCK)
         picks = borehole_picks.of_rock(row)
-        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks)
+        ends = borehole_picks.ends_of(row)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
@@ -390,7 +391,11 @@ def fill(scene, project):
 
 
 def add_rock(group, rock):
-    """A row for a realmodel.core.Rock."""
+    """A row for a realmodel.core.Rock. Raises InputRefused for one with series, which no row has yet."""
+    for series in rock.series:
+        raise series.refused(
+            "series are not in the panel yet", None, "build it by build_model.py without --blend", rock.item
+        )
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
@@ -404,6 +409,7 @@ def add_rock(group, rock):
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
+        borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
     return row
 

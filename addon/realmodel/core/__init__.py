@@ -26,6 +26,7 @@ from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property, load_library
 from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
+from .project.series import Series
 from .project.structure_entries import Body, Fault
 from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
@@ -37,7 +38,7 @@ from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
-from .settings.dips import DipFile, Dips
+from .settings.dips import DipFile, Dips, SpaceDips
 from .settings.map_file import MapFile
 from .settings.map_layer import MapLayer
 from .settings.observation_file import ObservationFile
@@ -94,7 +95,9 @@ __all__ = [
     "Report",
     "Rock",
     "Section",
+    "Series",
     "SimulationMesh",
+    "SpaceDips",
     "Structure",
     "SubBlock",
     "SubSurface",

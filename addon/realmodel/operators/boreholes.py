@@ -12,6 +12,7 @@ from ..bl import (
     caches,
     data_objects,
     field_tables,
+    interval_values,
     live,
     method_settings,
     observed_blocks,
@@ -116,6 +117,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             surface_dips.add(row, found.dips)
             warnings += _dips_warnings(row, tables.dips)
         borehole_picks.keep(rock, found.picks.holes)
+        borehole_picks.keep_ends(rock, found.picks.ends)
+        for values in found.values:
+            interval_values.add(rock, values)
+            given.append(values.begins)
         arrived(context, rock, given)
         for text in warnings:
             self.report({"WARNING"}, text)
@@ -209,6 +214,9 @@ def _summary(found, surface):
         said.append(f"{len(found.observations)} observations of blocks")
     if found.dips is not None:
         said.append(f"{len(found.dips)} dips of '{surface}'")
+    columns = dict.fromkeys(name for values in found.values for name in values.columns)
+    if columns:
+        said.append(f"the columns {', '.join(columns)} of intervals")
     text = ", ".join(said) or "nothing that could be used"
     text = text[0].upper() + text[1:]
     return f"{text}: {', '.join(names)}" if names else text

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.field import data, handle
+from ..bl.field import boreholes, data, handle
 from ..core import RealModelError
 from .lists import OfRows
 from .panel import FoldedPanel, OfAModel, hint, right_label, wrapped
@@ -33,8 +33,13 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
             return
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
         grid.use_property_split = False
-        for name in ("show_contacts", "show_dips"):
+        for name in ("show_contacts", "show_dips", "show_boreholes", "show_hole_names"):
             grid.prop(group.view, name, toggle=True)
+        if group.view.show_boreholes:
+            column = layout.column(align=True)
+            if boreholes.columns(context.scene):
+                column.prop(group.view, "boreholes_by")
+            column.prop(group.view, "hole_width")
         _draw_datum(layout, context, groups)
 
 

@@ -29,7 +29,6 @@ from .. import exaggeration, settings
 from ..model_tree import TAG
 from . import (
     bodies,
-    boreholes,
     colors,
     coordinates,
     cuts,
@@ -95,7 +94,9 @@ def opened():
 
 
 def mode_changed(scene):
-    """The display mode was changed, or a surface or property hidden or shown."""
+    """The display mode was changed, or a surface or property hidden or shown, or the cut is another one."""
+    if _field is not None:
+        _field.follow_cut(scene)
     _show(scene, display=scene.realmodel.display)
 
 
@@ -139,18 +140,10 @@ def field_changed(scene):
 
 
 def show_field_with(shown):
-    """Sets what shows field data: show(scene), and follow_exaggeration(scene), which shapes them anew."""
+    """Sets what shows field data: show(scene); follow_exaggeration(scene) shapes them anew, follow_cut(scene)
+    those on the section plane."""
     global _field
     _field = shown
-
-
-def boreholes_changed(scene):
-    """The boreholes are wanted, or not; or there is another model."""
-    if scene.realmodel.view.show_boreholes and len(scene.realmodel.results):
-        boreholes.show(scene)
-    else:
-        bodies.remove(scene, bodies.BOREHOLES)
-    exaggeration_changed(scene)
 
 
 def ensemble_changed(scene):
@@ -197,8 +190,6 @@ def built(scene, bounds, stage=None):
     group.view.cells_of = group.view.surviving_of = ""
     if group.view.show_residuals:
         residuals_changed(scene)
-    if group.view.show_boreholes:
-        boreholes_changed(scene)
     field_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
@@ -212,7 +203,7 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    for kind in (bodies.CELLS, bodies.SURVIVING, bodies.BOREHOLES):
+    for kind in (bodies.CELLS, bodies.SURVIVING):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)

@@ -128,12 +128,11 @@ def left_out(row):
 
 
 def interval_rows(observations):
-    """(I, 2) the first and last rows of the intervals of Observations: rows of one block in one hole that
-    follow one another, and are used alike."""
-    holes, blocks, used = observations.holes, observations.blocks, observations.in_use
-    follows = np.zeros(len(observations), bool)
-    follows[1:] = (holes[1:] != "") & (holes[1:] == holes[:-1])
-    follows[1:] &= (blocks[1:] == blocks[:-1]) & (used[1:] == used[:-1])
+    """(I, 2) the first and last rows of the intervals and places of Observations; what is switched off is not
+    in one interval with what is used."""
+    used = observations.in_use
+    follows = observations.goes_on
+    follows[1:] &= used[1:] == used[:-1]
     begin = np.flatnonzero(~follows)
     end = np.append(begin[1:], len(observations)) - 1
     return np.column_stack([begin, end]).reshape(-1, 2)

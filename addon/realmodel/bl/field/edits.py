@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Changes of one datum: switched off or on, moved. Raises InputRefused where it is not there any more."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from ...core import InputRefused, Observations
+from ...core import InputRefused
 from .. import borehole_picks, observed_blocks, reading_text, settings, stored_arrays, surface_dips
 from . import data
 
@@ -55,7 +57,7 @@ def move(scene, datum, place):
         observations = observed_blocks.of_rock(rock)
         places = observations.places.copy()
         places[group.rows[number]] = place
-        observed_blocks.keep(rock, _replaced(observations, places=places))
+        observed_blocks.keep(rock, replace(observations, places=places))
     elif datum.kind == data.DIP:
         dips = surface_dips.of_surface(row)
         surface_dips.keep(row, surface_dips.moved(dips, group.rows[number], place))
@@ -110,18 +112,13 @@ def _keep_points(row, points, stays_of_file=False):
             reading_text.fill(row, {})
 
 
-def _replaced(observations, **arrays):
-    given = {name: getattr(observations, name) for name in observed_blocks.NAMES}
-    return Observations(**given | {"used": observations.used} | arrays)
-
-
 def _switched(observations, first, used):
     """The interval or the place that begins in a row, switched off or on."""
     in_use = observations.in_use.copy()
     rows = data.interval_rows(observations)
     begin, end = next((a, b) for a, b in rows.tolist() if a == first)
     in_use[begin : end + 1] = used
-    return _replaced(observations, used=None if in_use.all() else in_use)
+    return replace(observations, used=in_use)
 
 
 def _moved_end(observations, first):
@@ -149,7 +146,7 @@ def _moved_end(observations, first):
                 places[row], all_depths[row] = new, depth
             elif start < row < last:  # between the ends of an inclined interval
                 kept[row] = along[row - start] < at if row < first else along[row - start] > at
-        return _replaced(observations, places=places, depths=all_depths).some(kept), new
+        return replace(observations, places=places, depths=all_depths).some(kept), new
 
     return moved
 

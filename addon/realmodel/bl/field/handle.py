@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.proof.misfits import attitude_text
-from .. import data_objects, display, exaggeration, live, model_tree, project_settings, viewports
+from .. import data_objects, exaggeration, live, model_tree, project_settings, viewports
 from ..debounce import DebouncedJob
 from ..display import bodies, visible
 from . import data, edits, heights, misfits
@@ -157,11 +157,8 @@ def _offset(scene, datum):
 
 def _begin(name, _changed_at):
     scene = bpy.data.scenes.get(name)
-    if scene is None:
-        return
-    data_objects.update(scene)
-    if scene.realmodel.view.show_boreholes:
-        display.boreholes_changed(scene)
+    if scene is not None:
+        data_objects.update(scene)
 
 
 _work = DebouncedJob(lambda: REST_SECONDS, _begin, lambda *_: None)

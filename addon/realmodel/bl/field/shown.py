@@ -9,12 +9,13 @@ import numpy as np
 from ...core import RealModelError
 from .. import display, exaggeration, project_settings, settings
 from ..display import bodies, colors, marks
-from . import data, handle, heights, misfits
+from . import boreholes, data, handle, heights, misfits
 
 CONTACTS, DIPS, MISFITS = "contacts", "dips", "misfits"
 KINDS = (CONTACTS, DIPS, MISFITS)
 _OFF, _RED = ("Switched Off", "#8c8c8c"), ("Misfit", "#e01818")
 _STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that it is shaped for
+_CUT = "realmodel_cut"  # on boreholes: the state of the cut that they lie on
 _MOST = 20_000  # data of a kind shown at most
 _DISC = 0.025  # radius of a disc, of the size of all
 _RED_LARGER = 1.6  # than other points, so that they are seen around these
@@ -36,6 +37,7 @@ def show(scene):
     view = scene.realmodel.view
     misfits.fill(scene)
     for kind, wanted, shown in (
+        (boreholes.BOREHOLES, view.show_boreholes, boreholes.show),
         (CONTACTS, view.show_contacts, _contacts),
         (DIPS, view.show_dips, _dips),
         (MISFITS, view.show_misfits, _misfits),
@@ -47,6 +49,7 @@ def show(scene):
             except RealModelError as error:
                 view.message = str(error)
         for item in bodies.listed(scene, kind):
+            item[_CUT] = view.cut if boreholes.is_on_cut(scene) else ""
             item[_STRETCH] = exaggeration.factor(scene)
 
 
@@ -55,6 +58,18 @@ def follow_exaggeration(scene):
     shown = [item for kind in KINDS for item in bodies.listed(scene, kind)]
     if any(item.get(_STRETCH) != exaggeration.factor(scene) for item in shown):
         show(scene)
+
+
+def follow_cut(scene):
+    """Shows the boreholes on the section plane, where that has moved."""
+    if not scene.realmodel.view.show_boreholes:
+        return
+    state = scene.realmodel.view.cut if boreholes.is_on_cut(scene) else ""
+    if any(item.get(_CUT, "") != state for item in bodies.listed(scene, boreholes.BOREHOLES)):
+        boreholes.show(scene)
+        for item in bodies.listed(scene, boreholes.BOREHOLES):
+            item[_CUT] = state
+        display.exaggeration_changed(scene)
 
 
 def _contacts(scene):

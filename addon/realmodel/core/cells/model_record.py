@@ -19,9 +19,10 @@ from ..base.stored_objects import NamedArrays, StoredClasses, fits, hints_of
 from ..heights import Interpolation
 from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
+from ..project.series import Series
 from ..project.structure_entries import Body, Fault
 from ..readers.tables.observations import Bounds, LeftOut, Observations
-from ..settings.dips import DipFile, Dips
+from ..settings.dips import DipFile, Dips, SpaceDips
 from ..settings.map_layer import MapLayer
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.variogram import Structure, Variogram
@@ -36,7 +37,8 @@ from .model_data import ModelData
 RECORDED: tuple[type, ...] = (
     *(RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body, Sheet),
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
-    *(MapLayer, MeshFile, PointFile, DipFile, Dips, Observations, Bounds, LeftOut),
+    *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
+    *(Observations, Bounds, LeftOut),
 )
 RECORD = "record"  # the table of objects; its arrays are record_0, record_1, ...
 _STORED = StoredClasses(RECORDED)

@@ -52,6 +52,7 @@ from .field_checks import check_field_data, files_of_map, names_of_units
 from .library import Library
 from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .region_rings import is_several
+from .series import Series, check_level_set, check_names_series, check_series, mark_level_sets
 from .structure_checks import check_structures
 from .structure_entries import Body, Fault, Shaped
 
@@ -69,6 +70,8 @@ class Surface(Shaped):
     are points that are not used: those of its file, or its array, at these places, model units. With
     `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
+    `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
+    and is a level set of that field (`is_level_set`, which its rock mass says).
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
     `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
@@ -89,18 +92,21 @@ class Surface(Shaped):
     mesh: str | Path | MeshFile | None = None
     dips: Dips | DipFile | str | Path | None = None
     left_out: np.ndarray | Sequence | None = None
+    series: str | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
+    is_level_set: bool = field(default=False, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
         """Whether its heights are made: from points, by a method that needs none, or from boreholes."""
-        return self.points is not None or (
-            self.mesh is None and self.vertices is None and self.triangles is None
+        return not self.is_level_set and (
+            self.points is not None
+            or (self.mesh is None and self.vertices is None and self.triangles is None)
         )
 
     @builtins.property  # a field of this class is called property
@@ -168,7 +174,8 @@ class Rock(Entry):
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
     `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
-    blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
+    blocks; `hole_picks` is what each of them met once they are read (Picks.holes), and `hole_ends` where it
+    ends (Picks.ends): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
     they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `names`
     says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface or body, or ""
@@ -179,6 +186,7 @@ class Rock(Entry):
     `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
     as of a region; `size` may be at what is in such files too.
     With `base_elevation` there is a block between this height and the oldest surface.
+    `series` are runs of surfaces that share their structure.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
 
@@ -197,9 +205,14 @@ class Rock(Entry):
     observations: str | Path | ObservationFile | Observations | None = None
     names: Mapping[str, str] = field(default_factory=dict)
     map: MapFile | None = None
+    series: list[Series] = field(default_factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
+    hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
+    def __post_init__(self):
+        mark_level_sets(self)
 
     @property
     def observation_file(self) -> ObservationFile | None:
@@ -241,6 +254,12 @@ class Rock(Entry):
         points = [point for point in self.constraints if len(point) == 1]
         return np.concatenate(points) if points else None
 
+    def stage(self, m: int) -> Rock:
+        """The rock mass with the surfaces up to m, and the series that these belong to."""
+        kept = self.surfaces[: m + 1]
+        names = {surface.series for surface in kept}
+        return replace(self, surfaces=kept, series=[each for each in self.series if each.name in names])
+
     @property
     def interpolates(self) -> bool:
         """Whether any of its surfaces is interpolated."""
@@ -281,6 +300,7 @@ class Project:
                     files += companions(Path(surface.point_file.file))
                 if surface.dip_file is not None:
                     files.append(Path(surface.dip_file.file))
+            files += [Path(each.dip_file.file) for each in rock.series if each.dip_file is not None]
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
@@ -288,7 +308,7 @@ class Project:
 
     def stage(self, m: int) -> Project:
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
-        rocks = [replace(rock, surfaces=rock.surfaces[: m + 1]) for rock in self.rocks]
+        rocks = [rock.stage(m) for rock in self.rocks]
         for rock in rocks:
             known = names_of_units(self, rock)
             rock.names = {code: name if name in known else "" for code, name in rock.names.items()}
@@ -320,6 +340,7 @@ def check_project(project: Project) -> None:
 
 def _check_rock(project: Project, rock: Rock) -> None:
     refuse = rock.refused
+    mark_level_sets(rock)  # surfaces may have come later
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
     check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
@@ -337,6 +358,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
         what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
     check_field_data(project, rock)
+    check_series(rock)
     names: set[str] = set()
     for surface in rock.surfaces:
         _check_surface(project, rock, surface)
@@ -372,8 +394,12 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     if not is_name(surface.name):
         raise surface.refused("a surface has no name", "name", item=rock.item)
     refuse = partial(surface.refused, item=surface_item(rock, surface))
-    _check_shape(rock, surface, refuse, bool(project.faults))
-    _check_dips(surface, refuse)
+    check_names_series(rock, surface, refuse)
+    if surface.is_level_set:
+        check_level_set(rock, surface, refuse)
+    else:
+        _check_shape(rock, surface, refuse, bool(project.faults))
+        _check_dips(surface, refuse)
     check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
     check_property(project.library, surface.property, refuse)
 

@@ -22,17 +22,19 @@ from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
 from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
-from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
+from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SERIES, SURFACE
 from ..settings.setting import Settings
 from .entry import is_file, refused_by
 from .library import load_library
 from .plan_input import is_place_elsewhere
 from .project import Project, Rock, Surface, check_project
+from .series import Series
 from .structure_entries import Body, Fault
 
 SomeTable = TypeVar("SomeTable", bound=FieldTable)
 
 FORMAT = 1
+_OF_SURFACE = ("series", "rule", "property", "block", "minimum_thickness", "correlation")
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 
 
@@ -83,6 +85,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         observations=_read_field_table(table, "observations", folder, ObservationFile, "outcrops.csv"),
         map=_read_map(table, folder),
         names=table.content.get("names", {}),
+        series=[_read_series(entry, folder) for entry in _optional(table, "series")],
         source=Source(table.document, table.path),
         **_values(table, ROCK, ("edge_length", "triangles", "mesher", "base_elevation")),
     )
@@ -265,6 +268,18 @@ def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
     return np.array(ring, np.float64).reshape(-1, 2)
 
 
+def _read_series(table: Table, folder: Path) -> Series:
+    name = table.text("name", required=True)
+    table.item = f"{table.item.rpartition(', ')[0]}, series '{name}'"
+    table.allow_only(SERIES)
+    return Series(
+        name,
+        dips=_read_field_table(table, "dips", folder, DipFile, "dips.csv"),
+        source=Source(table.document, table.path),
+        **_values(table, SERIES, ("kind", "resolution")),
+    )
+
+
 def _read_surface(table: Table, folder: Path) -> Surface:
     name = table.text("name", required=True)
     table.item = f"{table.item.rpartition(', ')[0]}, surface '{name}'"
@@ -277,7 +292,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         left_out=_read_left_out(table),
         options=options,
         source=Source(table.document, table.path),
-        **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness", "correlation")),
+        **_values(table, SURFACE, _OF_SURFACE),
         **_shape_files(table, folder),
     )
 

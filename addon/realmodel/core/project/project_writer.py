@@ -20,13 +20,15 @@ from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..base.units import MODEL_UNIT
 from ..readers import UnitNames
-from ..settings.dips import Dips
+from ..settings.dips import Dips, SpaceDips
 from ..settings.meshers import DEFAULT_MESHER
 from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
+from ..settings.series import AUTO, FIELD
 from .library import Library, Property
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
+from .series import Series
 from .structure_entries import Body, Fault
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -81,6 +83,8 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             if rock.observed is not None and len(rock.observed):
                 target = beside(rock.name, "observations", ending=".csv")
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
+            for series in rock.series:
+                lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
                 files = _surface_files(rock, surface, beside, write)
                 lines += ["", "[[rock.surface]]", *_surface_lines(surface, files)]
@@ -148,11 +152,26 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
+def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
+    if series.dip_file is not None:
+        raise UsageError(f"{series.item}: its file has not been read; build the model first")
+    dips, file = series.space_dips(), None
+    if dips is not None and len(dips):
+        file = write(beside(rock.name, series.name, "dips", ending=".csv"), space_dips_text(dips))
+    values = {
+        "name": series.name,
+        "kind": series.kind if series.kind != FIELD else None,
+        "dips": file,
+        "resolution": series.resolution if series.resolution != AUTO else None,
+    }
+    return _lines(values)
+
+
 def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str]:
     """The names of the files of a surface, by their keys."""
     if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
-    if surface.interpolated:
+    if surface.interpolated or surface.is_level_set:
         points = surface.own_points()  # its contacts follow from the observations again
         dips, files = surface.dips, {}
         assert dips is None or isinstance(dips, Dips)
@@ -169,7 +188,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
 
 def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     given = surface
-    values: dict[str, object] = {"name": given.name, **files}
+    values: dict[str, object] = {"name": given.name, "series": given.series, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     if given.left_out is not None and len(given.left_out):
@@ -249,6 +268,11 @@ def dips_text(dips: Dips) -> bytes:
             [f"{names},use\n", *(f"{_joined(row, ',')},{used:d}\n" for row, used in rows)]
         ).encode()
     return f"{names}\n".encode() + _rows(np.hstack(columns), ",")
+
+
+def space_dips_text(dips: SpaceDips) -> bytes:
+    """Dips in space as CSV: their normals, of which angles would not give back each bit."""
+    return b"x,y,z,normal_x,normal_y,normal_z\n" + _rows(np.hstack([dips.positions, dips.normals]), ",")
 
 
 def observations_text(rock: Rock) -> bytes:

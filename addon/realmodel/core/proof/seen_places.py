@@ -100,16 +100,10 @@ def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray)
 def _samples(given: Observations, used: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Places at which observations are looked at (N, 3), of which observation each is (N,), the first and the
     last row of each observation (O, 2), and (N,) bool whether a place may be seen on the ground, as it is in
-    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through rows of the
-    same block."""
-    follows = np.zeros(len(given), bool)
-    follows[1:] = (
-        (given.holes[1:] == given.holes[:-1])
-        & (given.holes[1:] != "")
-        & (given.blocks[1:] == given.blocks[:-1])
-        & used[1:]
-        & used[:-1]
-    )
+    no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its
+    rows."""
+    follows = given.goes_on & used
+    follows[1:] &= used[:-1]
     ends = np.flatnonzero(follows)
     shares = (np.arange(_PLACES) + 0.5) / _PLACES
     begin, way = given.places[ends - 1], given.places[ends] - given.places[ends - 1]

@@ -51,7 +51,7 @@ def _of_logs(given: Observations, blocks: dict[str, int]) -> Iterator[HoleLine]:
         own = given.some(given.holes == name)
         if not name or len(own) < 2:
             continue
-        same = own.blocks[1:] == own.blocks[:-1]
+        same = own.goes_on[1:]
         of_parts = [blocks.get(block, UNKNOWN) for block in own.blocks[1:].tolist()]
         yield HoleLine(name, *_joined(own.places, np.where(same, of_parts, UNKNOWN)))
 
@@ -65,6 +65,7 @@ def _of_picks(rock: Rock, below: list[int], known: set[str]) -> Iterator[HoleLin
         over = number[met[0][0]] + 1
         stops = [] if collar is None else [(below[over] if over < len(below) else UNKNOWN, collar)]
         stops += [(below[number[surface]], place) for surface, place in met]
+        stops += [(UNKNOWN, rock.hole_ends[name])] if name in rock.hole_ends else []
         if len(stops) > 1:
             places = np.array([place for _, place in stops], np.float64)
             yield HoleLine(name, *_joined(places, np.array([block for block, _ in stops[:-1]])))

@@ -10,23 +10,53 @@ import numpy as np
 from ..base.errors import InputRefused, place_text
 from .field_table import FieldTable
 
-COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", "use")
+NORMAL = ("normal_x", "normal_y", "normal_z")
+COLUMNS = (
+    *("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", *NORMAL),
+    "use",
+)
 
 
 @dataclass(frozen=True)
 class DipFile(FieldTable):
-    """file: a table of dips of a surface: x, y, z (optional), dip, and dip_direction or strike, in degrees.
+    """file: a table of dips of a surface or a series: x, y, z (optional for a surface), dip, and
+    dip_direction or strike, in degrees.
 
     dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
-    dip direction is 90 degrees clockwise from it. polarity: optional, 1; -1, overturned, is refused.
+    dip direction is 90 degrees clockwise from it. polarity: optional, 1 upright, -1 overturned, which is for
+    series whose kind is "field" alone. slope_x and slope_y, how much the surface rises along x and along y,
+    may take the place of angles; in such a series so may normal_x, normal_y, normal_z, toward younger rock.
     use: optional, 0 where a row is switched off.
-    slope_x and slope_y, how much the surface rises along x and along y, may take the place of angles.
     columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
     model.
     """
 
     known = COLUMNS
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceDips:
+    """Dips in space, at any angle. positions: (D, 3) float64. normals: (D, 3) float64 of the bedding, of any
+    length, toward younger rock."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def checked(self) -> SpaceDips:
+        """The same as arrays of float64. Raises InputRefused."""
+        positions, normals = (
+            _floats(values, (len(self.positions), 3), f"{name} of dips")
+            for name, values in (("positions", self.positions), ("normals", self.normals))
+        )
+        bad = ~np.isfinite(np.column_stack([positions, normals])).all(axis=1)
+        bad |= ~normals.any(axis=1)
+        if bad.any():
+            raise InputRefused(f"dip {np.flatnonzero(bad)[0]} is not finite, or has no normal", item="dips")
+        return SpaceDips(positions, normals)
 
 
 @dataclass(frozen=True, eq=False)

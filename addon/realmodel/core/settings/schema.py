@@ -10,6 +10,7 @@ from .meshers import DEFAULT_MESHER, MESHERS
 from .method_options import OptionRefused
 from .methods import DEFAULT_METHOD, METHODS, OPTIONS
 from .rules import DEFAULT_RULE, RULES
+from .series import FIELD, KINDS, resolution_fault
 from .setting import Setting
 
 _OTHER = Setting(kind="other")  # with its row in the document alone
@@ -92,6 +93,23 @@ ROCK = {
     "observations": _OTHER,
     "map": _OTHER,
     "names": _OTHER,
+    "series": _OTHER,
+}
+
+SERIES = {
+    "name": Setting(kind="text", label="Name", tip="Name of the series"),
+    "kind": Setting(FIELD, kind="word", label="Kind", tip="How its surfaces are made", words=KINDS),
+    "dips": _OTHER,
+    "resolution": Setting(
+        kind="length",
+        label="Resolution",
+        tip="Edge length of the lattice of the field",
+        low=0.0,
+        check=_without(resolution_fault),
+        zero_is_none=True,
+        unset="auto",
+        more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
+    ),
 }
 
 SIZE = {
@@ -190,6 +208,12 @@ SURFACE = {
     "mesh": _OTHER,
     "dips": _OTHER,
     "left_out": _OTHER,
+    "series": Setting(
+        kind="text",
+        label="Series",
+        tip="Name of the series that the surface belongs to; empty: none",
+        more="See [Series](#series)",
+    ),
     "method": Setting(
         DEFAULT_METHOD,
         kind="word",

@@ -37,6 +37,9 @@ _CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
 def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tuple[list[RockInput], Project]:
     """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
     surfaces are read. Raises InputRefused."""
+    for rock in project.rocks:
+        for series in rock.series:
+            raise series.refused("series cannot be built yet", item=f"{rock.item}, {series.item}")
     inputs = read_rocks(work, project, reader)
     faults, bodies, warnings = read_structures(work, project, inputs)
     if warnings:

@@ -18,7 +18,8 @@ from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock, surface_item
-from ..readers import read_dips
+from ..project.series import Series
+from ..readers import read_dips, read_space_dips
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
@@ -46,6 +47,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
+        rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
         field = read_field_data(project, rock)
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
@@ -97,6 +99,7 @@ def with_arrays(project: Project) -> Project:
             if not is_plain(rock.region):
                 rock, _ = _read_region(work, rock, project.units)
             rock = _read_constraints(rock, project.units)
+            rock = replace(rock, series=[_read_series(rock, each, project.units) for each in rock.series])
             field = read_field_data(project, rock)
             surfaces = []
             for surface, met in field.surfaces:
@@ -138,6 +141,15 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
     except InputRefused as error:
         file, line = rock.place_of(key)
         raise error.within(rock.item, file=file, line=line) from error
+
+
+def _read_series(rock: Rock, series: Series, units: str) -> Series:
+    """The series with its dips as arrays."""
+    with naming(f"{rock.item}, {series.item}"):
+        if series.dip_file is not None:
+            return replace(series, dips=read_space_dips(series.dip_file, units))
+        dips = series.space_dips()
+        return series if dips is None else replace(series, dips=dips.checked())
 
 
 def mesh_rock(work: Work, entry: RockInput) -> None:

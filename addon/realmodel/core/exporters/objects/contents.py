@@ -7,16 +7,20 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
+from ...base.algebra import norm
 from ...project.library import Property
+from ...project.project import Rock
+from ...readers.tables.observations import Observations
+from ...surfaces.observed.derived import BlockNumbers
 from ..shapes.parts import FaceTriangles, Part, distinct_names, model_parts, surface_parts
 
 WALL, BASE, CUT = "wall", "base", "cut"
 _OF_NO_SURFACE = (CUT, BASE, WALL)  # face_surface -3, -2, -1
 _KINDS = ("Interfaces", "Faults", "Bodies")  # surface_kind
+_BODY = _KINDS.index("Bodies")
 _OF_PROPERTY = ("name", "rock", "age", "structure", "density", "description")
 
 
@@ -50,9 +54,9 @@ class SurfaceShape:
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """A borehole of the project. places (N, 3): its collar, or its highest pick, and its picks, downward.
-    blocks (N - 1,): the number of the block between two of them, -1 where that is not known. surfaces (N,):
-    what was picked there, "" at a collar."""
+    """A borehole of the project. places (N, 3): its collar, if that is known, the ends of its intervals and
+    its picks, downward. blocks (N - 1,): the number of the block between two of them, -1 where that is not
+    known, as core was lost. surfaces (N,): the surface there, "" where there is none."""
 
     name: str
     places: np.ndarray
@@ -62,7 +66,18 @@ class Hole:
     @property
     def depths(self) -> np.ndarray:
         """(N,) the depth of each place along the hole."""
-        return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(self.places, axis=0), axis=1)))
+        return np.append(0.0, np.cumsum(norm(np.diff(self.places, axis=0))))
+
+    @property
+    def strata(self) -> list[tuple[int, int]]:
+        """The first and the last place of each interval: of one block, with no surface in between."""
+        found: list[tuple[int, int]] = []
+        for at, block in enumerate(self.blocks):
+            if found and self.blocks[at - 1] == block and not self.surfaces[at]:
+                found[-1] = (found[-1][0], at + 1)
+            else:
+                found.append((at, at + 1))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,38 +139,101 @@ def _known_values(model, number: int) -> dict[str, np.ndarray]:
 
 
 def _holes(model) -> list[Hole]:
-    """The boreholes of all rock masses. Beneath a surface's pick lies the block deposited beneath it; above
-    the highest one, if its collar is known, that beneath the next younger surface."""
+    """The boreholes of all rock masses: as they were logged; of those without intervals their picks."""
     found, first = [], 0
+    number_of = {block.surface: number for number, block in enumerate(model.blocks) if block.cells}
+    bodies = {
+        model.surface_names[surface]: number
+        for surface, number in number_of.items()
+        if model.surface_kind[surface] == _BODY
+    }
     for rock in model.project.rocks:
-        numbers = {surface.name: first + k for k, surface in enumerate(rock.surfaces)}
-        end = first + len(rock.surfaces)
-        of_surface = {
-            block.surface: number
-            for number, block in enumerate(model.blocks)
-            if first <= block.surface < end and block.cells
-        }
-        for name, (collar, picks) in rock.hole_picks.items():
-            stops = [(numbers[surface], surface, place) for surface, place in picks if surface in numbers]
-            if collar is not None and stops:
-                stops.insert(0, (stops[0][0] + 1, "", collar))
-            if not stops:
-                continue
-            blocks = [of_surface.get(number, -1) for number, _, _ in stops[:-1]]
-            places = np.array([place for *_, place in stops], np.float64)
-            kept = [True, *(bool((a != b).any()) for a, b in pairwise(places))]  # a pick may be at the collar
-            found.append(_without_repeats(name, places, blocks, [text for _, text, _ in stops], kept))
-        first = end
+        beneath = [number_of.get(first + k, -1) for k in range(len(rock.surfaces))]
+        first += len(rock.surfaces)
+        logs = {} if rock.observed is None else rock.observed.logs()
+        for name in dict.fromkeys((*rock.hole_picks, *logs)):
+            collar, picks = rock.hole_picks.get(name, (None, []))
+            if name in logs:
+                numbers = BlockNumbers(rock, list(bodies)).of(logs[name].blocks)
+                blocks = np.array([*beneath, *bodies.values(), -1])[numbers]
+                found.append(_logged(rock, logs[name], blocks.tolist(), collar, picks))
+            elif (hole := _picked(rock, name, beneath, collar, picks)) is not None:
+                found.append(hole)
     return found
 
 
-def _without_repeats(
-    name: str, places: np.ndarray, blocks: list[int], surfaces: list[str], kept: Sequence[bool]
-) -> Hole:
-    """A hole without stretches that have no length; the later of two picks at one place stays."""
-    last = np.append(np.flatnonzero(kept)[1:], len(kept)) - 1  # of the places that are one
-    between = [blocks[number] for number in last[:-1].tolist()]
-    return Hole(name, places[last], between, [surfaces[number] for number in last.tolist()])
+def _picked(rock: Rock, name: str, beneath: Sequence[int], collar, picks) -> Hole | None:
+    """A hole by its picks; None where they are on no surface of the rock mass. Beneath a surface's pick lies
+    the block deposited beneath it; above the highest one, if its collar is known, that beneath the next
+    younger surface. beneath: the block of each surface."""
+    numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
+    made = _Path()
+    above = -1
+    stops = [(numbers[surface], surface, place) for surface, place in picks if surface in numbers]
+    if stops and collar is not None:
+        made.go_to(collar, -1)
+        younger = stops[0][0] + 1
+        above = beneath[younger] if younger < len(beneath) else -1
+    for number, surface, place in stops:
+        made.go_to(place, above, surface)
+        above = beneath[number]
+    return made.hole(name) if stops else None
+
+
+def _logged(rock: Rock, log: Observations, blocks: Sequence[int], collar, picks) -> Hole:
+    """A hole by its intervals; what is between them is not known. blocks: that of each row. Named are the
+    contacts where two intervals meet, and picks."""
+    made = _Path()
+    if collar is not None:
+        made.go_to(collar, -1)
+    contacts = {
+        tuple(place): surface.name for surface in rock.surfaces for place in surface.contact_array().tolist()
+    }
+    last = None
+    for place, block, is_inside in zip(log.places.tolist(), blocks, log.goes_on.tolist(), strict=True):
+        surface = contacts.get(tuple(place), "") if place == last else ""
+        made.go_to(place, block if is_inside else -1, surface)
+        last = place
+    tops = set(zip(log.blocks.tolist(), map(tuple, log.places.tolist()), strict=True))
+    for surface, place in picks:
+        if (surface, tuple(place)) not in tops:  # the top of an interval may lie on any surface
+            made.insert(place, surface)
+    return made.hole(str(log.holes[0]))
+
+
+class _Path:
+    """The places of a hole, downward, and what is between them."""
+
+    def __init__(self) -> None:
+        self._places: list[tuple[float, ...]] = []
+        self._surfaces: list[str] = []
+        self._blocks: list[int] = []
+
+    def go_to(self, place, block: int, surface: str = "") -> None:
+        """The next place, and the block above it. At the last place again only the surface may be new."""
+        place = tuple(float(value) for value in place)
+        if self._places and place == self._places[-1]:
+            self._surfaces[-1] = surface or self._surfaces[-1]
+            return
+        self._blocks += [block] if self._places else []
+        self._places.append(place)
+        self._surfaces.append(surface)
+
+    def insert(self, place, surface: str) -> None:
+        """Names a place that may be between others, by its height."""
+        place = tuple(float(value) for value in place)
+        if place in self._places:
+            at = self._places.index(place)
+            self._surfaces[at] = self._surfaces[at] or surface
+            return
+        at = sum(other[2] >= place[2] for other in self._places)
+        is_between = 0 < at < len(self._places)
+        self._blocks.insert(at, self._blocks[at - 1] if is_between else -1)
+        self._places.insert(at, place)
+        self._surfaces.insert(at, surface)
+
+    def hole(self, name: str) -> Hole:
+        return Hole(name, np.array(self._places), self._blocks, self._surfaces)
 
 
 def stable_uuid(*words: str) -> uuid.UUID:

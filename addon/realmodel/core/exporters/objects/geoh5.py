@@ -128,13 +128,13 @@ class _Objects:
         ways, depths = np.diff(hole.places, axis=0), hole.depths
         azimuth = np.degrees(np.arctan2(ways[:, 0], ways[:, 1])) % 360.0
         dip = np.degrees(np.arctan2(ways[:, 2], np.hypot(ways[:, 0], ways[:, 1])))
-        surveys = np.column_stack([depths[:-1], azimuth, dip])
+        rows = np.minimum(np.arange(len(depths)), len(ways) - 1)  # the last direction to the end of the hole
         made = self._create(
             "Drillhole",
             hole.name,
             "Boreholes",
             collar=hole.places[0],
-            surveys=surveys if len(ways) else None,
+            surveys=np.column_stack([depths, azimuth[rows], dip[rows]]) if len(ways) else None,
             vertices=hole.places,
             end_of_hole=float(depths[-1]),
         )

@@ -120,7 +120,8 @@ class _Writer:
         entities.show(made, "Axis", "Curve3D", [entities.line(hole.places)])
         shells = {shell.number: shell for shell in self._contents.blocks}
         depths, strata = hole.depths.tolist(), []
-        for number, block in enumerate(hole.blocks):
+        for number, (first, last) in enumerate(hole.strata):
+            block = hole.blocks[first]
             name = self._contents.block_names[block] if block >= 0 else "unknown"
             stratum = entities.product("IfcGeotechnicalStratum", f"{hole.name} {number}", name, made)
             part = shells[block].part if block >= 0 else None
@@ -130,12 +131,12 @@ class _Writer:
                 stratum,
                 "Body",
                 "AdvancedSweptSolid",
-                [entities.tube(hole.places[number : number + 2], _RADIUS, style)],
+                [entities.tube(hole.places[first : last + 1], _RADIUS, style)],
             )
             if block >= 0:
                 self._materials.setdefault(self._model.blocks[block].property, []).append(stratum)
-            known = {"From": depths[number], "To": depths[number + 1]}
-            entities.properties(stratum, "RealModel_Interval", {**known, "Top": hole.surfaces[number]})
+            known = {"From": depths[first], "To": depths[last]}
+            entities.properties(stratum, "RealModel_Interval", {**known, "Top": hole.surfaces[first]})
             strata.append(stratum)
         entities.aggregate(made, strata)
         return made

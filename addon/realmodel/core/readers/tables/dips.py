@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dips of a surface from a table of text."""
+"""Dips of a surface or of a series from a table of text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
-from ...settings.dips import DipFile, Dips
+from ...settings.dips import NORMAL, DipFile, Dips, SpaceDips
 from ...settings.directions import unit_vector
 from .hole_tables import Row, rows
 from .points import AXES
@@ -29,6 +29,7 @@ DIPS = {
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
     "use": ("use",),
+    **{name: (name,) for name in NORMAL},
 }
 _SHEET = "a sheet has one height at each position"
 
@@ -55,6 +56,55 @@ def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step
     return Dips(np.array(places), np.array(gradients), np.array(z), None if all(used) else np.array(used))
 
 
+def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> SpaceDips:
+    """The dips in space of a table, in the model's unit. Raises InputRefused naming file and line."""
+    file = Path(given.file)
+    plan, height = factors(given.units, model_unit)
+    places, normals = [], []
+    for row in rows(given, file, DIPS, ("x", "y", "z"), step):
+        places.append((plan * row.number("x"), plan * row.number("y"), height * row.number("z")))
+        normals.append(_normal(row))
+    if not places:
+        raise InputRefused("there are no dips in it", file=file)
+    return SpaceDips(np.array(places), np.array(normals))
+
+
+def _normal(row: Row) -> np.ndarray:
+    """(3,) the normal of the bedding, toward younger rock."""
+    if row.columns.keys() >= set(NORMAL):
+        normal = np.array([row.number(name) for name in NORMAL])
+        if not normal.any():
+            raise row.refuse("the normal is 0", "leave the row out")
+        return normal
+    polarity = row.number("polarity") if row.has("polarity") else 1.0
+    if polarity == 0:
+        raise row.refuse("the polarity is 0", "write 1 for upright and -1 for overturned bedding")
+    if {"slope_x", "slope_y"} <= row.columns.keys():
+        upright = np.array([-row.number("slope_x"), -row.number("slope_y"), 1.0])
+        return upright if polarity > 0 else -upright
+    if "dip" not in row.columns:
+        raise _no_column(row, "dip")
+    dip = row.number("dip")
+    if not 0 <= dip <= 180:
+        raise row.refuse(f"the dip {dip:g} is not from 0 to 180 degrees", "leave the row out")
+    angle = math.radians(dip)
+    down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(_direction_of(row))
+    # beyond 90 degrees it is overturned by itself, whether or not its polarity says so, too
+    upright = np.array([*down, cos(angle)])
+    return -upright if polarity < 0 and dip <= 90 else upright
+
+
+def _direction_of(row: Row) -> float:
+    """The dip direction of a row, in degrees clockwise from north."""
+    if row.has("dip_direction"):
+        return row.number("dip_direction")
+    if row.has("strike"):
+        return row.number("strike") + 90.0
+    if not {"dip_direction", "strike"}.intersection(row.columns):
+        raise _no_column(row, "dip_direction", " or strike")
+    raise row.refuse("the dip has no direction", "give its dip_direction or its strike")
+
+
 def _gradient(row: Row) -> np.ndarray:
     if {"slope_x", "slope_y"} <= row.columns.keys():
         return np.array([row.number("slope_x"), row.number("slope_y")])
@@ -62,19 +112,13 @@ def _gradient(row: Row) -> np.ndarray:
         raise _no_column(row, "dip")
     dip = row.number("dip")
     if row.has("polarity") and row.number("polarity") < 0:
-        raise row.refuse(f"the dip is overturned: {_SHEET}", "leave the row out, or turn its polarity")
+        raise row.refuse(f"the dip is overturned: {_SHEET}", "leave the row out, or use a series of surfaces")
     if not 0 <= dip < 90:
         what = "vertical" if dip == 90 else "overturned" if 90 < dip <= 180 else "not from 0 to 90 degrees"
         raise row.refuse(f"the dip {dip:g} is {what}: {_SHEET}", "leave the row out")
-    if row.has("dip_direction"):
-        return gradient_of(dip, row.number("dip_direction"))
-    if row.has("strike"):
-        return gradient_of(dip, row.number("strike") + 90.0)
     if dip == 0:
         return np.zeros(2)
-    if not {"dip_direction", "strike"}.intersection(row.columns):
-        raise _no_column(row, "dip_direction", " or strike")
-    raise row.refuse("the dip has no direction", "give its dip_direction or its strike")
+    return gradient_of(dip, _direction_of(row))
 
 
 def _no_column(row: Row, column: str, others: str = "") -> InputRefused:

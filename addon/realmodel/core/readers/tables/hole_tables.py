@@ -36,7 +36,14 @@ SURVEY = {
     "depth": ("depth", "md", "measured_depth", "at", "distance", "dist", "survey_depth"),
     **DIRECTIONS,
 }
-COLLARS = {**PICKS, **DIRECTIONS}
+COLLARS = {
+    **PICKS,
+    **DIRECTIONS,
+    "end": (
+        *("end", "eoh", "end_of_hole", "end_depth", "total_depth", "totaldepth", "td", "max_depth"),
+        *("maxdepth", "final_depth", "hole_depth", "hole_length", "length"),
+    ),
+}
 _BLOCK = (
     *(
         "block",

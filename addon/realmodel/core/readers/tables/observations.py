@@ -12,6 +12,8 @@ import numpy as np
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Observations(ShortRepr):
@@ -21,7 +23,9 @@ class Observations(ShortRepr):
     beneath, of the block, or of a body. holes: (N,) texts, the borehole of each, "" for none; the places of a
     hole follow one another downward along it. depths: (N,) float64 along the hole, NaN where there is none.
     An interval is at least two places, its ends: a place that two intervals share is on the boundary of both.
-    used: (N,) bool, False where one is switched off, which says nothing then; None: all are used.
+    intervals: (N,) int64, equal for the places of one interval, so that two of one block with lost core
+    between them are two; without them places of one block that follow one another in a hole are one interval.
+    used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -33,7 +37,8 @@ class Observations(ShortRepr):
     blocks: np.ndarray
     holes: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
-    used: np.ndarray | None = None
+    intervals: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
+    used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
 
     def __post_init__(self) -> None:
         try:
@@ -53,17 +58,13 @@ class Observations(ShortRepr):
         if not len(blocks) == len(holes) == len(depths) == count:
             what = f"{count} places have {len(blocks)} blocks, {len(holes)} holes and {len(depths)} depths"
             raise InputRefused(what, item="observations", advice="give each place one of each")
-        used = None if self.used is None else np.asarray(self.used, bool).reshape(-1)
-        if used is not None and len(used) != count:
-            advice = "say of each place whether it is used"
-            raise InputRefused(
-                f"{count} places have {len(used)} of 'used'", item="observations", advice=advice
-            )
-        for name, value in zip(
-            ("places", "blocks", "holes", "depths", "used"),
-            (places, blocks, holes, depths, used),
-            strict=True,
-        ):
+        intervals = np.asarray(self.intervals, np.int64).reshape(-1)
+        used = np.asarray(self.used, bool).reshape(-1)
+        for what, given in (("numbers of intervals", intervals), ("of 'used'", used)):
+            if len(given) not in (0, count):
+                text = f"{count} places have {len(given)} {what}"
+                raise InputRefused(text, item="observations", advice="give each place one, or none of them")
+        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals, used), strict=True):
             object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
@@ -71,14 +72,13 @@ class Observations(ShortRepr):
 
     def some(self, chosen: np.ndarray) -> Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
-        used = None if self.used is None else self.used[chosen]
-        places, depths = self.places[chosen], self.depths[chosen]
-        return Observations(places, self.blocks[chosen], self.holes[chosen], depths, used)
+        kept = (getattr(self, name) for name in _ARRAYS)
+        return Observations(*(array[chosen] if len(array) else array for array in kept))
 
     @property
     def in_use(self) -> np.ndarray:
         """(N,) bool: which are not switched off."""
-        return np.ones(len(self), bool) if self.used is None else self.used
+        return self.used if len(self.used) else np.ones(len(self), bool)
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -91,6 +91,27 @@ class Observations(ShortRepr):
         at = np.where(has_hole, first[number.ravel()] if len(names) else 0, rows)
         return self.some(np.lexsort((rows, np.where(has_hole, along, 0.0), at)))
 
+    @property
+    def goes_on(self) -> np.ndarray:
+        """(N,) bool, the places that are in one interval with the one before."""
+        same = (self.holes[1:] == self.holes[:-1]) & (self.holes[1:] != "")
+        same &= self.blocks[1:] == self.blocks[:-1]
+        if len(self.intervals):
+            _, number = np.unique(self.intervals, return_inverse=True)
+            rows = np.arange(len(self))
+            last = np.zeros(number.max() + 1, np.int64)
+            last[number] = rows  # of several the last one counts
+            same &= np.maximum.accumulate(last[number])[:-1] >= rows[1:]
+        return np.append(False, same)[: len(self)]
+
+    def logs(self) -> dict[str, Observations]:
+        """The places of intervals of each hole that has some, downward along it."""
+        found = self.along_holes()
+        in_interval = found.goes_on
+        in_interval[:-1] |= in_interval[1:]
+        found = found.some(in_interval)
+        return {str(hole): found.some(found.holes == hole) for hole in dict.fromkeys(found.holes.tolist())}
+
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""
         return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
@@ -100,10 +121,14 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        names = ("places", "blocks", "holes", "depths", "in_use")
-        arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-        used = arrays.pop("in_use")
-        return cls(**arrays, used=None if used.all() else used)
+        *arrays, intervals, used = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        if any(map(len, intervals)):
+            intervals = [np.cumsum(~part.goes_on) for part in parts]
+            firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
+            intervals = [own + first for own, first in zip(intervals, firsts.tolist(), strict=True)]
+        if any(map(len, used)):
+            used = [part.in_use for part in parts]
+        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used)))
 
 
 def source_text(hole: str, depth: float, place) -> str:

@@ -50,5 +50,5 @@ def read_observed_places(
     if not count:
         raise InputRefused("there are no observations in it", file=given.file)
     texts = np.array(blocks, str), np.array(holes, str)
-    in_use = None if all(used) else np.array(used)
-    return Observations(np.array(places).reshape(-1, 3), *texts, np.array(depths), in_use), left_out
+    in_use = np.array([] if all(used) else used, bool)
+    return Observations(np.array(places).reshape(-1, 3), *texts, np.array(depths), used=in_use), left_out

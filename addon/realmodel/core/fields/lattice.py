@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A regular lattice in space, and scalar fields that are linear on its tetrahedra.
+
+Each cell is divided into six tetrahedra that share its main diagonal, from its lowest corner to its highest
+(H. Freudenthal 1942; H. W. Kuhn 1960). All cells are divided alike, so that neighbors agree on their faces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# The corners of a cell, as their steps along x, y and z, of each of its tetrahedra: those of one walk along
+# the three axes from the lowest corner to the highest. Positive volumes.
+TETRAHEDRA_OF_CELL = np.array(
+    [
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]],
+        [[0, 0, 0], [0, 1, 0], [0, 1, 1], [1, 1, 1]],
+        [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1]],
+        [[0, 0, 0], [1, 1, 0], [0, 1, 0], [1, 1, 1]],
+        [[0, 0, 0], [0, 1, 1], [0, 0, 1], [1, 1, 1]],
+        [[0, 0, 0], [1, 0, 1], [1, 0, 0], [1, 1, 1]],
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Nodes (i, j, k) at origin + spacing * (i, j, k). Node (i, j, k) has the number i + nx (j + ny k).
+
+    origin, spacing: model units along x, y and z. counts: nodes along each, two at least.
+    """
+
+    origin: tuple[float, float, float]
+    spacing: tuple[float, float, float]
+    counts: tuple[int, int, int]
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are."""
+        nx, ny, nz = self.counts
+        return nx * ny * nz
+
+    @property
+    def strides(self) -> np.ndarray:
+        """(3,) int64: how much the number of a node grows by a step along each axis."""
+        nx, ny, _ = self.counts
+        return np.array([1, nx, nx * ny])
+
+    @property
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and the highest corner of its box, (3,) each."""
+        low = np.asarray(self.origin, float)
+        return low, low + np.multiply(self.spacing, np.subtract(self.counts, 1))
+
+    def positions(self) -> np.ndarray:
+        """(nodes, 3) float64."""
+        x, y, z = (
+            start + step * np.arange(count)
+            for start, step, count in zip(self.origin, self.spacing, self.counts, strict=True)
+        )
+        found = np.empty((len(z), len(y), len(x), 3))
+        found[..., 0], found[..., 1], found[..., 2] = x, y[:, None], z[:, None, None]
+        return found.reshape(-1, 3)
+
+    def tetrahedra(self) -> np.ndarray:
+        """(6 cells, 4) int32 nodes, of positive volume, those of one cell together, cells in the order of
+        their lowest corners."""
+        strides = self.strides
+        i, j, k = (np.arange(count - 1) for count in self.counts)
+        lowest = (i + (j * strides[1])[:, None] + (k * strides[2])[:, None, None]).reshape(-1, 1, 1)
+        steps = (TETRAHEDRA_OF_CELL * strides).sum(axis=-1)
+        return (lowest + steps).reshape(-1, 4).astype(np.int32)
+
+    def located(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The tetrahedra in which points (P, 3) lie: nodes (P, 4) int64 and weights (P, 4), which are not
+        negative and sum to 1. A point outside the box has weights NaN."""
+        places = (np.asarray(points, float) - self.origin) / self.spacing
+        last = np.subtract(self.counts, 2)
+        cells = np.clip(np.floor(np.nan_to_num(places)), 0, last).astype(np.int64)
+        shares = places - cells
+        inside = np.all((shares >= 0) & (shares <= 1), axis=1, keepdims=True)
+        walk = np.argsort(-shares, axis=1, kind="stable")
+        down = np.take_along_axis(shares, walk, axis=1)
+        weights = np.empty((len(places), 4))
+        weights[:, 0], weights[:, 3] = 1 - down[:, 0], down[:, 2]
+        weights[:, 1:3] = down[:, :2] - down[:, 1:]
+        strides = self.strides
+        first = (cells * strides).sum(axis=1)
+        nodes = np.column_stack([first, first[:, None] + np.cumsum(strides[walk], axis=1)])
+        return nodes, np.where(inside, weights, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class ScalarField:
+    """A function f in space, linear on each tetrahedron of a lattice. It rises from older to younger.
+
+    values: (nodes,) float64. levels: (surfaces,) float64, rising: f on each surface, oldest first.
+    """
+
+    lattice: Lattice
+    values: np.ndarray
+    levels: np.ndarray
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """(P,) f at points (P, 3); NaN outside the lattice."""
+        nodes, weights = self.lattice.located(points)
+        return (self.values[nodes] * weights).sum(axis=1)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The kinds of series and the resolution of their fields."""
+
+from __future__ import annotations
+
+from ..base.finite import is_number
+
+AUTO = "auto"  # a resolution by the data
+FIELD, SHEETS = "field", "sheets"
+KINDS = {
+    FIELD: (
+        "Field",
+        "Level sets of one scalar field in space: they may be vertical, overturned or recumbent",
+    ),
+    SHEETS: ("Sheets", "Sheets with one elevation at each position, interpolated together"),
+}
+
+
+def resolution_fault(resolution) -> str | None:
+    """The error in a resolution, "auto" included, or None."""
+    if isinstance(resolution, str) and resolution == AUTO:
+        return None
+    if is_number(resolution) and resolution > 0:
+        return None
+    return f"resolution must be a finite number above 0 or '{AUTO}', not {resolution!r}"
