@@ -40,7 +40,8 @@ class FieldTables:
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: None where there are none. values: IntervalValues of tables of intervals and assays. new: units that no surface, block or body is called, to be added."""
+    dips: None where there are none. new: units that no surface, block or body is called, to be added. values:
+    IntervalValues of tables of intervals and assays."""
 
     picks: Picks
     observations: Observations

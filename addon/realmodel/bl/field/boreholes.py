@@ -21,7 +21,7 @@ _SIDES = 8
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _MOST_WORDS = 24  # of a column of words that have a color of their own
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
-_OTHERS = "#b0b0b0"  # words beyond these, and intervals without a value
+_OTHERS = "#b0b0b0"  # words beyond these
 
 
 def show(scene):
@@ -116,9 +116,9 @@ def _by_column(scene):
         values = interval_values.of_rock(rock)
         if values is None or name not in values.columns:
             continue
-        codes = (
-            _hues(values.columns[name], words) if limits is None else _shades(values.columns[name], limits)
-        )
+        values = values.some(values.has(name))
+        given = values.columns[name]
+        codes = _hues(given, words) if limits is None else _shades(given, limits)
         materials = {code: colors.plain_material(f"{name} {code}", code) for code in sorted(set(codes))}
         for code, begin, end in zip(codes, values.begins.tolist(), values.ends.tolist(), strict=True):
             yield materials[code], begin, end
@@ -145,7 +145,7 @@ def _shades(values, limits):
     steps = np.rint((values - limits[0]) / ((limits[1] - limits[0]) or 1.0) * (_STEPS - 1))
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
     codes = [library_rows.hex_color(shade) for shade in shades]
-    return [_OTHERS if step != step else codes[int(step)] for step in steps.tolist()]
+    return [codes[int(step)] for step in steps.tolist()]
 
 
 def _hues(values, words):
