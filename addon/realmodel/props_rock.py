@@ -84,6 +84,7 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     hole_picks: StringProperty(options={"HIDDEN"})  # JSON of the picks of boreholes
     hole_ends: StringProperty(options={"HIDDEN"})  # JSON: where holes end
     interval_values: StringProperty(options={"HIDDEN"})  # arrays of the columns of tables of intervals
+    map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)

@@ -130,6 +130,12 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.field_data,
     )
+    show_map: BoolProperty(
+        name="Map",
+        description="Show the geological map on its ground, in the colors of the blocks",
+        options=set(),
+        update=changes.field_data,
+    )
     show_misfits: BoolProperty(
         name="Misfits",
         description="List the data that the model does not have as they say, and show them in red",

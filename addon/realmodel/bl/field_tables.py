@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..core import DipFile, Dips, InputRefused, ObservationFile, Observations
 from ..core.readers import (
+    MAP_ENDINGS,
     Picks,
     UnitNames,
     read_boreholes,
@@ -19,8 +20,9 @@ from ..core.readers.tables.interval_values import read_interval_values
 from ..core.settings.boreholes import COLUMNS as OF_HOLES
 from ..core.settings.boreholes import Boreholes, check_column_names
 from ..core.settings.dips import COLUMNS as OF_DIPS
+from ..core.settings.map_file import MapFile
 from ..core.settings.observation_file import COLUMNS as OF_PLACES
-from . import observed_blocks, surface_dips
+from . import map_settings, observed_blocks, surface_dips
 
 ALL_COLUMNS = tuple(dict.fromkeys((*OF_HOLES, *OF_PLACES, *OF_DIPS)))
 _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
@@ -29,10 +31,11 @@ _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
 @dataclass
 class FieldTables:
     """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
-    dips: ObservationFile and DipFile."""
+    dips: ObservationFile and DipFile. maps: MapFile, whose ground is a file or the name of a surface."""
 
     boreholes: Boreholes | None = None
     assays: list = field(default_factory=list)
+    maps: list = field(default_factory=list)
     observations: list = field(default_factory=list)
     dips: list = field(default_factory=list)
 
@@ -41,7 +44,7 @@ class FieldTables:
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
     dips: None where there are none. new: units that no surface, block or body is called, to be added. values:
-    IntervalValues of tables of intervals and assays."""
+    IntervalValues of tables of intervals and assays. maps: DrapedMap of each map. warnings: sentences."""
 
     picks: Picks
     observations: Observations
@@ -49,17 +52,22 @@ class Found:
     left_out: list
     new: list
     values: list
+    maps: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
 
 
-def sorted_out(paths, columns, units=None, **of_holes):
-    """FieldTables of files. columns: names of those that are called otherwise, in any of the tables.
-    of_holes: what else Boreholes have; tables given there are added to those of `paths`. Raises InputRefused,
-    and OptionRefused."""
+def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
+    """FieldTables of files. columns: names of those that are called otherwise, in any of the tables. of_maps:
+    keys of MapFile beside its file, for all maps. of_holes: what else Boreholes have; tables given there are
+    added to those of `paths`. Raises InputRefused, and OptionRefused."""
     check_column_names(columns, ALL_COLUMNS)
     tables = {kind: given for kind in _ONE_OF_EACH if (given := of_holes.pop(kind, None)) is not None}
     found, assays = FieldTables(), []
     for path in paths:
         if path in tables.values():
+            continue
+        if is_map(path):
+            found.maps.append(_map_file(path, of_maps or {}, units))
             continue
         kind = "picks" if is_object_file(path) else table_kind(path, columns)
         if kind == "observations":
@@ -81,6 +89,17 @@ def sorted_out(paths, columns, units=None, **of_holes):
         found.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
         found.assays[-1].check()
     return found
+
+
+def is_map(path):
+    """Whether a file has shapes in plan."""
+    return path.suffix.lower() in MAP_ENDINGS
+
+
+def _map_file(path, given, units):
+    map_file = MapFile(path, units=units, **given)
+    map_file.check()
+    return map_file
 
 
 def naming_column(given):
@@ -127,6 +146,13 @@ def _read(scene, rock, tables, units):
         observed, not_used = read_observed_places(file, units, unit)
         seen.append(observed)
         left_out += not_used
+    maps, warnings = [], []
+    for file in tables.maps:
+        observed, not_used, draped, said = map_settings.read(scene, rock, file, units)
+        seen.append(observed)
+        left_out += not_used
+        maps.append(draped)
+        warnings += [*said, *draped.warnings]
     dips = [read_dips(file, unit) for file in tables.dips]
     known = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [each.block for each in left_out if each.kind == "unknown_block"]
@@ -138,4 +164,6 @@ def _read(scene, rock, tables, units):
         left_out,
         [name for name in meant if name not in known],
         [read_interval_values(each, unit) for each in logged],
+        maps,
+        warnings,
     )

@@ -33,7 +33,8 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
             return
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
         grid.use_property_split = False
-        for name in ("show_contacts", "show_dips", "show_boreholes", "show_hole_names"):
+        maps = ("show_map",) if any(rock.map for rock in group.rocks) else ()
+        for name in (*maps, "show_contacts", "show_dips", "show_boreholes", "show_hole_names"):
             grid.prop(group.view, name, toggle=True)
         if group.view.show_boreholes:
             column = layout.column(align=True)

@@ -7,16 +7,18 @@ import sys
 import numpy as np
 
 from ...core import RealModelError
-from .. import display, exaggeration, project_settings, settings
+from ...core.display.polygon_mesh import PolygonMesh
+from .. import display, exaggeration, map_settings, project_settings, settings
 from ..display import bodies, colors, marks
 from . import boreholes, data, handle, heights, misfits
 
-CONTACTS, DIPS, MISFITS = "contacts", "dips", "misfits"
-KINDS = (CONTACTS, DIPS, MISFITS)
+MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
+KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration
 _OFF, _RED = ("Switched Off", "#8c8c8c"), ("Misfit", "#e01818")
 _STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that it is shaped for
 _CUT = "realmodel_cut"  # on boreholes: the state of the cut that they lie on
 _MOST = 20_000  # data of a kind shown at most
+_LIFT = 1e-3  # of a map over the ground, of the size of all, against flickering
 _DISC = 0.025  # radius of a disc, of the size of all
 _RED_LARGER = 1.6  # than other points, so that they are seen around these
 _TUBE, _SIDES = 0.009, 8  # of an interval that does not fit: radius, of the size of all
@@ -38,6 +40,7 @@ def show(scene):
     misfits.fill(scene)
     for kind, wanted, shown in (
         (boreholes.BOREHOLES, view.show_boreholes, boreholes.show),
+        (MAP, view.show_map, _maps),
         (CONTACTS, view.show_contacts, _contacts),
         (DIPS, view.show_dips, _dips),
         (MISFITS, view.show_misfits, _misfits),
@@ -149,6 +152,25 @@ def _dips(scene):
     shape = marks.discs(places, np.concatenate(gradients), radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
     _give_materials(item.data, materials, 1)
+
+
+def _maps(scene):
+    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    lift = np.array([0.0, 0.0, _LIFT * heights.extent(scene)])
+    for rock in scene.realmodel.rocks:
+        draped = map_settings.of_rock(rock)
+        if draped is None or not len(draped.triangles):
+            continue
+        places = draped.vertices - project_settings.model_origin(scene) + lift
+        corners = draped.triangles.ravel().astype(np.int32)
+        offsets = np.arange(0, len(corners) + 1, 3, dtype=np.int32)
+        shape = PolygonMesh(places.astype(np.float32), offsets, corners)
+        item = bodies.add(scene, MAP, f"{rock.name} map", shape)
+        own = [
+            colors.of_property(scene, of_block[name]) if name in of_block else colors.plain_material(*_OFF)
+            for name in draped.names
+        ]
+        _give_materials(item.data, [own[unit] for unit in draped.unit.tolist()], 1)
 
 
 def _misfits(scene):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
 from ..readers.fault_trace import read_fault_trace
-from ..readers.maps.unit_polygons import read_unit_polygons
+from ..readers.maps.unit_polygons import UnitPolygon, read_unit_polygons
 from ..readers.point_input import read_raster_heights
 from ..readers.tables.observations import LeftOut, Observations
 from ..settings.map_file import MapFile
@@ -54,9 +54,17 @@ def _ground_shape(rock: Rock) -> dict | None:
     return {"mesh" if is_mesh_file(ground) else "points": ground}
 
 
-def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observations, list[LeftOut], list[str]]:
-    """The observations of the map of a rock mass, what of it is not used, and warnings, sentences. Raises
-    InputRefused."""
+@dataclass(frozen=True, eq=False)
+class MapOnGround:
+    """A map as it is read. polygons: in plan. frame: where it counts, and the ground. warnings: sentences."""
+
+    polygons: list[UnitPolygon]
+    frame: MapFrame
+    warnings: list[str]
+
+
+def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
+    """The polygons of the map of a rock mass that has a region, and its ground. Raises InputRefused."""
     given = rock.map
     assert given is not None
     surface = _ground(rock, given)
@@ -72,12 +80,21 @@ def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observatio
         return _heights(rock, surface, plan, project.units)
 
     frame = MapFrame(box, _spacing(rock, rings, box), faults, heights)
-    observations, left_out, more = observed_on_map(polygons, units, frame)
+    return MapOnGround(polygons, frame, warnings)
+
+
+def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observations, list[LeftOut], list[str]]:
+    """The observations of the map of a rock mass, what of it is not used, and warnings, sentences. Raises
+    InputRefused."""
+    read = map_on_ground(project, rock)
+    assert rock.map is not None
+    file = rock.map.file
+    observations, left_out, more = observed_on_map(read.polygons, units, read.frame)
     if not len(observations) and not left_out:
         what = "no polygon of it lies in the region, or the ground is known nowhere there"
         advice = "check the coordinates of the map, the ground and the region"
-        raise InputRefused(what, file=given.file, item=f"{rock.item}, map", advice=advice)
-    return observations, left_out, [*warnings, *(f"{given.file}: {text}" for text in more)]
+        raise InputRefused(what, file=file, item=f"{rock.item}, map", advice=advice)
+    return observations, left_out, [*read.warnings, *(f"{file}: {text}" for text in more)]
 
 
 def _ground(rock: Rock, given: MapFile) -> Surface:
