@@ -308,7 +308,7 @@ def diagram(folder):
     import bpy
     from realmodel.bl import batch, picture
     from realmodel.bl.display import viewpoints
-    from realmodel.bl.overlay import legend_share, rendered
+    from realmodel.bl.overlay import legend_shares, rendered
     from realmodel.core import build, load_project
 
     model = build(load_project(SAMPLES / "block_diagram" / "project.toml"), cells="blocks")
@@ -326,7 +326,7 @@ def diagram(folder):
     file = folder / "diagram.png"
     points = viewpoints.model_points(scene)
     sun = math.radians(78.0), math.radians(38.0)
-    camera = picture.set_up(scene, points, SIZE, left=legend_share(scene, SIZE), sun=sun)
+    camera = picture.set_up(scene, points, SIZE, legend=legend_shares(scene, SIZE), sun=sun)
     aim(camera, points, SIZE, 158.0, 30.0, (0.17, 0.1))
     picture.set_renderer(scene, file, SIZE, RAYS, SECONDS)
     scene.view_settings.exposure = EXPOSURE

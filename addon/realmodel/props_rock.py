@@ -86,6 +86,7 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     interval_values: StringProperty(options={"HIDDEN"})  # arrays of the columns of tables of intervals
     map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
+    dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)
     constraints_stored: StringProperty(options={"HIDDEN"})

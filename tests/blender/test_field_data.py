@@ -134,7 +134,7 @@ class FieldData(PanelCase):
             handle.activate(bpy.context, self.group(kind).datum(0))
             self.moved_to(to)
             self.assertEqual(self.group(kind).places[0].tolist(), list(to))
-        dips = surface_dips.of_surface(self.model.rocks[0].surfaces[0])
+        dips = surface_dips.of_row(self.model.rocks[0].surfaces[0])
         self.assertAlmostEqual(dips.gradients[0, 0], -np.tan(np.radians(20)), places=12)
 
     def test_moves_can_be_undone(self):

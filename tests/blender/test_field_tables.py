@@ -5,7 +5,14 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl import borehole_picks, data_objects, observed_blocks, project_settings, surface_dips
+from realmodel.bl import (
+    borehole_picks,
+    data_objects,
+    method_settings,
+    observed_blocks,
+    project_settings,
+    surface_dips,
+)
 from realmodel.operators import boreholes
 
 COLLARS = "hole,x,y,z\n" + "".join(
@@ -136,13 +143,39 @@ class FieldTables(PanelCase):
         self.read({"outcrops.csv": OUTCROPS, "dips.csv": DIPS})
         self.assertEqual(len(observed_blocks.of_rock(self.rock)), 20)
         self.assertEqual(len(self.clouds()["rock mass observations"].data.vertices), 2)
-        dips = surface_dips.of_surface(self.rock.surfaces["Clay"])
+        dips = surface_dips.of_row(self.rock.surfaces["Clay"])
         self.assertEqual(len(dips), 2)
         # a strike to the north dips to the east, where the surface falls
         self.assertAlmostEqual(dips.gradients[0, 0], -np.tan(np.radians(10)), places=12)
         self.assertAlmostEqual(dips.gradients[0, 1], 0.0, places=12)
         self.read({"outcrops.csv": OUTCROPS})
         self.assertEqual(len(observed_blocks.of_rock(self.rock)), 20, "the same places")
+
+    def test_dips_that_name_surfaces_are_of_the_rock_mass(self):
+        self.read(TABLES)
+        named = "x,y,z,dip,strike,unit\n20,20,50,10,0,Clay\n60,60,40,12,0,Sandstone\n70,20,40,12,0,\n"
+        self.read({"dips.csv": named})
+        self.assertFalse(any(surface.dips for surface in self.rock.surfaces))
+        dips = surface_dips.of_row(self.rock)
+        self.assertEqual(dips.blocks.tolist(), ["Clay", "Sandstone", ""])
+        self.rock.surfaces["Clay"].name = "Loam"
+        self.assertEqual(surface_dips.of_row(self.rock).blocks.tolist(), ["Loam", "Sandstone", ""])
+        self.rock.region, self.rock.base_elevation = (
+            outline("r", [(0, 0), (100, 0), (100, 100), (0, 100)]),
+            -200.0,
+        )
+        for surface in self.rock.surfaces:
+            surface.rule = "conformable"
+        ops.build()
+        ops.save_project(filepath=str(self.folder / "p.toml"))
+        self.assertIn("rock_mass_dips.csv", (self.folder / "p.toml").read_text())
+        surface = self.rock.surfaces["Loam"]
+        self.assertEqual(method_settings.dips_unused(surface), [])
+        surface.method = "tin"
+        self.assertIn("have no effect on 'Loam'", method_settings.dips_unused(surface)[0])
+        ops.rock_dips_remove()
+        self.assertEqual(method_settings.dips_unused(surface), [])
+        self.refused(ops.rock_dips_remove, "has no dips")
 
     def test_dips_can_be_removed_where_the_method_does_not_use_them(self):
         self.read(TABLES)
@@ -153,6 +186,8 @@ class FieldTables(PanelCase):
         self.read({"dips.csv": DIPS})
         for surface in self.rock.surfaces:
             surface.method = "natural_neighbour"
+            said = method_settings.dips_unused(surface)
+            self.assertEqual(bool(said), bool(surface.dips), "said before a build refuses it")
         self.refused(ops.build, "does not use dips")
         ops.dips_remove()
         self.refused(ops.dips_remove, "has no dips")

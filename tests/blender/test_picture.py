@@ -13,7 +13,7 @@ from made_projects import LIBRARY, other_rock, surface, two_rocks
 from mathutils import Matrix, Vector
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, picture
-from realmodel.bl.display import viewpoints
+from realmodel.bl.display import colors, viewpoints
 from realmodel.core import OutputFailed, Project, Rock, build
 
 
@@ -115,6 +115,26 @@ class Render(PanelCase):
             reach = np.abs(local[:, :2] / -local[:, 2:]) / tangents
             self.assertLess(reach.max(), 1.0)
             self.assertGreater(reach.max(), 0.85)
+
+    def test_the_legend_has_properties_from_above_as_in_the_rock_masses(self):
+        rocks = []
+        for east, ids in ((0.0, (2, 3)), (200.0, (4, 2))):
+            levels = [surface(f"S{n}", lambda x, y, n=n: 9.0 * n, grid={"x0": east}) for n in range(3)]
+            for level, number in zip(levels[1:], ids, strict=True):
+                level.property = number
+            rocks.append(Rock(f"at {east}", levels))
+        batch.write_scene(build(Project("two", rocks, LIBRARY)))
+        names = [name for name, _ in colors.key(self.scene).entries]
+        self.assertEqual(names, ["Sandstone", "Marl", "Gravel"])
+
+    def test_a_legend_takes_width_only_where_it_would_cover_the_model(self):
+        size, corner = (1600, 1000), (0.2, 0.25)
+        box = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+        self.assertEqual(picture.left_of_points(box * (900.0, 50.0, 20.0), size, corner), 0.0)
+        # A tower fills the height of the picture, but only its middle.
+        self.assertEqual(picture.left_of_points(box * (20.0, 20.0, 400.0), size, corner), 0.0)
+        floor = box * (80.0, 80.0, 1.0)
+        self.assertEqual(picture.left_of_points(floor, size, (0.5, 0.6)), 0.5)
 
 
 class SetUp(PanelCase):

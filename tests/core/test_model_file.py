@@ -110,6 +110,7 @@ def last_surface(model):
 MADE = {
     "block_boundary": lambda m, _: [m.block_boundary(block) for block in range(len(m.blocks))],
     "borehole": lambda m, _: m.borehole(*m.vertices.mean(axis=0)[:2]),
+    "planned_hole": lambda m, _: m.planned_hole(m.vertices.max(axis=0), 225.0, 45.0).rows(),
     "cleaned_cells": lambda m, _: m.cleaned_cells(side(m) / 1000),
     "contours": lambda m, _: m.contours(),
     "cut_by_block": lambda m, _: m.cut_by_block(m, 0),

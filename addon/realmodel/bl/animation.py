@@ -19,17 +19,20 @@ _STAGE = "realmodel.stage"
 _SECTORS = 32  # of the circles that the camera is to see
 
 
-def turntable(scene, points, size, frames, elevation, left=0.0):
+def turntable(scene, points, size, frames, elevation, legend=(0.0, 0.0)):
     """Sets up camera and light, and rotates the camera around a model once, counter-clockwise from above.
 
     points: (N, 3) that the picture is to show. size: (width, height) of the picture. frames: of one turn.
-    elevation: of the camera, radians. left: as for `picture.set_up`. Returns the empty that rotates.
+    elevation: of the camera, radians. legend: as for `picture.set_up`. Returns the empty that rotates.
     """
-    camera = picture.set_up(scene, points, size, left=left)
+    camera = picture.set_up(scene, points, size, legend=legend)
     points = np.asarray(points, np.float64)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     rotation = view_rotation(elevation=elevation)
-    camera.matrix_basis, away = picture.camera_matrix(_turned(points, middle), size, left, rotation)
+    turned = _turned(points, middle)
+    left = picture.left_of_points(turned, size, legend, rotation)
+    camera.data.shift_x = -left / 2 * size[0] / max(size)
+    camera.matrix_basis, away = picture.camera_matrix(turned, size, left, rotation)
     camera.data.clip_end = max(camera.data.clip_end, 10.0 * away)
     pivot = bpy.data.objects.new("RealModel Turntable", None)
     pivot[picture.KEY] = picture.TURNTABLE

@@ -2,27 +2,27 @@
 """Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
 
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from ..core import DipFile, Dips, InputRefused, ObservationFile, Observations
 from ..core.readers import (
     MAP_ENDINGS,
     Picks,
     UnitNames,
+    names_units,
     read_boreholes,
     read_dips,
+    read_dips_of_rock,
     read_observed_places,
     table_kind,
 )
 from ..core.readers.objects.object_file import is_object_file
-from ..core.readers.tables.hole_tables import OBSERVED, PICKS, columns_in
 from ..core.readers.tables.interval_values import read_interval_values
 from ..core.settings.boreholes import COLUMNS as OF_HOLES
 from ..core.settings.boreholes import Boreholes, check_column_names
 from ..core.settings.dips import COLUMNS as OF_DIPS
 from ..core.settings.map_file import MapFile
 from ..core.settings.observation_file import COLUMNS as OF_PLACES
-from . import map_settings, observed_blocks, surface_dips
+from . import map_settings, observed_blocks
 
 ALL_COLUMNS = tuple(dict.fromkeys((*OF_HOLES, *OF_PLACES, *OF_DIPS)))
 _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
@@ -31,24 +31,28 @@ _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
 @dataclass
 class FieldTables:
     """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
-    dips: ObservationFile and DipFile. maps: MapFile, whose ground is a file or the name of a surface."""
+    dips: ObservationFile and DipFile. rock_dips: DipFiles that name surfaces or blocks; those of `dips` name
+    none. maps: MapFile, whose ground is a file or the name of a surface."""
 
     boreholes: Boreholes | None = None
     assays: list = field(default_factory=list)
     maps: list = field(default_factory=list)
     observations: list = field(default_factory=list)
     dips: list = field(default_factory=list)
+    rock_dips: list = field(default_factory=list)
 
 
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: None where there are none. new: units that no surface, block or body is called, to be added. values:
-    IntervalValues of tables of intervals and assays. maps: DrapedMap of each map. warnings: sentences."""
+    dips: of one surface, rock_dips: with their surfaces and blocks; None where there are none. new: units
+    that no surface, block or body is called, to be added. values: IntervalValues of tables of intervals and
+    assays. maps: DrapedMap of each map. warnings: sentences."""
 
     picks: Picks
     observations: Observations
     dips: Dips | None
+    rock_dips: Dips | None
     left_out: list
     new: list
     values: list
@@ -73,7 +77,8 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
         if kind == "observations":
             found.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
         elif kind == "dips":
-            found.dips.append(DipFile(path, _of(columns, OF_DIPS), units=units))
+            given = DipFile(path, _of(columns, OF_DIPS), units=units)
+            (found.rock_dips if names_units(given) else found.dips).append(given)
         elif kind == "assays":
             assays.append(path)
         elif kind in tables:
@@ -102,14 +107,6 @@ def _map_file(path, given, units):
     return map_file
 
 
-def naming_column(given):
-    """The column of a DipFile that names surfaces or blocks; None where there is none."""
-    found = {}
-    for known in (PICKS, OBSERVED):
-        found |= columns_in(given, Path(given.file), known)
-    return next((found[key] for key in ("surface", "block") if key in found), None)
-
-
 def _of(columns, known):
     return {name: column for name, column in columns.items() if name in known}
 
@@ -120,10 +117,11 @@ def read(scene, rock, tables, names, add_surfaces):
     InputRefused."""
     units = observed_blocks.units_of(scene, rock, names)
     found = _read(scene, rock, tables, units)
+    new = found.new
+    own = [name for name in found.picks.points if name not in (*units.surfaces, *new)]
     if not add_surfaces:
         found.new = []
-    elif new := found.new:
-        own = [name for name in found.picks.points if name not in (*units.surfaces, *new)]
+    elif new or (own and tables.rock_dips):
         units = UnitNames(
             (*units.surfaces, *own, *new), (*units.blocks, *own, *new), units.bodies, units.names
         )
@@ -153,14 +151,19 @@ def _read(scene, rock, tables, units):
         left_out += not_used
         maps.append(draped)
         warnings += [*said, *draped.warnings]
-    dips = [read_dips(file, unit) for file in tables.dips]
+    dips, of_rock = [read_dips(file, unit) for file in tables.dips], []
+    for file in tables.rock_dips:
+        named, not_used = read_dips_of_rock(file, units, unit)
+        of_rock.append(named)
+        left_out += not_used
     known = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [each.block for each in left_out if each.kind == "unknown_block"]
     meant = dict.fromkeys(units.names.get(code, code) for code in codes)
     return Found(
         picks,
         Observations.joined(seen),
-        surface_dips.joined(dips) if dips else None,
+        Dips.joined(dips) if dips else None,
+        Dips.joined(of_rock) if of_rock else None,
         left_out,
         [name for name in meant if name not in known],
         [read_interval_values(each, unit) for each in logged],

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.settings.setting import property_name, switch_name
-from .settings import number, set_number
+from .settings import number, rock_of, set_number
 
 _NAME_OR_NUMBER = ("surface", "direction")  # kinds of settings that are a text in the panel
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
@@ -64,6 +64,19 @@ def set_value(row, key, settings, given):
         setattr(row, name, given if isinstance(given, str) else repr(given))
     else:
         setattr(row, name, given)
+
+
+def dips_unused(row):
+    """Sentences about dips that the method of a surface's row does not use: its own, which a build refuses,
+    or those of its rock mass."""
+    if row.source in READY_MESHES or METHODS[row.method].is_constrained:
+        return []
+    if row.dips:
+        able = ", ".join(method.label for method in METHODS.values() if method.is_constrained)
+        return [f"The method of '{row.name}' does not use dips: choose one of {able}, or remove the dips"]
+    if rock_of(row).dips:
+        return [f"Dips of the rock mass have no effect on '{row.name}': its method does not use them"]
+    return []
 
 
 def options_of(row):

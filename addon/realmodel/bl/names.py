@@ -4,7 +4,7 @@ them."""
 
 from ..core.settings.methods import OPTIONS
 from ..core.settings.setting import property_name
-from . import borehole_picks, observed_blocks, settings
+from . import borehole_picks, observed_blocks, settings, surface_dips
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -27,6 +27,7 @@ def update_references(row):
     if kind == "surface":
         borehole_picks.rename(settings.rock_of(row), old, row.name)
         observed_blocks.rename(settings.rock_of(row), old, row.name)
+        surface_dips.rename(settings.rock_of(row), old, row.name)
     if kind == "body":
         for rock in scene.realmodel.rocks:
             observed_blocks.rename(rock, old, row.name)

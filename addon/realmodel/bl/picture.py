@@ -16,7 +16,7 @@ from mathutils import Matrix, Vector
 from ..core.display import polygon_mesh
 from . import block_shapes, exaggeration, materials, meshes, project_settings, settings, versions
 from .display import shown_models
-from .overlay import drawing_for, legend_share, rendered
+from .overlay import drawing_for, legend_shares, rendered
 from .viewports import towards, view_rotation
 
 KEY = "realmodel_picture"  # on objects and data added here: their purpose
@@ -45,15 +45,15 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(scene, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_ELEVATION)):
+def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH, SUN_ELEVATION)):
     """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
     lights of the user stay.
 
     points: (N, 3) that the picture is to show. size: (width, height) of the picture. space: a 3D viewport
-    whose view the camera takes; without one it sees all points. left: the share of the picture's width that
-    is left empty for a legend, where the camera sees all points. sun: its azimuth and elevation, radians;
-    None: a lamp beside the camera, a uniform sky and no ground, so that faces toward the camera have their
-    own color.
+    whose view the camera takes; without one it sees all points. legend: the shares of the picture's width and
+    height that a legend takes in the lower left corner, where the camera shows no point. sun: its azimuth and
+    elevation, radians; None: a lamp beside the camera, a uniform sky and no ground, so that faces toward the
+    camera have their own color.
     """
     _remove_turntable(scene)
     camera = _own(scene, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
@@ -61,6 +61,7 @@ def set_up(scene, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_ELEV
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
     if space is None:
+        left = left_of_points(points, size, legend)
         camera.data.type, camera.data.angle = "PERSP", FIELD_OF_VIEW
         camera.data.shift_x = -left / 2 * size[0] / max(size)
         camera.matrix_world, away = camera_matrix(points, size, left)
@@ -202,7 +203,7 @@ def render_picture(scene, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
             made.data.materials.append(rows[key].data.materials[0])
             made.scale.z = factor
             stage.collection.objects.link(made)
-        set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(scene, size))
+        set_up(stage, coordinates * (1.0, 1.0, factor), size, legend=legend_shares(scene, size))
         set_renderer(stage, path, size, samples, time_limit)
         stretched = np.diag([1.0, 1.0, factor, 1.0])
         rendered.put(stage, lambda _, view: drawing_for(scene, view, stretched=stretched))
@@ -261,6 +262,19 @@ def camera_matrix(points, size, left=0.0, rotation=None):
         center.append((high - low) / 2.0)
     position = Vector(axes.T @ np.array([*center, distance]))
     return Matrix.Translation(position) @ rotation.to_4x4(), distance
+
+
+def left_of_points(points, size, legend, rotation=None):
+    """The share of a picture's width that a legend needs left of all points: 0 where a line parts it from the
+    points that fill the whole picture. legend: the shares of width and height that it takes in the lower left
+    corner."""
+    matrix, _ = camera_matrix(points, size, 0.0, rotation)
+    local = points @ np.array(matrix.to_3x3()) - np.array(matrix.to_3x3().transposed() @ matrix.translation)
+    tangents = np.array(size) / max(size) * math.tan(FIELD_OF_VIEW / 2.0)
+    shares = 0.5 + 0.5 * local[:, :2] / (-local[:, 2:] * tangents)
+    angles = np.linspace(0.0, 0.5 * math.pi, 91)
+    away = (shares - legend) @ np.array([np.cos(angles), np.sin(angles)])
+    return 0.0 if (away > 0.0).all(axis=0).any() else legend[0]
 
 
 def set_renderer(scene, path, size, samples, time_limit):

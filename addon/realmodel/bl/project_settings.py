@@ -111,6 +111,7 @@ def compose(scene, depsgraph, whole=True):
         rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
+            rock.dips = surface_dips.of_row(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
@@ -139,7 +140,7 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = surface_dips.of_surface(row)
+        surface.dips = surface_dips.of_row(row)
         if row.left_out:
             surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     return surface
@@ -411,6 +412,7 @@ def add_rock(group, rock):
         borehole_picks.keep(row, rock.hole_picks)
         borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
+        surface_dips.keep(row, rock.dips)
     return row
 
 
@@ -423,7 +425,7 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
-        surface_dips.keep(row, surface.dips)
+        surface_dips.keep(row, surface.own_dips())
         if surface.left_out is not None and len(surface.left_out):
             row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
         if surface.input_file is not None:

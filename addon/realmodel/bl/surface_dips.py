@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dips of a surface, stored in its row."""
+"""The dips of a surface or of a rock mass, stored in its row."""
 
 from dataclasses import replace
 
@@ -18,24 +18,14 @@ def keep(row, dips):
 
 
 def add(row, dips):
-    """Adds Dips to those that a surface has."""
-    known = of_surface(row)
-    keep(row, dips if known is None else joined([known, dips]))
+    """Adds Dips to those that a row has."""
+    known = of_row(row)
+    keep(row, dips if known is None else Dips.joined([known, dips]))
 
 
-def of_surface(row):
+def of_row(row):
     """The stored Dips; None where there are none. Raises InputRefused for damaged text."""
     return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
-
-
-def joined(parts):
-    """Several Dips, one after another."""
-    heights = [np.full(len(part), np.nan) if part.z is None else part.z for part in parts]
-    positions, gradients = (
-        np.concatenate([getattr(part, key) for part in parts]) for key in ("positions", "gradients")
-    )
-    used = np.concatenate([np.ones(len(part), bool) if part.used is None else part.used for part in parts])
-    return Dips(positions, gradients, np.concatenate(heights), None if used.all() else used)
 
 
 def with_used(dips, number, used):
@@ -52,3 +42,11 @@ def moved(dips, number, place):
     if z is not None and not np.isnan(z[number]):
         z[number] = place[2]
     return replace(dips, positions=positions, z=z)
+
+
+def rename(row, old, new):
+    """Gives a surface, and the block beneath it, its new name in the dips of a rock mass."""
+    dips = of_row(row)
+    if dips is not None:
+        surfaces, blocks = (np.where(names == old, new, names) for names in dips.named)
+        keep(row, replace(dips, surfaces=surfaces, blocks=blocks))

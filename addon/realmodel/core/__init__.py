@@ -21,6 +21,7 @@ from .model.build import build
 from .model.cutting import Cut
 from .model.estimate import Estimate, estimate
 from .model.model import Model
+from .model.planned_hole import PlannedHole
 from .model.section import Fence, Section
 from .model.surface_set import SurfaceSet, build_surfaces
 from .project.library import Library, Property, load_library
@@ -37,6 +38,7 @@ from .results.contours import Contour
 from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
+from .results.planned_holes import HoleAxis, HoleContact, HoleInterval
 from .settings.boreholes import Boreholes
 from .settings.dips import DipFile, Dips, SpaceDips
 from .settings.map_file import MapFile
@@ -67,6 +69,9 @@ __all__ = [
     "Estimate",
     "Fault",
     "Fence",
+    "HoleAxis",
+    "HoleContact",
+    "HoleInterval",
     "InputRefused",
     "Interpolation",
     "Intersection",
@@ -88,6 +93,7 @@ __all__ = [
     "ObservedBlock",
     "ObservedContact",
     "OutputFailed",
+    "PlannedHole",
     "PointFile",
     "Project",
     "Property",

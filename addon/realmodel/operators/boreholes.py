@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
 
-from pathlib import Path
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
@@ -26,7 +24,6 @@ from ..bl import (
 from ..core import InputRefused, RealModelError
 from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
 from ..core.readers.objects.object_file import is_object_file
-from ..core.settings.methods import METHODS
 from ..core.settings.schema import READING
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
@@ -42,9 +39,10 @@ _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tab
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
     the surfaces), of logged intervals and of assays, or the drillholes of an OMF or geoh5 file; tables of
-    places in known blocks, such as outcrops; dips, which the active surface gets; and geological maps. Choose
-    all of them at once: each is told by its columns. Surfaces get these data beside their own, and are added
-    where they are not there yet"""
+    places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
+    name, or for the active surface where none names any; and geological maps. Choose all of them at once:
+    each is told by its columns. Surfaces get these data beside their own, and are added where they are not
+    there yet"""
 
     bl_label = "Import Field Data"
 
@@ -145,7 +143,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         if surface:
             row = rock.surfaces[surface]  # it may have moved where surfaces were added
             surface_dips.add(row, found.dips)
-            warnings += _dips_warnings(row, tables.dips)
+            warnings += method_settings.dips_unused(row)
+        if found.rock_dips is not None:
+            surface_dips.add(rock, found.rock_dips)
         borehole_picks.keep(rock, found.picks.holes)
         borehole_picks.keep_ends(rock, found.picks.ends)
         for draped, file in zip(found.maps, tables.maps, strict=True):
@@ -250,16 +250,6 @@ def _surface_for_dips(scene):
     return row
 
 
-def _dips_warnings(row, files):
-    """Warnings about dips that a surface gets from DipFiles."""
-    for file in files:
-        if column := field_tables.naming_column(file):
-            yield f"{Path(file.file).name}: column '{column}' is not used; all its dips are of '{row.name}'"
-    if not METHODS[row.method].is_constrained:
-        able = ", ".join(method.label for method in METHODS.values() if method.is_constrained)
-        yield f"the method of '{row.name}' does not use dips; choose one of {able}, or remove the dips"
-
-
 def _summary(found, surface):
     """What was read, in one sentence."""
     said = []
@@ -277,6 +267,8 @@ def _summary(found, surface):
     columns = dict.fromkeys(name for values in found.values for name in values.columns)
     if columns:
         said.append(f"the columns {', '.join(columns)} of intervals")
+    if found.rock_dips is not None:
+        said.append(f"{len(found.rock_dips)} dips of the rock mass")
     text = ", ".join(said) or "nothing that could be used"
     text = text[0].upper() + text[1:]
     return f"{text}: {', '.join(names)}" if names else text
@@ -285,6 +277,11 @@ def _summary(found, surface):
 def observed(context):
     row = settings.active_rock(context.scene)
     return None if row is not None and row.observations else "the rock mass has no observations of blocks"
+
+
+def dips_of_rock(context):
+    row = settings.active_rock(context.scene)
+    return None if row is not None and row.dips else "the rock mass has no dips"
 
 
 def with_dips(context):
@@ -314,4 +311,15 @@ class REALMODEL_OT_dips_remove(Reporting, bpy.types.Operator):
 
     def act(self, context):
         surface_dips.keep(settings.active_surface(context.scene), None)
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_rock_dips_remove(Reporting, bpy.types.Operator):
+    """Remove the dips of the rock mass; those of single surfaces stay"""
+
+    bl_label = "Remove Dips of Rock Mass"
+    needs = (a_rock, dips_of_rock)
+
+    def act(self, context):
+        surface_dips.keep(settings.active_rock(context.scene), None)
         live.touch(context.scene)

@@ -34,8 +34,8 @@ def _shown_places(scene):
     groups, numbers, places = [], [], [np.empty((0, 3))]
     for group in data.groups(scene):
         at = group.places.copy()
-        if group.kind == data.DIP:
-            at[:, 2] = heights.of_dips(scene, group.rock, str(group.names[0]), at)
+        if group.kind in data.DIPS:
+            at[:, 2] = heights.of_dips(scene, group.rock, group.names, at)
         groups += [group] * len(at)
         numbers += range(len(at))
         places.append(at)
@@ -155,7 +155,6 @@ class REALMODEL_OT_datum_show(Reporting, bpy.types.Operator):
     """Turn the viewport to the active datum, and select it"""
 
     bl_label = "Show Datum"
-    bl_options = {"REGISTER"}
     needs = (a_datum,)
 
     def act(self, context):

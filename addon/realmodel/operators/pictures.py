@@ -56,7 +56,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
             viewpoints.model_points(scene, cut=True),
             _size(scene),
             None if found is None else found[2],
-            left=overlay.legend_share(scene, _size(scene)),
+            legend=overlay.legend_shares(scene, _size(scene)),
             sun=(self.sun_azimuth, self.sun_elevation),
         )
         picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
@@ -81,9 +81,9 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene = context.scene
-        left = overlay.legend_share(scene, _size(scene))
+        legend = overlay.legend_shares(scene, _size(scene))
         points = viewpoints.model_points(scene, cut=True)
-        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, left)
+        animation.turntable(scene, points, _size(scene), self.frames, self.elevation, legend)
         picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
         self.report({"INFO"}, f"Frames {scene.frame_start} to {scene.frame_end}")
 

@@ -38,6 +38,8 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
         _draw_adding(layout)
         if rock.observations:
             _draw_removable(layout, "Observations of blocks", "realmodel.observations_remove")
+        if rock.dips:
+            _draw_removable(layout, "Dips of the rock mass", "realmodel.rock_dips_remove")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
@@ -72,6 +74,7 @@ def _draw_surface(layout, context, surface):
         setting_rows.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:
             _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
+        _draw_dips_unused(layout, surface)
     elif len(context.scene.realmodel.faults):
         line = layout.row(heading="Continue By")
         line.prop(surface, "use_continuation", text="")
@@ -82,6 +85,15 @@ def _draw_surface(layout, context, surface):
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
     draw_figures(layout, context, surface)
+
+
+def _draw_dips_unused(layout, surface):
+    """That the method of a surface uses no dips, before a build refuses them."""
+    column = layout.column(align=True)
+    column.alert = bool(surface.dips)
+    for text in method_settings.dips_unused(surface):
+        for number, line in enumerate(wrapped(text, 0 if column.alert else 2)):
+            column.label(text=line, icon="NONE" if number else "ERROR")
 
 
 def draw_property(layout, context, row, operator):

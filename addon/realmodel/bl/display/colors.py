@@ -5,6 +5,7 @@ The mesh of a block keeps its property's material. Other colors are materials in
 of the mesh. So they show in every shading mode and in renders, and can be removed completely.
 """
 
+import collections
 import colorsys
 
 import bpy
@@ -71,8 +72,10 @@ def key(scene):
         names = compartments.names(scene)
         rows = [(name, shades.compartment_color(number)) for number, name in enumerate(names)]
         return ColorKey("Compartment", rows) if len(rows) > 1 else None
-    entries, library = {}, library_rows.library_of(scene)
+    entries, library, places = {}, library_rows.library_of(scene), {}
+    number = collections.Counter()  # of the blocks so far, in each rock mass, the youngest first
     for row in reversed(group.results):
+        number[row.rock] += 1
         item = modes.body_of(scene, row)
         if item is None or not stages.present(row) or modes.is_hidden(scene, row):
             continue
@@ -81,13 +84,16 @@ def key(scene):
             material = item.material_slots[0].material if len(item.material_slots) else None
             if material is not None and library_rows.find(scene, row.property_id) is None:
                 name = material.name  # as it was called when the block was built
-            entries.setdefault(name, shown_color(item))
+            color = shown_color(item)
         else:
             _, color = _entry(scene, by, row)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
-            entries.setdefault(name, tuple(int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
+            color = tuple(int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+        entries.setdefault(name, color)
+        places[name] = min(places.get(name, number[row.rock]), number[row.rock])
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
-    return ColorKey(titles[by], list(entries.items())) if entries else None
+    ordered = sorted(entries.items(), key=lambda entry: places[entry[0]])  # as in the rock masses, from above
+    return ColorKey(titles[by], ordered) if ordered else None
 
 
 def shade_viewports(by, before):

@@ -12,13 +12,15 @@ from ...core.settings.dips import Dips
 from .. import borehole_picks, caches, data_objects, observed_blocks, stored_arrays, surface_dips
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
+ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block
+DIPS = (DIP, ROCK_DIP)
 _groups = caches.new(most=8)  # by what they are made from
 
 
 class Datum(NamedTuple):
-    """kind: POINT, DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface, of others
-    the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be NaN. hole:
-    its name, "" for none. used: whether it is not switched off."""
+    """kind: POINT, DIP, ROCK_DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface, of
+    others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be
+    NaN. hole: its name, "" for none. used: whether it is not switched off."""
 
     kind: str
     rock: str
@@ -91,6 +93,8 @@ def groups(scene):
                 found.append(_groups[key])
             if row.dips:
                 found += _dips(rock, row)
+        if rock.dips:
+            found += _dips(rock, rock)
         if rock.observations:
             key = (rock.name, rock.observations)
             if key not in _groups:
@@ -160,16 +164,18 @@ def _points(scene, rock, row, holes):
 
 
 def _dips(rock, row):
+    """The dips of a surface, or of a rock mass, by its row."""
     try:
-        dips = surface_dips.of_surface(row)
+        dips = surface_dips.of_row(row)
     except RealModelError:
         return []
-    count = len(dips)
-    z = np.full(count, np.nan) if dips.z is None else dips.z
-    places = np.column_stack([dips.positions, z])
-    used = np.ones(count, bool) if dips.used is None else dips.used
-    texts = np.full(count, row.name), np.full(count, "")
-    return [Group(DIP, rock.name, texts[0], places, texts[1], used, np.arange(count), dips=dips)]
+    places = np.column_stack([dips.positions, dips.heights])
+    names, kind = np.full(len(dips), row.name), DIP
+    if row == rock:
+        surfaces, blocks = dips.named
+        names, kind = np.where(surfaces != "", surfaces, blocks), ROCK_DIP
+    holes = np.full(len(dips), "")
+    return [Group(kind, rock.name, names, places, holes, dips.in_use_mask, np.arange(len(dips)), dips=dips)]
 
 
 def _observed(rock):

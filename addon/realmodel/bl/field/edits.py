@@ -27,8 +27,8 @@ def switch(scene, datum, used):
     rock, row = _rows(scene, datum)
     if datum.kind == data.POINT:
         _switch_point(scene, row, np.array(datum.place), used)
-    elif datum.kind == data.DIP:
-        dips = surface_dips.of_surface(row)
+    elif datum.kind in data.DIPS:
+        dips = surface_dips.of_row(row)
         surface_dips.keep(row, surface_dips.with_used(dips, group.rows[number], used))
     else:
         observed_blocks.keep(rock, _switched(observed_blocks.of_rock(rock), group.rows[number], used))
@@ -58,8 +58,8 @@ def move(scene, datum, place):
         places = observations.places.copy()
         places[group.rows[number]] = place
         observed_blocks.keep(rock, replace(observations, places=places))
-    elif datum.kind == data.DIP:
-        dips = surface_dips.of_surface(row)
+    elif datum.kind in data.DIPS:
+        dips = surface_dips.of_row(row)
         surface_dips.keep(row, surface_dips.moved(dips, group.rows[number], place))
         place[2] = place[2] if group.places[number, 2] == group.places[number, 2] else np.nan
     elif group.used[number]:
@@ -75,10 +75,9 @@ def move(scene, datum, place):
 
 
 def _rows(scene, datum):
-    """The rows of the rock mass and of the surface of a datum; None for a surface that it has not."""
+    """The row of the rock mass of a datum, and that in which it is stored: of the surface, or the same."""
     rock = next(rock for rock in scene.realmodel.rocks if rock.name == datum.rock)
-    of_surface = datum.kind in (data.POINT, data.DIP)
-    return rock, rock.surfaces[datum.name] if of_surface else None
+    return rock, rock.surfaces[datum.name] if datum.kind in (data.POINT, data.DIP) else rock
 
 
 def _switch_point(scene, row, place, used):

@@ -86,10 +86,11 @@ def text_of(scene, datum):
     at = f"({x:,.1f}, {y:,.1f}{'' if z != z else f', {z:,.1f}'})"
     where = f"hole {datum.hole}, " if datum.hole else ""
     attitude = ""
-    if datum.kind == data.DIP:
+    if datum.kind in data.DIPS:
         group, number = edits.find(scene, datum)
         attitude = f" {attitude_text(group.dips.gradients[number])}"
-    return f"{where}{datum.kind}{attitude} of {datum.name} at {at}"
+    of = f" of {datum.name}" if datum.name else ""
+    return f"{where}{datum.kind}{attitude}{of} at {at}"
 
 
 def clear(scene):
@@ -151,7 +152,7 @@ def _offset(scene, datum):
     """(3,) the place of a datum relative to the scene's origin; heights that are not known are given one."""
     place = np.array(datum.place)
     if np.isnan(place[2]):
-        place[2] = heights.of_dips(scene, datum.rock, datum.name, place[None])[0]
+        place[2] = heights.of_dips(scene, datum.rock, np.array([datum.name]), place[None])[0]
     return place - project_settings.model_origin(scene)
 
 

@@ -9,13 +9,14 @@ from ..display import explosion
 from . import data
 
 
-def of_dips(scene, rock, surface, places):
-    """(N,) heights of dips of a surface at places (N, 3): where there are none yet, those of the surface as
-    it is built, or else the mean height of its points."""
+def of_dips(scene, rock, names, places):
+    """(N,) heights of dips of surfaces, by their names (N,), at places (N, 3): where there are none yet,
+    those of the surface as it is built, or else the mean height of its points."""
     z = np.array(places, np.float64)[:, 2]
-    if np.isnan(z).any():
-        known = _built(scene, rock, surface, places[np.isnan(z)])
-        z[np.isnan(z)] = np.where(np.isnan(known), _mean(scene, rock, surface), known)
+    for name in dict.fromkeys(np.asarray(names)[np.isnan(z)].tolist()):
+        own = np.isnan(z) & (names == name)
+        known = _built(scene, rock, name, places[own])
+        z[own] = np.where(np.isnan(known), _mean(scene, rock, name), known)
     return z
 
 
@@ -40,9 +41,10 @@ def _built(scene, rock, surface, places):
 
 
 def _mean(scene, rock, surface):
-    found = [
-        group.places[:, 2]
-        for group in data.groups(scene)
-        if group.kind != data.DIP and group.rock == rock and surface in group.names
-    ]
-    return float(np.mean(np.concatenate(found))) if found else 0.0
+    """Of the points of a surface; where it has none, of all."""
+    there = [each for each in data.groups(scene) if each.kind not in data.DIPS and each.rock == rock]
+    own = [group.places[group.names == surface, 2] for group in there]
+    for heights in (np.concatenate(own), *(group.places[:, 2] for group in there)) if there else ():
+        if len(heights):
+            return float(heights.mean())
+    return 0.0

@@ -55,13 +55,13 @@ def datum_of(scene, row):
     if not row.place:
         return None
     place = np.array(json.loads(row.place))
-    wanted = {"dip": (data.DIP,), "point": (data.POINT, data.INTERVAL, data.PLACE)}
+    wanted = {"dip": data.DIPS, "point": (data.POINT, data.INTERVAL, data.PLACE)}
     kinds = wanted.get(row.kind, (data.INTERVAL, data.PLACE))
     best = None
     for group in data.groups(scene):
         if group.kind not in kinds or group.rock != row.rock:
             continue
-        axes = 2 if group.kind == data.DIP else 3
+        axes = 2 if group.kind in data.DIPS else 3
         starts = (group.places[:, :axes] == place[:axes]).all(axis=1)
         ends = starts | (group.ends == place).all(axis=1) if group.ends is not None else starts
         for there, rank in ((starts & (group.names == row.name), 0), (starts, 1), (ends, 2)):

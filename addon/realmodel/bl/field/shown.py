@@ -80,7 +80,7 @@ def _contacts(scene):
     places, materials = [], []
     of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
     for group in data.groups(scene):
-        if group.kind == data.DIP:
+        if group.kind in data.DIPS:
             continue
         for number in range(min(len(group.places), _MOST)):
             name = str(group.names[number])
@@ -126,23 +126,16 @@ def _give_materials(mesh, materials, faces):
 
 def _dips(scene):
     places, gradients, materials = [], [], []
-    for rock, row in settings.surface_rows(scene):
-        group = next(
-            (
-                g
-                for g in data.groups(scene)
-                if g.kind == data.DIP and (g.rock, g.names[0]) == (rock.name, row.name)
-            ),
-            None,
-        )
-        if group is None:
+    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    for group in data.groups(scene):
+        if group.kind not in data.DIPS:
             continue
-        at = group.places[:_MOST].copy()
-        at[:, 2] = heights.of_dips(scene, rock.name, row.name, at)
+        at, names = group.places[:_MOST].copy(), group.names[:_MOST]
+        at[:, 2] = heights.of_dips(scene, group.rock, names, at)
         places.append(at)
         gradients.append(group.dips.gradients[:_MOST])
-        own = colors.of_property(scene, row.property_id)
-        for used in group.used[:_MOST]:
+        for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
+            own = colors.of_property(scene, of_block.get(name, 0))
             upper = own if used else colors.plain_material(*_OFF)
             materials += [upper, *[colors.dark()] * (marks.DISC_FACES - 1)]
     if not places:

@@ -77,7 +77,12 @@ def _keys(scene):
     return tuple(key for key in found if key is not None)
 
 
-def legend_share(scene, size):
-    """The part of a picture's width, of a size in pixels, that the legends of a scene take at the left."""
-    width = sum(1.1 * legend_extent(key)[0] for key in _keys(scene))
-    return min(0.4, width / WIDTH * max(size) / size[0])
+def legend_shares(scene, size):
+    """The shares of the width and height of a picture, of a size in pixels, that the legends of a scene take
+    in its lower left corner."""
+    extents = [legend_extent(key) for key in _keys(scene)]
+    width, height = (
+        sum(1.1 * width for width, _ in extents),
+        max((1.1 * high for _, high in extents), default=0.0),
+    )
+    return min(0.4, width / WIDTH * max(size) / size[0]), min(1.0, height / WIDTH * max(size) / size[1])

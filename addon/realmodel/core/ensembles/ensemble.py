@@ -13,7 +13,9 @@ from ..base.errors import UsageError
 from ..base.work import Cancel, Progress, Work, run
 from ..model.build import build
 from ..model.model import Model
+from ..model.planned_hole import PlannedHole
 from ..project.project import Project
+from .along_holes import hole_of_realizations
 from .places import Probabilities, blocks_at
 from .realization import Realizer
 from .surface_heights import differences, heights
@@ -132,6 +134,31 @@ class Ensemble:
     def entropy(self) -> np.ndarray:
         """(N,) float64, bits, as of Probabilities, at each place."""
         return self.at().entropy()
+
+    def planned_hole(
+        self,
+        collar: tuple[float, float, float],
+        azimuth: float = 0.0,
+        dip: float = 90.0,
+        length: float = 100.0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> PlannedHole:
+        """What Model.planned_hole says of the model, with the probability of each block along the hole, and
+        the standard deviation of the depth of each contact in the realizations that have it. Their surfaces
+        are drawn again for it, but not built.
+
+        Raises as Model.planned_hole, Cancelled.
+        """
+        hole = self.model.planned_hole(collar, azimuth, dip, length)
+        realizer = Realizer(self.model, self.seed, self.correlation)
+        count = len(self.volumes)
+        return run(
+            lambda work: hole_of_realizations(work, realizer, count, hole),
+            progress,
+            cancel,
+            threads=self.model.threads,
+        )
 
 
 def ensemble(

@@ -14,6 +14,7 @@ from ..cells.assembly import assemble, intersect
 from ..heights.draws import Draw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
+from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces
 from ..surfaces.rock_input import RockInput
 
@@ -65,6 +66,12 @@ class Realizer:
     def prepare(self, threads: int = 0) -> None:
         """Computes the data that all realizations share, so that workers do not compute them again."""
         run(lambda work: self._interpolated(work, 0), threads=threads)
+
+    def closed_forms(self, work: Work, number: int) -> list[ClosedForm]:
+        """The closed form of each rock mass of a realization by its number: which block is where, without
+        its cells. work: of `run`. Raises InputRefused, Cancelled."""
+        inputs, structures = self._interpolated(work, number)
+        return closed_forms(replace(self.model, rock_inputs=inputs, structures=structures))
 
     def _make(self, work: Work, number: int, cells: str) -> Model:
         began = time.perf_counter()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that a vertical borehole is written to."""
+"""Files that a vertical borehole, and a planned one, is written to."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from ..results.model_boreholes import Interval
+from ..results.planned_holes import COLUMNS, PlannedHoleData
 from .endings import by_ending
+from .shapes.parts import distinct_names
 
 
 def borehole_writer(path: str | Path) -> Callable[..., None]:
@@ -26,4 +28,29 @@ def _write_csv(model, found: Sequence[Interval], file: BinaryIO) -> None:
     for each in found:
         block = model.blocks[each.block]
         rows.writerow([each.block, block.name, block.property, repr(each.top), repr(each.bottom)])
+    file.write(text.getvalue().encode("utf-8"))
+
+
+def planned_hole_writer(path: str | Path) -> Callable[..., None]:
+    """The function (hole, file) that writes files of this ending. Raises UsageError."""
+    return by_ending(path, {".csv": _write_planned}, "planned holes are not written as {}")
+
+
+def _write_planned(hole: PlannedHoleData, file: BinaryIO) -> None:
+    """The rows of the hole; what is not known is empty. With an ensemble the probability of each block,
+    averaged over the interval."""
+    text = io.StringIO(newline="")
+    rows = csv.writer(text, lineterminator="\n")
+    found = hole.rows()
+    blocks = [] if hole.probability is None else distinct_names(hole.block_names)
+    rows.writerow([*COLUMNS, *(f"probability {name}" for name in blocks)])
+    for row in found:
+        values = [
+            "" if value is None else repr(value) if isinstance(value, float) else value
+            for value in row.values()
+        ]
+        if hole.probability is not None and hole.depths is not None:
+            inside = (hole.depths >= row["from"]) & (hole.depths <= row["to"])
+            values += [f"{share:.9g}" for share in hole.probability[inside].mean(axis=0).tolist()]
+        rows.writerow(values)
     file.write(text.getvalue().encode("utf-8"))

@@ -26,6 +26,7 @@ from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
 from . import cutting, notebook_view
 from .model_file import read_model
+from .planned_hole import planned_hole
 
 
 class Model(ModelData):
@@ -164,5 +165,6 @@ class Model(ModelData):
     section = cutting.section
     fence = cutting.fence
     borehole = borehole
+    planned_hole = planned_hole
     observed = observed
     misfits = misfits

@@ -34,9 +34,13 @@ def check_field_data(project, rock) -> None:
         with refused_by(refuse, "observations", "observations: "):
             given.check()
         check_file(given.file, "observations", refuse)
+    if (dips := rock.dip_file) is not None:
+        with refused_by(refuse, "dips", "dips: "):
+            dips.check()
+        check_file(dips.file, "dips", refuse)
     if rock.map is not None:
         _check_map(rock)
-    for key in ("boreholes", "observations", "map"):
+    for key in ("boreholes", "observations", "map", "dips"):
         if getattr(rock, key) is not None and not rock.interpolates:
             raise refuse(f"'{key}' has no effect, as no surface is interpolated", key)
     _check_names(project, rock)
@@ -47,6 +51,19 @@ def ground_file(rock) -> PointFile | MeshFile | str | Path | None:
     ground = rock.map.ground
     is_surface = isinstance(ground, str) and ground in [surface.name for surface in rock.surfaces]
     return None if is_surface else ground
+
+
+def ground_number(rock) -> int | None:
+    """The number of the surface that is the ground of its map; None without a map, or where none is."""
+    if rock.map is None:
+        return None
+    names, youngest = [surface.name for surface in rock.surfaces], len(rock.surfaces) - 1
+    ground = ground_file(rock)
+    if ground is None:
+        return names.index(rock.map.ground) if rock.map.ground in names else youngest
+    file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
+    own = rock.surfaces[-1].input_file
+    return youngest if own is None or Path(own) == file else None
 
 
 def files_of_map(rock) -> list[Path]:

@@ -19,7 +19,7 @@ from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
 from ..settings.crs import checked_crs
-from ..settings.dips import DipFile, Dips
+from ..settings.dips import DipFile, Dips, dip_file_of
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
@@ -74,8 +74,9 @@ class Surface(Shaped):
     and is a level set of that field (`is_level_set`, which its rock mass says).
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
+    `rock_dips` are dips of its rock mass that count for it, and
     `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
-    heights that it lies at or above, or at or below; both are found when a project is read, and no input.
+    heights that it lies at or above, or at or below; all are found when a project is read, and no input.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -95,6 +96,7 @@ class Surface(Shaped):
     series: str | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
+    rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
     is_level_set: bool = field(default=False, repr=False, compare=False)
@@ -128,15 +130,18 @@ class Surface(Shaped):
     @builtins.property  # a field of this class is called property
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
-        if isinstance(self.dips, (str, Path)):
-            return DipFile(self.dips)
-        return self.dips if isinstance(self.dips, DipFile) else None
+        return dip_file_of(self.dips)
+
+    def own_dips(self) -> Dips | None:
+        """The dips of a surface that is read, without those of its rock mass."""
+        assert self.dips is None or isinstance(self.dips, Dips)
+        return self.dips
 
     def known_dips(self) -> Dips | None:
-        """The dips of a surface that is read, but for those that are switched off; None where there are
-        none."""
-        assert self.dips is None or isinstance(self.dips, Dips)
-        return None if self.dips is None else self.dips.in_use()
+        """All dips that count for a surface that is read: none of them is switched off."""
+        given = [each.in_use() for each in (self.own_dips(), self.rock_dips) if each is not None]
+        parts = [each for each in given if each is not None]
+        return Dips.joined(parts) if len(parts) > 1 else next(iter(parts), None)
 
     @builtins.property  # a field of this class is called property
     def has_bounds(self) -> bool:
@@ -177,9 +182,10 @@ class Rock(Entry):
     blocks; `hole_picks` is what each of them met once they are read (Picks.holes), and `hole_ends` where it
     ends (Picks.ends): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
-    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `names`
-    says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface or body, or ""
-    for nothing.
+    they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
+    those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
+    `names` says what a name in all of these means: {"SST": "Sandstone"}, the name of a block, surface
+    or body, or "" for nothing.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
@@ -203,6 +209,7 @@ class Rock(Entry):
     constraints: Sequence = ()
     boreholes: Boreholes | None = None
     observations: str | Path | ObservationFile | Observations | None = None
+    dips: Dips | DipFile | str | Path | None = None
     names: Mapping[str, str] = field(default_factory=dict)
     map: MapFile | None = None
     series: list[Series] = field(default_factory=list)
@@ -221,6 +228,11 @@ class Rock(Entry):
         if isinstance(given, (str, Path)):
             return ObservationFile(given)
         return given if isinstance(given, ObservationFile) else None
+
+    @property
+    def dip_file(self) -> DipFile | None:
+        """The file of its dips and how it is read; None where they are arrays, or there are none."""
+        return dip_file_of(self.dips)
 
     @property
     def observed(self) -> Observations | None:
@@ -295,6 +307,7 @@ class Project:
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             files += files_of_map(rock)
+            files += [Path(rock.dip_file.file)] if rock.dip_file is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))

@@ -83,6 +83,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
         observations=_read_field_table(table, "observations", folder, ObservationFile, "outcrops.csv"),
+        dips=_read_field_table(table, "dips", folder, DipFile, "dips.csv"),
         map=_read_map(table, folder),
         names=table.content.get("names", {}),
         series=[_read_series(entry, folder) for entry in _optional(table, "series")],

@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -77,12 +77,20 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             lines.append(f"library = {toml_value(library)}")
         for rock in project.rocks:
             lines += ["", "[[rock]]", *_rock_lines(rock)]
-            if rock.observation_file is not None or rock.map is not None:
-                what = "observations have" if rock.map is None else "map has"
-                raise UsageError(f"rock '{rock.name}': its {what} not been read; build it first")
+            unread = {"map": rock.map, "observations": rock.observation_file, "dips": rock.dip_file}
+            for what, given in unread.items():
+                if given is not None:
+                    raise UsageError(f"rock '{rock.name}': its {what} was not read yet; build it first")
             if rock.observed is not None and len(rock.observed):
                 target = beside(rock.name, "observations", ending=".csv")
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
+            if isinstance(rock.dips, Dips) and len(rock.dips):
+                target = beside(rock.name, "dips", ending=".csv")
+                surfaces, blocks = rock.dips.named
+                codes = _block_codes(rock)
+                meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
+                text = dips_text(replace(rock.dips, surfaces=surfaces, blocks=meant))
+                lines.append(f"dips = {toml_value(write(target, text))}")
             for series in rock.series:
                 lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
@@ -173,8 +181,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
     if surface.interpolated or surface.is_level_set:
         points = surface.own_points()  # its contacts follow from the observations again
-        dips, files = surface.dips, {}
-        assert dips is None or isinstance(dips, Dips)
+        dips, files = surface.own_dips(), {}
         if points is not None and len(points):
             target = beside(rock.name, surface.name, ending=".csv")
             files["points"] = write(target, points_text(points))
@@ -259,15 +266,32 @@ def points_text(points) -> bytes:
 
 def dips_text(dips: Dips) -> bytes:
     """Dips as CSV: their slopes, of which angles would not give back each bit."""
-    columns, names = [dips.positions, dips.gradients], "x,y,slope_x,slope_y"
-    if dips.z is not None and np.isfinite(dips.z).all():
-        columns, names = [*columns, dips.z[:, None]], f"{names},z"
-    if dips.used is not None and not dips.used.all():
-        rows = zip(np.hstack(columns).tolist(), dips.used.tolist(), strict=True)
-        return "".join(
-            [f"{names},use\n", *(f"{_joined(row, ',')},{used:d}\n" for row, used in rows)]
-        ).encode()
-    return f"{names}\n".encode() + _rows(np.hstack(columns), ",")
+    columns: list = [*dips.positions.T.tolist(), *dips.gradients.T.tolist()]
+    names = ["x", "y", "slope_x", "slope_y"]
+    if np.isfinite(dips.heights).any():
+        names.append("z")
+        columns.append(["" if np.isnan(z) else z for z in dips.heights.tolist()])
+    for name, texts in zip(("surface", "block"), dips.named, strict=True):
+        if (texts != "").any():
+            names.append(name)
+            columns.append(texts.tolist())
+    if not dips.in_use_mask.all():
+        names.append("use")
+        columns.append(dips.in_use_mask.astype(int).tolist())
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerows([names, *zip(*columns, strict=True)])
+    return text.getvalue().encode()
+
+
+def _block_codes(rock: Rock) -> dict[str, str]:
+    """For each surface of a rock mass, the name that means the block beneath it when a table is read."""
+    surfaces = [surface.name for surface in rock.surfaces]
+    units = UnitNames(surfaces, rock.block_names())
+    return {
+        name: next((each for each in (name, block) if units.block(each) == name), name)
+        for name, block in zip(surfaces, rock.block_names(), strict=True)
+    }
 
 
 def space_dips_text(dips: SpaceDips) -> bytes:
@@ -279,12 +303,7 @@ def observations_text(rock: Rock) -> bytes:
     """The observations of a rock mass as CSV, each block by a name that means it when the table is read."""
     given = rock.observed
     assert given is not None
-    surfaces = [surface.name for surface in rock.surfaces]
-    units = UnitNames(surfaces, rock.block_names())
-    written = {
-        name: next((each for each in (name, block) if units.block(each) == name), name)
-        for name, block in zip(surfaces, rock.block_names(), strict=True)
-    }
+    written = _block_codes(rock)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     all_used = bool(given.in_use.all())

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
-from ..settings.dips import DipFile, Dips, SpaceDips
+from ..settings.dips import DipFile, Dips, SpaceDips, dip_file_of
 from ..settings.schema import SERIES
 from ..settings.series import AUTO, FIELD
 from .entry import Entry, Refuse, check_file, check_values, named_once, refused_by
@@ -41,9 +41,7 @@ class Series(Entry):
     @property
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
-        if isinstance(self.dips, (str, Path)):
-            return DipFile(self.dips)
-        return self.dips if isinstance(self.dips, DipFile) else None
+        return None if isinstance(self.dips, SpaceDips) else dip_file_of(self.dips)
 
     def space_dips(self) -> SpaceDips | None:
         """The dips of a field that is read."""

@@ -15,7 +15,6 @@ from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..readers.tables.observations import SWITCHED_OFF
 from ..results.residuals import heights_of_points
-from ..settings.dips import Dips
 from .closed_form import AIR, ClosedForm, closed_forms
 from .observed import sources_of, violated_bounds
 from .seen_places import NEAR, look
@@ -156,11 +155,11 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
 def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
     rock = model.rock_inputs[which[2]].rock
     surface = rock.surfaces[which[1]]
-    given = surface.dips
-    assert isinstance(given, Dips)
-    rows = np.flatnonzero(given.used) if given.used is not None else np.arange(len(given))
-    dips = given.some(rows)
-    z = np.full(len(dips), np.nan) if dips.z is None else dips.z
+    dips = surface.known_dips()  # its own ones first
+    assert dips is not None
+    own = surface.own_dips()
+    rows = np.empty(0, np.int64) if own is None else np.flatnonzero(own.in_use_mask)
+    z = dips.heights
     slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
     normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
     cross = norm(np.cross(normals, there))
@@ -168,7 +167,7 @@ def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> It
     for k in np.flatnonzero(angles > tolerance).tolist():
         place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
         texts = attitude_text(dips.gradients[k]), f"{attitude_text(slopes[k])}, {angles[k]:.0f}° off"
-        source = "", None, int(rows[k])
+        source = "", None, int(rows[k]) if k < len(rows) else None
         yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
 
 

@@ -13,7 +13,7 @@ from .meshes.off import read_off
 from .objects.object_file import OBJECT_ENDINGS, objects_in
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks
-from .tables.dips import gradient_of, read_dips, read_space_dips
+from .tables.dips import gradient_of, names_units, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_kind import TABLE_KINDS, table_kind
@@ -32,10 +32,12 @@ __all__ = [
     "UnitNames",
     "gradient_of",
     "is_mesh_file",
+    "names_units",
     "objects_in",
     "preview_table",
     "read_boreholes",
     "read_dips",
+    "read_dips_of_rock",
     "read_mesh",
     "read_observed_places",
     "read_off",

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dips of a surface: arrays, or a table with its import options."""
+"""Dips of a surface or of a rock mass: arrays, or a table with its import options."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -13,20 +15,21 @@ from .field_table import FieldTable
 NORMAL = ("normal_x", "normal_y", "normal_z")
 COLUMNS = (
     *("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", *NORMAL),
-    "use",
+    *("surface", "block", "use"),
 )
 
 
 @dataclass(frozen=True)
 class DipFile(FieldTable):
-    """file: a table of dips of a surface or a series: x, y, z (optional for a surface), dip, and
-    dip_direction or strike, in degrees.
+    """file: a table of dips of a surface, a rock mass or a series: x, y, z (needed for a series alone), dip,
+    and dip_direction or strike, in degrees; of a rock mass also the surface or the block that each is of.
 
     dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
     dip direction is 90 degrees clockwise from it. polarity: optional, 1 upright, -1 overturned, which is for
     series whose kind is "field" alone. slope_x and slope_y, how much the surface rises along x and along y,
     may take the place of angles; in such a series so may normal_x, normal_y, normal_z, toward younger rock.
     use: optional, 0 where a row is switched off.
+    surface, block: their names, or those that the rock mass's names give them; empty: not known.
     columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
     model.
@@ -63,12 +66,19 @@ class SpaceDips:
 class Dips:
     """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
     along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
-    says on which side of a fault a dip is. used: (D,) bool, False where one is switched off, which says
-    nothing then; None: all are used."""
+    says on which side of a fault a dip is, and in which block one is that names none. used: (D,) bool, False
+    where one is switched off, which says nothing then; None: all are used.
+
+    Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
+    blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
+    None. A dip of a block counts for the surfaces under and over it that are conformable with it, one
+    without a name for all that no unconformity parts from it."""
 
     positions: np.ndarray
     gradients: np.ndarray
     z: np.ndarray | None = None
+    surfaces: np.ndarray | None = None
+    blocks: np.ndarray | None = None
     used: np.ndarray | None = None
 
     def __len__(self) -> int:
@@ -76,13 +86,50 @@ class Dips:
 
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
-        z, used = (None if each is None else np.asarray(each)[kept] for each in (self.z, self.used))
-        return Dips(self.positions[kept], self.gradients[kept], z, used)
+        more = (self.z, self.surfaces, self.blocks, self.used)
+        chosen = [None if each is None else np.asarray(each)[kept] for each in more]
+        return Dips(self.positions[kept], self.gradients[kept], *chosen)
+
+    @property
+    def in_use_mask(self) -> np.ndarray:
+        """(D,) bool: which are not switched off."""
+        return np.ones(len(self), bool) if self.used is None else np.asarray(self.used, bool)
 
     def in_use(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
-        kept = self if self.used is None else replace(self.some(self.used), used=None)
+        kept = self if self.used is None else replace(self.some(self.in_use_mask), used=None)
         return kept if len(kept) else None
+
+    @property
+    def heights(self) -> np.ndarray:
+        """(D,) float64 the heights of the positions, NaN where they are not known."""
+        return np.full(len(self), np.nan) if self.z is None else self.z
+
+    @property
+    def named(self) -> tuple[np.ndarray, np.ndarray]:
+        """(D,) texts twice: the surface and the block that each is of, "" for none."""
+        none = np.full(len(self), "", str)
+        return (
+            none if self.surfaces is None else self.surfaces,
+            none if self.blocks is None else self.blocks,
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Dips]) -> Dips:
+        """Several, `parts`, one after another."""
+        positions, gradients = (
+            np.concatenate([np.empty((0, 2)), *(getattr(part, key) for part in parts)])
+            for key in ("positions", "gradients")
+        )
+        z = np.concatenate([np.empty(0), *(part.heights for part in parts)])
+        used = np.concatenate([np.empty(0, bool), *(part.in_use_mask for part in parts)])
+        in_use = None if used.all() else used
+        names = [
+            np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
+        ]
+        if not names or not any((each != "").any() for each in names):
+            return cls(positions, gradients, z, used=in_use)
+        return cls(positions, gradients, z, *names, used=in_use)
 
     def checked(self) -> Dips:
         """The same as arrays of float64. Raises InputRefused."""
@@ -94,10 +141,14 @@ class Dips:
         bad = np.flatnonzero(~np.isfinite(np.column_stack([positions, gradients])).all(axis=1))
         if len(bad):
             raise InputRefused(f"dip {bad[0]} is not finite", item="dips")
+        surfaces, blocks = (
+            None if names is None else _texts(names, len(positions), f"{what} of dips")
+            for what, names in (("surfaces", self.surfaces), ("blocks", self.blocks))
+        )
         used = None if self.used is None else np.ascontiguousarray(self.used, bool)
         if used is not None and used.shape != (len(positions),):
             raise InputRefused(f"{len(positions)} dips have {used.size} of 'used'", item="dips")
-        return Dips(positions, gradients, z, used)
+        return Dips(positions, gradients, z, surfaces, blocks, used)
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""
@@ -121,6 +172,13 @@ class Dips:
         return kept, f"{many} several dips, one at {where}: their mean slope is used"
 
 
+def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:
+    """The file of dips and how it is read; None where they are arrays, or there are none."""
+    if isinstance(given, (str, Path)):
+        return DipFile(given)
+    return given if isinstance(given, DipFile) else None
+
+
 def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
     try:
         array = np.ascontiguousarray(values, np.float64)
@@ -128,4 +186,11 @@ def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
         raise InputRefused("not an array of numbers", item=item) from error
     if array.shape != shape:
         raise InputRefused(f"must be an array {shape}, not {array.shape}", item=item)
+    return array
+
+
+def _texts(names, count: int, item: str) -> np.ndarray:
+    array = np.asarray(names, str)
+    if array.shape != (count,):
+        raise InputRefused(f"must be {count} names, one for each dip, not {array.shape}", item=item)
     return array

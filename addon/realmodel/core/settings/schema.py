@@ -91,6 +91,7 @@ ROCK = {
     "constraints": _OTHER,
     "boreholes": _OTHER,
     "observations": _OTHER,
+    "dips": _OTHER,
     "map": _OTHER,
     "names": _OTHER,
     "series": _OTHER,

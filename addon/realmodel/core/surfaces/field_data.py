@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What boreholes, observations and maps tell of the surfaces of a rock mass: read, and applied to them."""
+"""What boreholes, observations, maps and dips tell of the surfaces of a rock mass: read, and applied to
+them."""
 
 from __future__ import annotations
 
@@ -11,11 +12,13 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import naming, number_list
 from ..base.work import Work
+from ..project.field_checks import ground_number
 from ..project.project import Project, Rock, Surface
 from ..project.structure_history import body_times
-from ..readers import Picks, UnitNames, read_boreholes, read_observed_places
+from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
-from .map_data import read_map, with_ground
+from ..settings.dips import Dips
+from .map_data import blocks_on_map, read_map, with_ground
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -28,7 +31,9 @@ class FieldData:
     """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
     boreholes. surfaces: of each surface, as it was before it is read, without contacts of earlier readings,
     the points to be added to it, or None. unnamed: names of picks that no surface from points has. left_out:
-    rows of tables that are not used. map_warnings: sentences."""
+    rows of tables that are not used. map_warnings: sentences. ground: the number of the surface that is the
+    ground of the map, None for none. mapped: (D,) texts, the blocks that the map shows at dips of the rock
+    mass, "" where these do not need it; None without a map."""
 
     rock: Rock
     picks: Picks
@@ -36,11 +41,14 @@ class FieldData:
     unnamed: list[str]
     left_out: list[LeftOut]
     map_warnings: list[str]
+    ground: int | None
+    mapped: np.ndarray | None
 
 
 def read_field_data(project: Project, rock: Rock) -> FieldData:
-    """Reads the boreholes, observations and map of a rock mass. Contacts are those of surfaces that reach
-    everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    """Reads the boreholes, observations, map and dips of a rock mass. Contacts are those of surfaces that
+    reach everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    given = rock
     rock, map_warnings = with_ground(rock), list[str]()
     bodies = [body.name for body in project.bodies]
     names = [surface.name for surface in rock.surfaces]
@@ -56,6 +64,9 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             observed, not_used = read_observed_places(rock.observation_file, units, project.units)
             found.append(observed)
             left_out += not_used
+        dips, not_used = _dips(project, rock, units)
+        left_out += not_used
+    mapped = _mapped(project, rock, units, dips)
     if rock.map is not None:
         observed, not_used, map_warnings = read_map(project, rock, units)
         found.append(observed)
@@ -72,12 +83,36 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         rock,
         boreholes=None,
         observations=observations,
+        dips=dips,
         map=None,
         names={},
         hole_picks=picks.holes or rock.hole_picks,
         hole_ends=picks.ends or rock.hole_ends,
     )
-    return FieldData(read, picks, surfaces, list(picks.points), left_out, map_warnings)
+    return FieldData(
+        read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped
+    )
+
+
+def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, list[LeftOut]]:
+    """The dips of a rock mass with what they are of, and those that are not used."""
+    if rock.dip_file is not None:
+        return read_dips_of_rock(rock.dip_file, units, project.units)
+    assert rock.dips is None or isinstance(rock.dips, Dips)
+    return None if rock.dips is None else rock.dips.checked(), []
+
+
+def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -> np.ndarray | None:
+    """(D,) texts: the block that a map shows at dips without a name and a height, which were measured on the
+    ground, by the surface over it; "" for others. None where there is no map or no dip."""
+    if dips is None or rock.map is None:
+        return None
+    surfaces, blocks = dips.named
+    bare = (surfaces == "") & (blocks == "") & np.isnan(dips.heights)
+    shown = np.full(len(dips), "", object)  # texts of any length
+    if bare.any():
+        shown[bare] = blocks_on_map(project, rock, units, dips.positions[bare])
+    return shown
 
 
 def _of_bodies(project: Project, rock: Rock) -> Situation:

@@ -28,6 +28,7 @@ from ..settings.map_layer import MapLayer
 from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS
 from ..settings.point_file import MeshFile, PointFile
 from .observed.map_places import MapFrame, observed_on_map
+from .observed.polygon_borders import inside
 from .surface_input import SurfaceInput
 
 _PARTS = 100  # of the diagonal of the region: the spacing of places for an automatic edge length
@@ -95,6 +96,20 @@ def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observatio
         advice = "check the coordinates of the map, the ground and the region"
         raise InputRefused(what, file=file, item=f"{rock.item}, map", advice=advice)
     return observations, left_out, [*read.warnings, *(f"{file}: {text}" for text in more)]
+
+
+def blocks_on_map(project: Project, rock: Rock, units: UnitNames, plan: np.ndarray) -> np.ndarray:
+    """(N,) texts: the blocks that the map shows at places (N, 2), by the surfaces over them; "" where it
+    shows none. Raises InputRefused."""
+    assert rock.map is not None
+    with naming(rock.item):
+        polygons, _ = read_unit_polygons(rock.map, project.units)
+    found = np.full(len(plan), "", object)
+    for each in polygons:
+        block = "" if units.says_nothing(each.unit) else units.block(each.unit)
+        if block in units.surfaces:
+            found[inside(each.rings, plan)] = block
+    return found
 
 
 def _ground(rock: Rock, given: MapFile) -> Surface:

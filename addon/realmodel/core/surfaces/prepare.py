@@ -25,6 +25,7 @@ from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
 from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
+from .rock_dips import apply_dips
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
@@ -43,7 +44,7 @@ _EDGE_LENGTH_KINDS = (
 def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None. reader: how surfaces are read."""
-    rocks, all_warnings, all_left_out, asked = [], [], [], []
+    fields, all_warnings, asked = [], [], []
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
@@ -52,12 +53,12 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
         warnings += [BuildWarning(text, "map", rock.name) for text in field.map_warnings]
         asked += [SurfaceInput.of(rock, *each, project.units) for each in field.surfaces]
-        rocks.append(field.rock)
+        fields.append(field)
         all_warnings.append((warnings, _unnamed(rock, field)))
-        all_left_out.append(field.left_out)
     found = dict(reader(work, asked))
     inputs, first = [], 0
-    for rock, (warnings, of_picks), left_out in zip(rocks, all_warnings, all_left_out, strict=True):
+    for field, (warnings, of_picks) in zip(fields, all_warnings, strict=True):
+        rock = field.rock
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
         warnings += [
@@ -68,11 +69,13 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         warnings += of_picks
         rock = replace(rock, surfaces=[each.surface for each in own])
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=left_out)
+        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:
             apply_observations(work, entry)
-            if not (project.faults or project.bodies):  # else once it is known where these are
-                entry.warnings += left_out_warnings(entry)
+        if rock.dips is not None:
+            apply_dips(work, entry, field.ground, field.mapped)
+        if not (project.faults or project.bodies):  # else once it is known where these are
+            entry.warnings += left_out_warnings(entry)
         require_points_near(entry.rock, project.units)
         inputs.append(entry)
     return inputs

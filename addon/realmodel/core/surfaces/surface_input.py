@@ -106,8 +106,7 @@ class SurfaceInput:
     def _dips(self, step: Step) -> Dips | None:
         if (file := self.surface.dip_file) is not None:
             return read_dips(file, self.units, step)
-        dips = self.surface.dips
-        assert dips is None or isinstance(dips, Dips)
+        dips = self.surface.own_dips()
         return None if dips is None else dips.checked()
 
     def _mesh(self, step: Step, arrays: MappedArrays | None):

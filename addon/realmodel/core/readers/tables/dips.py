@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dips of a surface or of a series from a table of text."""
+"""Dips of a surface, of a whole rock mass or of a series from a table of text."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,10 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...settings.dips import NORMAL, DipFile, Dips, SpaceDips
 from ...settings.directions import unit_vector
-from .hole_tables import Row, rows
+from .hole_tables import OBSERVED, Row, rows
+from .observations import LeftOut
 from .points import AXES
+from .unit_names import UnitNames
 
 DIPS = {
     **AXES,
@@ -31,7 +34,10 @@ DIPS = {
     "use": ("use",),
     **{name: (name,) for name in NORMAL},
 }
+# "formation" and "unit" are blocks where there are dips, which are measured within the beds
+_NAMED = {"surface": ("surface", "horizon", "top", "marker", "pick"), "block": OBSERVED["block"]}
 _SHEET = "a sheet has one height at each position"
+_ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "field"'
 
 
 def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
@@ -42,18 +48,61 @@ def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
 
 
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
-    """The dips of a table, in the model's unit. Raises InputRefused naming file and line."""
-    file = Path(given.file)
+    """The dips of a table, all of one surface, in the model's unit. Raises InputRefused naming file and
+    line."""
+    return _dips(given, list(rows(given, Path(given.file), DIPS, ("x", "y"), step)), model_unit)
+
+
+def read_dips_of_rock(
+    given: DipFile, units: UnitNames, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> tuple[Dips, list[LeftOut]]:
+    """The dips of a table with the surfaces and blocks that they name, in the model's unit, and those that
+    are of nothing that the rock mass has. Raises InputRefused naming file and line."""
+    kept, surfaces, blocks = [], [], []
+    left_out: list[LeftOut] = []
+    every = list(rows(given, Path(given.file), {**DIPS, **_NAMED}, ("x", "y"), step))
+    for row in every:
+        code = next((row.text(key) for key in _NAMED if row.has(key)), "")
+        surface = block = ""
+        if code and not units.says_nothing(code):
+            over = units.block(code)
+            if row.has("surface") and units.is_surface(code):
+                surface = units.surface(code)
+            elif over is not None and over in units.surfaces:
+                block = over
+            else:
+                left_out.append(LeftOut("dip_unit", f"line {row.line}, '{code}'", code))
+                continue
+        elif code in units.names:
+            continue
+        kept.append(row)
+        surfaces.append(surface)
+        blocks.append(block)
+    found = _dips(given, kept, model_unit, may_be_none=bool(every))
+    return replace(found, surfaces=np.array(surfaces, str), blocks=np.array(blocks, str)), left_out
+
+
+def names_units(given: DipFile, step: Step = no_step) -> bool:
+    """Whether a table of dips names surfaces or blocks, in any row. Raises InputRefused."""
+    every = rows(given, Path(given.file), {**DIPS, **_NAMED}, ("x", "y"), step)
+    return any(row.has(key) for row in every for key in _NAMED)
+
+
+def _dips(given: DipFile, kept: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
+    """The dips of rows of a table."""
     plan, height = factors(given.units, model_unit)
     places, gradients, z, used = [], [], [], []
-    for row in rows(given, file, DIPS, ("x", "y"), step):
+    for row in kept:
         places.append((plan * row.number("x"), plan * row.number("y")))
         z.append(height * row.number("z") if row.has("z") else math.nan)
         gradients.append(_gradient(row))
         used.append(row.is_used)
-    if not places:
-        raise InputRefused("there are no dips in it", file=file)
-    return Dips(np.array(places), np.array(gradients), np.array(z), None if all(used) else np.array(used))
+    if not (places or may_be_none):
+        raise InputRefused("there are no dips in it", file=given.file)
+    shape = (-1, 2)
+    in_use = None if all(used) else np.array(used)
+    arrays = np.array(places).reshape(shape), np.array(gradients).reshape(shape), np.array(z)
+    return Dips(*arrays, used=in_use)
 
 
 def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> SpaceDips:
@@ -112,10 +161,10 @@ def _gradient(row: Row) -> np.ndarray:
         raise _no_column(row, "dip")
     dip = row.number("dip")
     if row.has("polarity") and row.number("polarity") < 0:
-        raise row.refuse(f"the dip is overturned: {_SHEET}", "leave the row out, or use a series of surfaces")
+        raise row.refuse(f"the dip is overturned: {_SHEET}", _ELSEWHERE)
     if not 0 <= dip < 90:
         what = "vertical" if dip == 90 else "overturned" if 90 < dip <= 180 else "not from 0 to 90 degrees"
-        raise row.refuse(f"the dip {dip:g} is {what}: {_SHEET}", "leave the row out")
+        raise row.refuse(f"the dip {dip:g} is {what}: {_SHEET}", _ELSEWHERE)
     if dip == 0:
         return np.zeros(2)
     return gradient_of(dip, _direction_of(row))

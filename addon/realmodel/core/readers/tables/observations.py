@@ -167,6 +167,8 @@ IN_TABLES = {
     "from_to": "intervals end above where they begin, and are not used",
     "no_depth": "intervals have no depth, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
+    "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
+    "dip_surface": "dips count for no surface, as only surfaces that cut them bound their block",
 }
 SWITCHED_OFF = "switched_off"  # by the user: no warning
 KINDS = {

@@ -56,6 +56,10 @@ class UnitNames:
         over = self.block(code)
         return over if over is not None and over in self.surfaces else name
 
+    def is_surface(self, code: str) -> bool:
+        """Whether a name is that of a surface."""
+        return self._meant(code) in self.surfaces
+
     def _is_known(self, name: str) -> bool:
         return name in self.surfaces or name in self.blocks or name in self.bodies
 

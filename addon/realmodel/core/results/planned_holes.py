@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A straight borehole that is planned: what it will meet, by depth along it, and how certain that is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.algebra import dot
+from ..base.elementary import cos, sin
+from ..base.errors import UsageError
+from ..notebook import data_frame
+from .layer_values import at_places
+from .section_data import SectionData
+
+if TYPE_CHECKING:
+    import pandas
+
+_SAME = 1e-9  # of the size of a hole and its model: depths that are nearer are one
+_STEP = 1e-6  # of a hole: over which the slopes of surfaces are taken
+COLUMNS = (
+    *("block", "name", "property", "from", "to", "length", "vertical_from", "vertical_to"),
+    *("probability", "from_deviation", "to_deviation"),
+)
+
+
+@dataclass(frozen=True)
+class HoleAxis:
+    """Where a hole is planned. collar: (x, y, z). azimuth: degrees clockwise from north (+y). dip: degrees
+    below the horizontal, 90 straight down. length: from the collar, model units. Raises UsageError."""
+
+    collar: tuple[float, float, float]
+    azimuth: float = 0.0
+    dip: float = 90.0
+    length: float = 100.0
+
+    def __post_init__(self) -> None:
+        collar = np.asarray(self.collar, np.float64)
+        if collar.shape != (3,) or not np.isfinite(collar).all():
+            raise UsageError(f"the collar must be three finite numbers, not {self.collar!r}")
+        if not np.isfinite(self.azimuth):
+            raise UsageError(f"the azimuth must be a finite number, not {self.azimuth!r}")
+        if not -90.0 <= self.dip <= 90.0:
+            raise UsageError(f"the dip must lie between -90 and 90 degrees, not {self.dip!r}")
+        if not (np.isfinite(self.length) and self.length > 0):
+            raise UsageError(f"the length must be above 0, not {self.length!r}")
+        object.__setattr__(self, "collar", tuple(collar.tolist()))
+
+    @property
+    def heading(self) -> np.ndarray:
+        """(2,) of length 1: where it goes in plan."""
+        turn = np.radians(self.azimuth)
+        return np.array([float(sin(turn)), float(cos(turn))])
+
+    @property
+    def direction(self) -> np.ndarray:
+        """(3,) of length 1: where it goes."""
+        if abs(self.dip) == 90.0:
+            return np.array([0.0, 0.0, -np.sign(self.dip)])
+        tilt = np.radians(self.dip)
+        return np.array([*(float(cos(tilt)) * self.heading), -float(sin(tilt))])
+
+    def places(self, depths) -> np.ndarray:
+        """(N, 3) where depths (N,) along it are."""
+        return np.array(self.collar) + np.asarray(depths, np.float64)[:, None] * self.direction
+
+    def vertical(self, depth: float) -> float:
+        """How far below the collar a depth along it is."""
+        return float(-depth * self.direction[2])
+
+
+@dataclass(frozen=True)
+class HoleInterval:
+    """A stretch of a planned hole in one `block` (its number), from the depth `begin` along the hole to
+    `end`. probability: that this block is there, on average along it; None where no ensemble was asked."""
+
+    block: int
+    begin: float
+    end: float
+    probability: float | None = None
+
+    @property
+    def length(self) -> float:
+        """Along the hole, model units."""
+        return self.end - self.begin
+
+
+@dataclass(frozen=True)
+class HoleContact:
+    """Where a planned hole goes from the block `above` into the block `below`, -1 outside of the model.
+    surface: which the contact lies on, "" for another one, such as a fault or the base. deviation: the
+    standard deviation of its depth along the hole: of the realizations that have this contact, and `share` is
+    how many of them do, from 0 to 1; without an ensemble (share None) as the variance of the interpolated
+    height gives it, None where that is not known."""
+
+    depth: float
+    above: int
+    below: int
+    surface: str = ""
+    deviation: float | None = None
+    share: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedHoleData:
+    """What a planned hole meets.
+
+    axis: where it goes. intervals, contacts: along it, from the collar. block_names, properties: (B,) of the
+    model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, as an
+    ensemble says; None without one. unit: of lengths.
+    """
+
+    axis: HoleAxis
+    intervals: list[HoleInterval]
+    contacts: list[HoleContact]
+    block_names: list[str]
+    properties: list[int]
+    unit: str = ""
+    depths: np.ndarray | None = field(default=None, repr=False)
+    probability: np.ndarray | None = field(default=None, repr=False)
+
+    def rows(self) -> list[dict]:
+        """A row for each interval, from the collar: `block` (its number), `name`, `property`, the depths
+        `from` and `to` along the hole and `length`, the depths `vertical_from` and `vertical_to` below the
+        collar; `probability` and the standard deviations of both ends, `from_deviation` and `to_deviation`,
+        None where they are not known."""
+        deviations = {contact.depth: contact.deviation for contact in self.contacts}
+        return [
+            {
+                "block": each.block,
+                "name": self.block_names[each.block],
+                "property": self.properties[each.block],
+                "from": each.begin,
+                "to": each.end,
+                "length": each.length,
+                "vertical_from": self.axis.vertical(each.begin),
+                "vertical_to": self.axis.vertical(each.end),
+                "probability": each.probability,
+                "from_deviation": deviations.get(each.begin),
+                "to_deviation": deviations.get(each.end),
+            }
+            for each in self.intervals
+        ]
+
+    def table(self) -> pandas.DataFrame:
+        """The `rows` as a DataFrame. Raises UsageError where pandas is missing."""
+        return data_frame(self.rows(), COLUMNS)
+
+
+def intervals_on(section: SectionData, axis: HoleAxis) -> list[HoleInterval]:
+    """The blocks along a hole, by the section of the model by the upright plane through it."""
+    away = section.vertices - np.array(axis.collar)
+    direction = axis.direction
+    ahead = np.array([*axis.heading, 0.0])
+    aside = (
+        np.array([0.0, 0.0, 1.0]) * dot(ahead, direction) - ahead * direction[2]
+    )  # across it, on the plane
+    u, v = dot(away, direction), dot(away, aside)
+    corners, offsets = section.polygon_vertices, section.offsets
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    first, second = corners, corners[following]
+    crossed = np.flatnonzero((v[first] <= 0) != (v[second] <= 0))
+    low, high = first[crossed], second[crossed]
+    at = u[low] + (u[high] - u[low]) * v[low] / (v[low] - v[high])
+    polygon = np.searchsorted(offsets, crossed, "right") - 1
+    order = np.lexsort((at, polygon))  # each has an even number, of which two follow one another
+    ends = np.clip(at[order].reshape(-1, 2), 0.0, axis.length)
+    blocks = section.block[polygon[order][::2]]
+    size = float(np.ptp(section.vertices, axis=0).max()) if len(section.vertices) else 0.0
+    return _joined(ends, blocks, _SAME * max(axis.length, size))
+
+
+def _joined(ends: np.ndarray, blocks: np.ndarray, near: float) -> list[HoleInterval]:
+    """Stretches (K, 2) in order, those of one block that meet as one."""
+    found: list[HoleInterval] = []
+    for row in np.lexsort((ends[:, 1], ends[:, 0])).tolist():
+        (begin, end), block = ends[row].tolist(), int(blocks[row])
+        if end - begin <= near:
+            continue
+        if found and begin - found[-1].end <= near:
+            begin = found[-1].end
+            if found[-1].block == block:
+                found[-1] = HoleInterval(block, found[-1].begin, max(end, begin))
+                continue
+        if end > begin:
+            found.append(HoleInterval(block, begin, end))
+    return found
+
+
+def contacts_between(intervals: Sequence[HoleInterval], axis: HoleAxis) -> list[HoleContact]:
+    """Where blocks begin and end; not where the hole itself does."""
+    found = []
+    stops = [None, *intervals, None]
+    for above, below in pairwise(stops):
+        if above is not None and below is not None and above.end == below.begin:
+            found.append(HoleContact(above.end, above.block, below.block))
+            continue
+        if above is not None and above.end < axis.length:
+            found.append(HoleContact(above.end, above.block, -1))
+        if below is not None and below.begin > 0:
+            found.append(HoleContact(below.begin, -1, below.block))
+    return found
+
+
+def on_surfaces(model, contacts: Sequence[HoleContact], axis: HoleAxis) -> list[HoleContact]:
+    """Contacts with the surfaces that they lie on, and the standard deviations of their depths that follow
+    from the variances of interpolated heights: that of the height, over how fast the hole nears the
+    surface."""
+    if not contacts or model.lacks_project is not None:
+        return list(contacts)
+    depths = np.array([contact.depth for contact in contacts])
+    places = axis.places(depths)
+    step = _STEP * axis.length
+    near = 1e-7 * float(np.abs(np.ptp(model.vertices, axis=0)).max() + axis.length)
+    names, deviations = [""] * len(contacts), np.full(len(contacts), np.nan)
+    for number in np.flatnonzero(model.surface_kind == 0).tolist():
+        vertices, _ = model.surface(number)
+        variance = model.surface_attributes(number)["variance"]
+        spread = np.column_stack([vertices[:, :2], np.sqrt(np.maximum(variance, 0.0))])
+        for triangles in model.sheet_triangles(number):
+            height = at_places(vertices, triangles, places[:, :2], model.threads)
+            on = np.flatnonzero(np.abs(height - places[:, 2]) <= near)
+            if not len(on):
+                continue
+            before, after = (
+                at_places(vertices, triangles, axis.places(depths[on] + way)[:, :2], model.threads)
+                for way in (-step, step)
+            )
+            there = height[on]
+            rise = np.where(
+                np.isnan(before),
+                after - there,
+                np.where(np.isnan(after), there - before, 0.5 * (after - before)),
+            )
+            nearing = np.abs(axis.direction[2] - np.nan_to_num(rise) / step)
+            own = at_places(spread, triangles, places[on, :2], model.threads)
+            for row, value in zip(on.tolist(), (own / np.maximum(nearing, 1e-12)).tolist(), strict=True):
+                names[row], deviations[row] = model.surface_names[number], value
+    return [
+        HoleContact(each.depth, each.above, each.below, name, None if np.isnan(value) else value)
+        for each, name, value in zip(contacts, names, deviations.tolist(), strict=True)
+    ]

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which surfaces of a rock mass the dip of a block counts for.
+
+A block was deposited on the surface below it, whatever this had cut before, and lies parallel to it; it lies
+parallel to the surface above it unless that came as an erosion surface and cut it. So surfaces that cut part
+the others into runs that are conformable with one another, each with its unconformity as the lowest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...settings.rules import RULES
+
+
+def _parting(rules: Sequence[str], ground: int | None) -> list[bool]:
+    """Whether each surface parts what is above it from what is below it."""
+    return [RULES[rule].cuts or number == ground for number, rule in enumerate(rules)]
+
+
+def beside_blocks(rules: Sequence[str], ground: int | None = None) -> np.ndarray:
+    """(B, S) bool: of the surfaces under and over each block, those that are conformable with it. ground: the
+    number of the surface that is the ground of today."""
+    count, parting = len(rules), _parting(rules, ground)
+    found = np.zeros((count, count), bool)
+    for block in range(count):
+        found[block, block] = not parting[block]
+        if block and block - 1 != ground:
+            found[block, block - 1] = True
+    return found
+
+
+def runs_of_blocks(rules: Sequence[str], ground: int | None = None) -> np.ndarray:
+    """(B, S) bool: the surfaces that no unconformity parts from each block."""
+    parting = _parting(rules, ground)
+    run = np.cumsum(parting)  # a surface that parts is the lowest of its run
+    block_run = np.concatenate([[0], run[:-1]])
+    found = block_run[:, None] == run[None, :]
+    if ground is not None:
+        found[:, ground] = False
+    return found
+
+
+def blocks_at(rules: Sequence[str], heights: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """(N,) the block that places lie in. heights: (S, N) of the surfaces there, NaN where one does not exist.
+    z: (N,) of the places; NaN, or above the top of what is there: just below this."""
+    deposited, top = _deposited(rules, heights)
+    z = np.where(np.isnan(z) | (z > top), top, z)
+    blocks = np.full(len(z), -1)  # air
+    for number, (rule, own) in enumerate(zip(rules, deposited, strict=True)):
+        if RULES[rule].cuts:
+            blocks[z > own] = -1
+        blocks[(blocks < 0) & (z <= own)] = number
+    return np.maximum(blocks, 0)
+
+
+def _deposited(rules: Sequence[str], heights: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """(N,) the heights of each surface as it came, NaN where it does not exist, and of the top at last."""
+    top = np.full(heights.shape[1], np.nan)
+    firm = np.full(heights.shape[1], -np.inf)
+    found = []
+    for rule, height in zip(rules, heights, strict=True):
+        own = height if RULES[rule].cuts else np.fmax(height, top)
+        own = np.where(np.isnan(height), np.nan, np.fmax(own, firm))
+        top = np.where(np.isnan(own), top, own)
+        firm = np.where(RULES[rule].protects & ~np.isnan(own), own, firm)
+        found.append(own)
+    return found, top

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dips of a whole rock mass, each given to the surfaces that it counts for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, naming, place_text
+from ..base.work import Work
+from ..heights import heights
+from ..heights.interpolation import Task
+from ..project.project import Rock, Surface, surface_item
+from ..readers.tables.observations import LeftOut
+from ..settings.dips import Dips
+from ..settings.methods import (
+    CONTINUATION,
+    CONTINUATION_OPTIONS,
+    DEFAULT_METHOD,
+    METHODS,
+    SURFACE_OPTIONS,
+    checked_options,
+)
+from ..settings.rules import RULES
+from .observed.derived import BlockNumbers
+from .observed.dip_surfaces import beside_blocks, blocks_at, runs_of_blocks
+from .rock_input import RockInput
+from .wrong_sides import heights_at
+
+
+def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndarray | None) -> None:
+    """Gives each surface of a RockInput that is read, but not interpolated, the dips of its rock mass that
+    count for it. ground: the number of the surface that is the ground of a map; mapped: (D,) texts, the
+    blocks that this shows at dips, as of FieldData. Raises InputRefused where a dip names a surface that uses
+    none."""
+    rock, dips = entry.rock, entry.rock.dips
+    assert isinstance(dips, Dips)
+    counts, is_known = _named(entry, dips, ground)
+    surfaces, blocks = dips.named
+    without = np.flatnonzero((surfaces == "") & (blocks == ""))
+    if len(without):
+        runs = runs_of_blocks([surface.rule for surface in rock.surfaces], ground)
+        alike = (runs[0 if rock.base_elevation is not None else 1 :] == runs[-1]).all()
+        shown = None if mapped is None else mapped[without]
+        counts[without] = runs[-1] if alike else runs[_blocks_of(work, entry, dips.some(without), shown)]
+    is_known &= dips.in_use_mask
+    counts[~dips.in_use_mask] = False
+    entry.warnings += _of_default_rules(rock, int((is_known & (surfaces == "")).sum()))
+    given = list(rock.surfaces)
+    for number, surface in enumerate(given):
+        rows = np.flatnonzero(counts[:, number])
+        if len(rows) and not uses_dips(surface):
+            entry.warnings.append(_not_used(rock, number, len(rows)))
+            rows = rows[:0]
+        own = Dips(dips.positions[rows], dips.gradients[rows], dips.heights[rows])
+        given[number] = replace(surface, rock_dips=own if len(own) else None)
+    entry.rock = replace(rock, surfaces=given)
+    for row in np.flatnonzero(is_known & ~counts.any(axis=1)).tolist():
+        entry.left_out.append(LeftOut("dip_surface", _called(dips, row), place=_place(dips, row)))
+
+
+def uses_dips(surface: Surface) -> bool:
+    """Whether dips can have an effect on a surface."""
+    return surface.interpolated and METHODS[surface.method or DEFAULT_METHOD].is_constrained
+
+
+def _named(entry: RockInput, dips: Dips, ground: int | None) -> tuple[np.ndarray, np.ndarray]:
+    """(D, S) bool: the surfaces that each dip with a name counts for; and (D,) bool: the dips that name
+    nothing unknown. The others are listed."""
+    rock = entry.rock
+    names = [surface.name for surface in rock.surfaces]
+    of_surfaces, of_blocks = dips.named
+    counts = np.zeros((len(dips), len(names)), bool)
+    for number, name in enumerate(names):
+        counts[of_surfaces == name, number] = True
+        if counts[:, number].any():
+            _require_dips(rock, number)
+    by_block = (of_surfaces == "") & (of_blocks != "")
+    blocks = np.where(by_block, BlockNumbers(rock).of(of_blocks), -1)
+    is_known = np.where(by_block, blocks >= 0, (of_surfaces == "") | np.isin(of_surfaces, names))
+    beside = beside_blocks([surface.rule for surface in rock.surfaces], ground)
+    counts[blocks >= 0] = beside[blocks[blocks >= 0]]
+    for row in np.flatnonzero(~is_known).tolist():
+        name = str(of_surfaces[row] or of_blocks[row])
+        entry.left_out.append(LeftOut("dip_unit", _called(dips, row), name, place=_place(dips, row)))
+    return counts, is_known
+
+
+def _of_default_rules(rock: Rock, count: int) -> list[BuildWarning]:
+    """The warning about dips of beds, so many, where each surface cuts those beneath it, as by default."""
+    rules = [surface.rule for surface in rock.surfaces]
+    if not count or len(rules) < 2 or not all(RULES[rule].cuts for rule in rules[1:]):
+        return []
+    text = (
+        f"{count} dips of blocks count for the surface under their block only, as each surface cuts the "
+        "block beneath it: give those that are parallel to it the rule conformable"
+    )
+    return [BuildWarning(text, "dips", rock.name)]
+
+
+def _require_dips(rock: Rock, number: int) -> None:
+    """Refuses dips that name a surface which cannot use them."""
+    surface = rock.surfaces[number]
+    if uses_dips(surface):
+        return
+    advice = "leave them out"
+    if surface.is_level_set:
+        advice = "give them to its series"
+    elif surface.interpolated:
+        advice = f"{', '.join(name for name, each in METHODS.items() if each.is_constrained)} use them"
+    file, line = rock.place_of("dips")
+    what = f"dips of the rock mass name it, but {_why_none(surface)}"
+    raise InputRefused(what, file=file, line=line, item=surface_item(rock, surface), advice=advice)
+
+
+def _not_used(rock: Rock, number: int, count: int) -> BuildWarning:
+    surface = rock.surfaces[number]
+    text = f"{count} dips of blocks of the rock mass would count for it, but {_why_none(surface)}"
+    return BuildWarning(text, "dips", rock.name, surface.name)
+
+
+def _why_none(surface: Surface) -> str:
+    """Why dips of the rock mass have no effect on a surface."""
+    if surface.is_level_set:
+        return f"it is a level set of series '{surface.series}', which has its own"
+    return (
+        f"method '{surface.method}' does not use dips" if surface.interpolated else "a ready mesh uses none"
+    )
+
+
+def _blocks_of(work: Work, entry: RockInput, dips: Dips, shown: np.ndarray | None) -> np.ndarray:
+    """(D,) the block that each dip lies in: that which a map shows, or by the surfaces as they are without
+    dips; one without a height lies at the top of what is there."""
+    plan = np.ascontiguousarray(dips.positions)
+    found = np.array([_first_heights(work, entry, number, plan) for number in range(len(entry.surfaces))])
+    blocks = blocks_at([surface.rule for surface in entry.rock.surfaces], found, dips.heights)
+    return blocks if shown is None else np.where(shown == "", blocks, BlockNumbers(entry.rock).of(shown))
+
+
+def _first_heights(work: Work, entry: RockInput, number: int, plan: np.ndarray) -> np.ndarray:
+    """(N,) heights of a surface at places (N, 2) as its points alone show them, NaN where it has none."""
+    surface, shape = entry.rock.surfaces[number], entry.surfaces[number]
+    if not surface.interpolated and shape is not None:
+        return heights_at(work, shape, plan)
+    points = surface.point_array()
+    method, settings = surface.method_options()
+    if len(points):
+        method, settings = CONTINUATION, checked_options(CONTINUATION, CONTINUATION_OPTIONS)
+    elif any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS) or METHODS[method].on_mesh:
+        return np.full(len(plan), np.nan)
+    with naming(surface_item(entry.rock, surface), surface.shape_source):
+        return heights(method, Task(work, points, plan, settings)).z
+
+
+def _called(dips: Dips, row: int) -> str:
+    """A dip in messages."""
+    surface, block = (str(names[row]) for names in dips.named)
+    named = surface or block
+    return place_text(_place(dips, row)) + (f", '{named}'" if named else "")
+
+
+def _place(dips: Dips, row: int) -> tuple[float, ...]:
+    place = dips.positions[row].tolist()
+    return (*place, *dips.heights[[row]].tolist()) if np.isfinite(dips.heights[row]) else tuple(place)
