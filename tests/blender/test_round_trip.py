@@ -319,7 +319,7 @@ def _surface(surface):
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
         "contacts": surface.contact_array().tolist(),
-        "left_out": None if surface.left_out is None else np.asarray(surface.left_out).tolist(),
+        "left_out": None if surface.left_out is None else [tuple(place) for place in surface.left_out],
         "dips": surface.dips and [surface.dips.positions.tolist(), surface.dips.gradients.tolist()],
         "method": surface.method_options() if surface.interpolated else None,
         **{

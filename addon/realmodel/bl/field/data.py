@@ -18,8 +18,8 @@ _groups = caches.new(most=8)  # by what they are made from
 
 
 class Datum(NamedTuple):
-    """kind: POINT, DIP, ROCK_DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface, of
-    others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be
+    """kind: POINT, DIP, ROCK_DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface,
+    of others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be
     NaN. hole: its name, "" for none. used: whether it is not switched off."""
 
     kind: str
