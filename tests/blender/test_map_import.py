@@ -94,6 +94,15 @@ class MapImport(PanelCase):
         self.refused(self.read, "no layer 'units'", map_layer="units")
         self.assertEqual(len(self.model.rocks), 0)
 
+    def test_the_map_of_a_project_is_shown(self):
+        ops.open_project(filepath=str(VALLEY / "project.toml"), build=False)
+        self.model.view.show_map = True
+        item = self.draped()
+        self.assertGreater(len(item.data.polygons), 1000)
+        names = {item.data.materials[p.material_index].name for p in item.data.polygons}
+        self.assertEqual(len(names), 5, names)
+        self.assertNotIn("Switched Off", names)
+
     def test_a_map_makes_a_model_without_a_borehole(self):
         self.read()
         rows = self.rock.surfaces

@@ -8,10 +8,10 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, Project, Rock, Surface
-from ..core.readers import is_mesh_file
+from ..core.readers import UnitNames, is_mesh_file
 from ..core.readers.maps.unit_polygons import read_unit_polygons
 from ..core.surfaces.draped_map import DrapedMap, draped_map
-from ..core.surfaces.map_data import map_on_ground, read_map
+from ..core.surfaces.map_data import map_on_ground, read_map, with_ground
 from . import caches, data_objects, project_settings, settings, stored_arrays, viewports
 
 _known = caches.new(most=8)  # by text
@@ -24,6 +24,17 @@ def read(scene, row, given, units):
     project, rock = _begun(scene, row, given)
     observations, left_out, warnings = read_map(project, rock, units)
     return observations, left_out, draped_map(map_on_ground(project, rock), units), warnings
+
+
+def keep_of_project(scene, project):
+    """Stores what the maps of a project show that is read from its file, whose rock masses the scene has.
+    Raises InputRefused."""
+    bodies = [body.name for body in project.bodies]
+    for rock, row in zip(project.rocks, scene.realmodel.rocks, strict=True):
+        if rock.map is not None:
+            names = [surface.name for surface in rock.surfaces]
+            units = UnitNames(names, rock.block_names(), bodies, rock.names)
+            keep(row, draped_map(map_on_ground(project, with_ground(rock)), units))
 
 
 def take_ground(row, given):

@@ -24,6 +24,7 @@ _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
 _FAULT_WIDTH, _HOLE_WIDTH = 1.4, 3.0
 _HOLES = "Boreholes"  # layer of the drawing
+_HIGHEST_NAME = 6  # lines over the end of a hole, where others have taken those below
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
 _LINE = _SIZE + 3  # height of a line of coordinates
@@ -149,8 +150,9 @@ def _draw_holes(
     drawing: Drawing, axes: Axes, section: SectionData, holes: list[tuple[HoleLine, np.ndarray]]
 ) -> None:
     """Draws boreholes as lines in the colors of the blocks that are known along them, with black borders;
-    each name once, over the upper end."""
-    named = set()
+    each name once, over the upper end, where there is room."""
+    named, top = set(), axes.box[1] + axes.box[3]
+    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
     for hole, flat in holes:
         points = axes.at(flat)
         drawing.line(points, BLACK, _HOLE_WIDTH + 1.2, layer=_HOLES)
@@ -160,7 +162,13 @@ def _draw_holes(
             drawing.dots(points[k + 1 : k + 2], _HOLE_WIDTH / 2, BLACK, layer=_HOLES)
         if hole.name not in named:
             x, y = points[np.argmax(points[:, 1])].tolist()
-            drawing.text(x, y + 4, hole.name, _SIZE, anchor="middle", layer=_HOLES)
+            half = text_width(hole.name, _SIZE) / 2
+            lifted = [(x - half, x + half, y + 4 + _LINE * k) for k in range(_HIGHEST_NAME)]
+            lifted = [each for k, each in enumerate(lifted) if k == 0 or each[2] + _SIZE < top]
+            place = next((each for each in lifted if not any(_overlap(each, one) for one in taken)), None)
+            if place is not None:
+                taken.append(place)
+                drawing.text(x, place[2], hole.name, _SIZE, anchor="middle", layer=_HOLES)
         named.add(hole.name)
 
 
