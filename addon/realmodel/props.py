@@ -19,7 +19,16 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import preferences, props_ensemble, props_rock, props_stage, props_structure, props_surface, props_view
+from . import (
+    preferences,
+    props_ensemble,
+    props_planned,
+    props_rock,
+    props_stage,
+    props_structure,
+    props_surface,
+    props_view,
+)
 from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
 from .core.base.units import MODEL_UNIT
 from .core.settings.schema import PROJECT
@@ -309,6 +318,10 @@ class RealModelSettings(bpy.types.PropertyGroup):
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
     ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)
+    planned_holes: CollectionProperty(type=props_planned.RealModelPlannedHole)
+    active_planned_hole: IntProperty(
+        name="Active Planned Hole", description="The planned hole whose table is shown", options=set()
+    )
     realization_slider: PointerProperty(type=props_ensemble.RealModelRealization)
 
 
@@ -340,7 +353,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
 
 
 _MODULES = (
-    *(props_surface, props_rock, props_structure, props_view, props_stage, props_ensemble),
+    *(props_surface, props_rock, props_structure, props_view, props_stage, props_ensemble, props_planned),
     sys.modules[__name__],
 )
 

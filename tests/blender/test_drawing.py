@@ -255,6 +255,7 @@ class States(PanelCase):
             ops.build()
         ops.section_plane()
         ops.ensemble(realizations=2)
+        ops.planned_hole_add()
         ops.fault_body_add(empty=True, kind="FAULT")
         ops.fault_list_add(of="ENDS_AT")
         drawn |= self.draw().operators

@@ -18,7 +18,16 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "install_looks": "writes an asset library, of no scene",
 }
 CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a viewport, the clipboard, jobs
-    *("export", "export_mesh", "report", "save_section", "save_chart", "library_export", "capture"),
+    *(
+        "export",
+        "export_mesh",
+        "report",
+        "save_section",
+        "save_chart",
+        "planned_hole_save",
+        "library_export",
+        "capture",
+    ),
     *("view", "view_all", "view_previous", "view_next", "cancel", "stop_check", "check_quality"),
     *("dismiss", "documentation", "copy_table", "export_scene", "install_looks"),
 }

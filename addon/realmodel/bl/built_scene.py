@@ -32,6 +32,7 @@ from . import (
     meshes,
     model_tree,
     notices,
+    planned_holes,
     project_settings,
     results,
     settings,
@@ -228,6 +229,7 @@ def put(scene, prepared, composed, in_place=False):
         group.warnings = notices.of_model(model)
         group.is_outdated = False
     display.built(scene, prepared.bounds, prepared.stage)
+    planned_holes.update_all(scene)
     looks.follow(scene)
     weathering.follow(scene)
 
@@ -480,6 +482,7 @@ def _clear(scene):
         scene.realmodel.view.compartments = ""
     model_tree.remove_objects(objects)
     display.cleared(scene)
+    planned_holes.update_all(scene)
 
 
 def remove_model(scene):

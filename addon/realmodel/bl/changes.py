@@ -10,6 +10,7 @@ from . import (
     looks,
     method_settings,
     names,
+    planned_holes,
     project_settings,
     reading_text,
     region_size,
@@ -68,6 +69,12 @@ def triangles(rock, context):
     if not settings.is_filling() and rock.edges_by == "AUTO":
         rock.use_triangles = True
     setting(rock, context)
+
+
+def planned_hole(row, _context):
+    """Where a hole is planned was changed."""
+    if not settings.is_filling():
+        planned_holes.update(row.id_data, row)
 
 
 def switched_on(switch):

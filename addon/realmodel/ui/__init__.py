@@ -11,6 +11,7 @@ from . import (
     library,
     lists,
     menu,
+    planned_holes,
     results,
     rocks,
     start,
@@ -32,6 +33,7 @@ _MODULES = (
     library,
     results,
     ensemble,
+    planned_holes,
     booleans,
     menu,
 )

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scalar fields in space, whose level sets are the surfaces of a series.
 
-Comes in: a `Lattice` and data of surfaces: contacts, gradients, bounds. Goes out: a `ScalarField`, linear on
-each tetrahedron of the lattice, and the level of each surface.
+Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a `ScalarField`, linear on each
+tetrahedron of the lattice, and the level of each surface.
 """
 
 from .lattice import Lattice, ScalarField
+from .solve import Anisotropy, FieldData, SolvedField, solve_field
 
-__all__ = ["Lattice", "ScalarField"]
+__all__ = ["Anisotropy", "FieldData", "Lattice", "ScalarField", "SolvedField", "solve_field"]

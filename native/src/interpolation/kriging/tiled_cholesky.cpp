@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "interpolation/node_loop.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -92,6 +93,34 @@ void TiledCholesky::solve(Eigen::MatrixXd& right, Progress* progress) const {
             if (left_out_[row]) right.row(row).setZero();
         }
     }
+}
+
+void TiledCholesky::solve_transposed(Eigen::MatrixXd& right, Progress* progress) const {
+    for (Eigen::Index i = side_ - 1; i >= 0; --i) {
+        auto mine = right.middleRows(i * kTile, rows_of(i));
+        for (Eigen::Index k = i + 1; k < side_; ++k) {
+            if (cancelled(progress)) return;
+            mine.noalias() -= block(k, i).transpose() * right.middleRows(k * kTile, rows_of(k));
+        }
+        // A row that is left out has 0 beside 1 in its column: others do not see it.
+        for (Eigen::Index row = i * kTile; row < i * kTile + rows_of(i); ++row) {
+            if (left_out_[row]) right.row(row).setZero();
+        }
+        block(i, i).transpose().triangularView<Eigen::Upper>().solveInPlace(mine);
+        for (Eigen::Index row = i * kTile; row < i * kTile + rows_of(i); ++row) {
+            if (left_out_[row]) right.row(row).setZero();
+        }
+    }
+}
+
+double TiledCholesky::log_determinant() const {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < side_; ++i) {
+        const ConstBlock a = block(i, i);
+        for (Eigen::Index c = 0; c < a.cols(); ++c)
+            sum += 2 * elementary::log(a(c, c));
+    }
+    return sum;
 }
 
 }  // namespace realmodel::interpolation

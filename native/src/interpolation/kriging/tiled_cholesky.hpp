@@ -39,6 +39,12 @@ public:
     /// cancelled.
     void solve(Eigen::MatrixXd& right, Progress* progress) const;
 
+    /// Overwrites the columns of `right` with L^-T right. As solve().
+    void solve_transposed(Eigen::MatrixXd& right, Progress* progress) const;
+
+    /// Of C, without the rows that are left out.
+    double log_determinant() const;
+
 private:
     using Block = Eigen::Map<Eigen::MatrixXd>;
     using ConstBlock = Eigen::Map<const Eigen::MatrixXd>;

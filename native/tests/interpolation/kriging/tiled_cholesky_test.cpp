@@ -46,6 +46,23 @@ TEST(TiledCholesky, SolvesAsEigenDoesForAnyNumberOfThreads) {
     }
 }
 
+TEST(TiledCholesky, SolvesByTheTransposedFactorAndKnowsTheDeterminant) {
+    for (const Eigen::Index order : {1, 128, 300}) {
+        const Eigen::LLT<Eigen::MatrixXd> expected(matrix_of(order, entry));
+        const TiledCholesky factor(order, entry, 1e-10, {2, nullptr}, 1);
+        Eigen::MatrixXd right(order, 2);
+        for (Eigen::Index i = 0; i < order; ++i)
+            right.row(i) << 1, std::sin(0.1 * static_cast<double>(i));
+        Eigen::MatrixXd found = right;
+        factor.solve(found, nullptr);
+        factor.solve_transposed(found, nullptr);
+        EXPECT_LT((found - expected.solve(right)).norm(), 1e-11 * found.norm());
+        const Eigen::MatrixXd lower = expected.matrixL();
+        const double logs = 2 * lower.diagonal().array().log().sum();
+        EXPECT_NEAR(factor.log_determinant(), logs, 1e-9 * std::max(1.0, std::abs(logs)));
+    }
+}
+
 TEST(TiledCholesky, RowsThatOthersDetermineAreLeftOut) {
     // Rows 130 and 131 repeat 5 and 40: what is left is the factor without them.
     const auto of = [](Eigen::Index i) { return i == 130 ? 5 : i == 131 ? 40 : i; };

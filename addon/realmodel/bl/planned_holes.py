@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Planned holes: what they meet in the model of a scene, kept in their rows, and shown as tubes in the colors
+of the blocks."""
+
+import json
+from dataclasses import astuple
+
+import numpy as np
+
+from ..core import HoleAxis, HoleContact, HoleInterval, PlannedHole, RealModelError
+from . import built_models, display, project_settings, settings, stored_arrays
+from .display import bodies, colors, explosion, marks
+
+KIND = "planned"
+_RADIUS = 0.006  # of the model's size
+_AXIS = 0.002  # the same where it meets nothing
+_SIDES = 10
+_NOTHING = ("Planned hole", "#404040")
+
+
+def collar(row):
+    """(3,) the collar of a hole in model coordinates."""
+    return json.loads(row.collar) if row.collar else [0.0, 0.0, 0.0]
+
+
+def collar_text(axis):
+    """The getter of a text field: text, as Blender's numbers have 32 bits, which are too coarse for map
+    coordinates."""
+    return lambda row: f"{collar(row)[axis]:.3f}"
+
+
+def move_collar(axis):
+    """The setter of that field. What is no number changes nothing."""
+
+    def set_text(row, text):
+        try:
+            value = float(text.replace(",", ""))
+        except ValueError:
+            return
+        if np.isfinite(value):
+            given = collar(row)
+            given[axis] = value
+            set_collar(row, given)
+            update(row.id_data, row)
+
+    return set_text
+
+
+def set_collar(row, place):
+    row.collar = json.dumps([float(value) for value in place])
+
+
+def axis_of(row):
+    """The core's HoleAxis of a row. Raises UsageError."""
+    angles = (settings.number(row, key) for key in ("azimuth", "dip", "length"))
+    return HoleAxis(tuple(collar(row)), *angles)
+
+
+def update(scene, row):
+    """Looks up what a hole meets now, where the model is at hand, and shows all holes."""
+    _look_up(scene, row)
+    show(scene)
+
+
+def update_all(scene):
+    """The same for all holes: there is another model, or none."""
+    for row in scene.realmodel.planned_holes:
+        _look_up(scene, row)
+    show(scene)
+
+
+def _look_up(scene, row):
+    if is_current(scene, row):
+        return
+    row.result = row.shares = ""
+    model = built_models.current(scene)
+    if model is None:
+        return
+    try:
+        axis = axis_of(row)
+        keep(scene, row, model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length))
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
+
+
+def is_current(scene, row):
+    """Whether what is kept of a hole is what it meets in the model now."""
+    return bool(row.result) and json.loads(row.result)["of"] == _of(scene, row)
+
+
+def _of(scene, row):
+    return [scene.realmodel.built_stamp, *collar(row), row.azimuth, row.dip, row.length]
+
+
+def keep(scene, row, hole):
+    """Keeps what a hole meets."""
+    row.result = json.dumps(
+        {
+            "of": _of(scene, row),
+            "unit": hole.unit,
+            "names": hole.block_names,
+            "properties": hole.properties,
+            "intervals": [astuple(each) for each in hole.intervals],
+            "contacts": [astuple(each) for each in hole.contacts],
+        }
+    )
+    row.shares = ""
+    if hole.probability is not None:
+        row.shares = stored_arrays.pack(depths=hole.depths, probability=hole.probability)
+
+
+def kept(row):
+    """The core's PlannedHole that a row keeps; None where it keeps none. Raises InputRefused for damaged
+    text."""
+    if not row.result:
+        return None
+    found = json.loads(row.result)
+    arrays = stored_arrays.unpack(row.shares) if row.shares else {}
+    return PlannedHole(
+        axis_of(row),
+        [HoleInterval(*each) for each in found["intervals"]],
+        [HoleContact(*each) for each in found["contacts"]],
+        found["names"],
+        found["properties"],
+        found["unit"],
+        **arrays,
+    )
+
+
+def active(scene):
+    """The row of the active planned hole, or None."""
+    rows = scene.realmodel.planned_holes
+    number = scene.realmodel.active_planned_hole
+    return rows[min(max(number, 0), len(rows) - 1)] if len(rows) else None
+
+
+def show(scene):
+    """Shows the planned holes of a scene, in place of those that are shown."""
+    bodies.remove(scene, KIND)
+    if not (len(scene.realmodel.results) and len(scene.realmodel.planned_holes)):
+        return
+    low, high = explosion.bounds(scene)
+    size = float(np.linalg.norm(high - low))
+    for row in scene.realmodel.planned_holes:
+        try:
+            hole, axis = kept(row), axis_of(row)
+        except RealModelError:
+            continue
+        met = [] if hole is None else hole.intervals
+        parts = [(hole.properties[each.block], each.begin, each.end) for each in met]
+        _show(scene, row.name, axis, parts, size)
+    display.exaggeration_changed(scene)
+
+
+def _show(scene, name, axis, parts, size):
+    """The axis as a thin bar, and a tube for each part (property, from, to)."""
+    ends = np.array([(0.0, axis.length), *((begin, end) for _, begin, end in parts)]).ravel()
+    places = axis.places(ends) - project_settings.model_origin(scene)
+    pairs = np.arange(len(places)).reshape(-1, 2)
+    thin = marks.lines(places, pairs[:1], _AXIS * size, _SIDES)
+    thick = marks.lines(places, pairs[1:], _RADIUS * size, _SIDES)
+    shape = type(thin)(
+        np.concatenate([thin.coordinates, thick.coordinates]),
+        np.concatenate([thin.offsets, thick.offsets[1:] + thin.offsets[-1]]),
+        np.concatenate([thin.corners, thick.corners + len(thin.coordinates)]).astype(np.int32),
+    )
+    mesh = bodies.add(scene, KIND, name, shape).data
+    ids = sorted({number for number, *_ in parts})
+    for material in (colors.plain_material(*_NOTHING), *(colors.of_property(scene, each) for each in ids)):
+        mesh.materials.append(material)
+    slots = np.array([0, *(1 + ids.index(number) for number, *_ in parts)], np.int32)
+    mesh.polygons.foreach_set("material_index", np.repeat(slots, _SIDES))
+    mesh.update()

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The field of a series from what is known of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..base.errors import InputRefused, place_text
+from ..base.work import Work, refused_as
+from .lattice import Lattice, ScalarField
+
+_NO_POINTS = np.empty((0, 3))
+_NO_NUMBERS = np.empty(0, np.int32)
+MOST_CENTERS = 2500  # contacts that carry a field: their system is solved within seconds
+
+
+def _item(kind: str, row: int) -> str:
+    return f"{kind} {row}"
+
+
+@dataclass(frozen=True, eq=False)
+class FieldData:
+    """What is known of a field whose level sets are surfaces, oldest first.
+
+    names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
+    points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
+    points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
+    item: names a datum in errors, from "contact", "dip" or "bound" and its row.
+    """
+
+    names: Sequence[str]
+    contacts: np.ndarray
+    contact_surfaces: np.ndarray
+    dips: np.ndarray = field(default_factory=_NO_POINTS.copy)
+    normals: np.ndarray = field(default_factory=_NO_POINTS.copy)
+    bounds: np.ndarray = field(default_factory=_NO_POINTS.copy)
+    bound_below: np.ndarray = field(default_factory=_NO_NUMBERS.copy)
+    bound_above: np.ndarray = field(default_factory=_NO_NUMBERS.copy)
+    item: Callable[[str, int], str] = _item
+
+
+@dataclass(frozen=True)
+class Anisotropy:
+    """A field bends less along some directions. axes: orthonormal, the fold axis first. ratios: how much, 1
+    as across them, 0.01 a hundredth of it."""
+
+    axes: tuple[tuple[float, float, float], ...]
+    ratios: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SolvedField(ScalarField):
+    """A field with what its solution says: the anisotropy; how many contacts carry the field; the largest
+    distance of a contact from its surface, nearly; rows of the dips and bounds that contradict other data
+    and do not hold; and where the field has critical points inside, (C, 3)."""
+
+    anisotropy: Anisotropy
+    centers: int
+    misfit: float
+    dips_missed: np.ndarray
+    bounds_missed: np.ndarray
+    critical_points: np.ndarray
+
+
+def solve_field(
+    lattice: Lattice,
+    data: FieldData,
+    work: Work,
+    tolerance: float = 0.0,
+    anisotropy: Anisotropy | None = None,
+) -> SolvedField:
+    """The smoothest field that honors the data (docs/reference/methods.md#fields).
+
+    tolerance: the distance by which surfaces may miss contacts where there are too many for all of them to
+    carry the field. anisotropy: of another solution; None: the most likely one. Raises InputRefused for data
+    outside the lattice, contacts that contradict one another, surfaces whose order contradicts the data, and
+    a dip whose polarity is against that of its neighbors.
+    """
+    of_lattice = (lattice.origin, lattice.spacing, lattice.counts)
+    with refused_as(lambda error: _refusal(error, data)) as native:
+        with work.phase(0.0, 0.95, "fitting the field", has_steps=True):
+            found = work.native(
+                native.solve_field,
+                of_lattice,
+                len(data.names),
+                (data.contacts, data.contact_surfaces),
+                (data.dips, data.normals),
+                (data.bounds, data.bound_below, data.bound_above),
+                tolerance,
+                MOST_CENTERS,
+                None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
+            )
+        with work.phase(0.95, 1.0, "critical points of the field"):
+            nodes, _ = work.native(native.critical_points, of_lattice, found["values"])
+    axes, ratios = found["anisotropy"]
+    return SolvedField(
+        lattice=lattice,
+        values=found["values"],
+        levels=found["levels"],
+        anisotropy=Anisotropy(tuple(map(tuple, axes)), tuple(ratios)),
+        centers=found["centers"],
+        misfit=found["misfit"],
+        dips_missed=found["dips_missed"],
+        bounds_missed=found["bounds_missed"],
+        critical_points=lattice.positions()[nodes],
+    )
+
+
+def _refusal(error, data: FieldData) -> InputRefused:
+    """The native error with the names of surfaces and data."""
+    if error.kind == "no_direction":
+        return InputRefused(
+            "nothing says in which direction the rock gets younger",
+            advice="give dips, or contacts of a second surface",
+        )
+    if error.kind == "no_contacts":
+        return InputRefused(
+            "it has no contacts", item=f"surface '{data.names[error.surface]}'", advice="give one at least"
+        )
+    make = {
+        "contradicting": _contradicting,
+        "wrong_order": _wrong_order,
+        "against_order": _against_order,
+        "polarity": _polarity,
+        "outside": _outside,
+    }.get(error.kind)
+    return make(error, data) if make else InputRefused(str(error), place=error.place)
+
+
+def _contradicting(error, data: FieldData) -> InputRefused:
+    names = [data.names[data.contact_surfaces[row]] for row in error.items]
+    if len(names) == 1:
+        what = f"it contradicts contacts of surface '{names[0]}' next to it"
+    else:
+        what = (
+            f"surfaces '{names[0]}' and '{names[1]}' have a contact at one place, {place_text(error.place)}"
+        )
+    return InputRefused(
+        what,
+        item=data.item("contact", error.items[-1]),
+        advice="surfaces of a series do not touch; leave one of them out",
+        place=error.place,
+    )
+
+
+def _wrong_order(error, data: FieldData) -> InputRefused:
+    older, younger = data.names[error.surface], data.names[error.surface + 1]
+    return InputRefused(
+        f"near {place_text(error.place)} it lies on the older side of surface '{older}', which is listed as "
+        "older",
+        item=f"surface '{younger}'",
+        advice="exchange the two, or correct the polarity of the dips",
+        place=error.place,
+    )
+
+
+def _against_order(error, data: FieldData) -> InputRefused:
+    return InputRefused(
+        f"at {len(error.items)} of {len(data.dips)} dips rock gets younger the other way than from the first "
+        f"to the last of them, as at {place_text(error.place)}",
+        item=f"surfaces '{data.names[0]}' to '{data.names[-1]}'",
+        advice="list the oldest surface first, or correct the polarity of the dips",
+        place=error.place,
+    )
+
+
+def _polarity(error, data: FieldData) -> InputRefused:
+    return InputRefused(
+        f"at {place_text(error.place)} rock gets younger the other way than at the nearest dips, which have "
+        "its attitude",
+        item=data.item("dip", error.items[0]),
+        advice="correct its polarity: 1 upright, -1 overturned",
+        place=error.place,
+    )
+
+
+def _outside(error, data: FieldData) -> InputRefused:
+    kind = str(error).split()[0]
+    return InputRefused(
+        f"{place_text(error.place)} lies outside the lattice of the field",
+        item=data.item(kind, error.items[0]),
+        advice="make the region or the base reach beyond it, or leave it out",
+        place=error.place,
+    )

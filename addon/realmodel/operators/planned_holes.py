@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Planned holes: where they begin, what they meet, and how certain that is."""
+
+import bpy
+import numpy as np
+
+from ..bl import exaggeration, planned_holes, planned_job, project_settings, settings
+from ..bl.display import explosion
+from ..core import InputRefused
+from .background import InBackground
+from .files import Exporting, format_filter, format_menu
+from .reporting import Reporting, a_model, not_building
+
+_TABLES = (("CSV", "Table (.csv)", "The intervals with depths and probabilities, for a spreadsheet"),)
+_LONGER = 1.1  # a new hole goes so far below the model
+
+
+def a_planned_hole(context):
+    there = planned_holes.active(context.scene) is not None
+    return None if there else "there is no planned hole; add one first"
+
+
+def an_ensemble(context):
+    there = bool(context.scene.realmodel.ensemble.table)
+    return None if there else "there is no ensemble; make one first (Ensemble)"
+
+
+class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
+    """Plan a hole that goes straight down through the middle of the model, or at the 3D cursor where that is
+    over the model; its collar, azimuth, dip and length can be changed then"""
+
+    bl_label = "Plan Hole"
+    needs = (a_model,)
+
+    def act(self, context):
+        scene = context.scene
+        low, high = (np.asarray(corner, np.float64) for corner in explosion.bounds(scene))
+        at = _cursor(scene)
+        if not ((at[:2] > low[:2]) & (at[:2] < high[:2])).all():
+            at = (low + high) / 2
+        rows = scene.realmodel.planned_holes
+        with settings.filling():
+            row = rows.add()
+            row.name = settings.free_name(rows, "Planned hole", own=row)
+            origin = project_settings.model_origin(scene)
+            planned_holes.set_collar(row, np.array([at[0], at[1], high[2]]) + origin)
+            settings.set_number(row, "length", float(_LONGER * (high[2] - low[2])))
+            scene.realmodel.active_planned_hole = len(rows) - 1
+        planned_holes.update(scene, row)
+
+
+def _cursor(scene):
+    """(3,) the 3D cursor in the scene without vertical exaggeration."""
+    matrix = exaggeration.matrix(scene)
+    return np.linalg.solve(matrix, np.append(np.array(scene.cursor.location, np.float64), 1.0))[:3]
+
+
+class REALMODEL_OT_planned_hole_remove(Reporting, bpy.types.Operator):
+    """Remove the active planned hole"""
+
+    bl_label = "Remove Planned Hole"
+    needs = (a_planned_hole,)
+
+    def act(self, context):
+        scene = context.scene
+        rows, row = scene.realmodel.planned_holes, planned_holes.active(context.scene)
+        number = list(rows).index(row)
+        rows.remove(number)
+        scene.realmodel.active_planned_hole = max(0, min(number, len(rows) - 1))
+        planned_holes.show(scene)
+
+
+class REALMODEL_OT_planned_hole_collar(Reporting, bpy.types.Operator):
+    """Move the collar of the active planned hole to the 3D cursor"""
+
+    bl_label = "Collar at 3D Cursor"
+    needs = (a_planned_hole,)
+
+    def act(self, context):
+        scene, row = context.scene, planned_holes.active(context.scene)
+        planned_holes.set_collar(row, _cursor(scene) + project_settings.model_origin(scene))
+        planned_holes.update(scene, row)
+
+
+class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):
+    """Draw the surfaces of the ensemble's realizations again, and see which blocks they have along the active
+    planned hole: how probable is each block, how far may a contact move? Esc cancels"""
+
+    bl_label = "How Certain"
+    needs = (not_building, a_model, a_planned_hole, an_ensemble)
+
+    def begin(self, context):
+        return planned_job.PlannedJob(context.scene)
+
+    def tell_done(self, hole):
+        self.report({"INFO"}, f"Asked the ensemble about {len(hole.contacts)} contacts")
+
+
+class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):
+    """Save what the active planned hole meets as a table"""
+
+    bl_label = "Save Planned Hole"
+    needs = (a_model, a_planned_hole)
+
+    format: format_menu(_TABLES)
+    filter_glob: format_filter(_TABLES)
+
+    def write(self, context, path):
+        hole = planned_holes.kept(planned_holes.active(context.scene))
+        if hole is None:
+            raise InputRefused("it is not known what the hole meets", advice="press Build, then save again")
+        hole.save(path)

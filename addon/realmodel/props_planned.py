@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A planned hole: a row of `scene.realmodel.planned_holes`."""
+
+import bpy
+from bpy.props import FloatProperty, StringProperty
+
+from .bl import changes, planned_holes
+
+
+def _collar_field(name, axis):
+    return StringProperty(
+        name=name,
+        description="Where the hole begins, in model coordinates",
+        options=set(),
+        get=planned_holes.collar_text(axis),
+        set=planned_holes.move_collar(axis),
+    )
+
+
+class RealModelPlannedHole(bpy.types.PropertyGroup):
+    """Where a hole is planned, and what it meets."""
+
+    name: StringProperty(name="Name", description="Name of the hole")
+    collar: StringProperty(options={"HIDDEN"})  # JSON: model coordinates in full
+    east: _collar_field("East (x)", 0)
+    north: _collar_field("North (y)", 1)
+    height: _collar_field("Height (z)", 2)
+    azimuth: FloatProperty(
+        name="Azimuth",
+        description="Degrees clockwise from north",
+        min=0.0,
+        max=360.0,
+        precision=1,
+        options=set(),
+        update=changes.planned_hole,
+    )
+    dip: FloatProperty(
+        name="Dip",
+        description="Degrees below the horizontal; 90 is straight down",
+        default=90.0,
+        min=-90.0,
+        max=90.0,
+        precision=1,
+        options=set(),
+        update=changes.planned_hole,
+    )
+    length: FloatProperty(
+        name="Length",
+        description="Length along the hole",
+        default=100.0,
+        min=0.001,
+        subtype="DISTANCE",
+        options=set(),
+        update=changes.planned_hole,
+    )
+    exact: StringProperty(options={"HIDDEN"})
+    result: StringProperty(options={"HIDDEN"})  # JSON: what it meets, as bl/planned_holes.py keeps it
+    shares: StringProperty(options={"HIDDEN"})  # arrays: the probability of each block along it

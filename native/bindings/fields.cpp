@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// solve_field, critical_points.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "execution.hpp"
+#include "realmodel/fields/critical_points.hpp"
+#include "realmodel/fields/field.hpp"
+#include "rows.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+/// origin, spacing, counts.
+using LatticeTuple =
+    std::tuple<std::array<double, 3>, std::array<double, 3>, std::tuple<int, int, int>>;
+/// Positions, and the surface of each.
+using ContactsTuple = std::tuple<Array<double>, Indices>;
+using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
+/// Positions, the surface below each and above it.
+using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
+/// Axes and ratios.
+using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
+
+fields::Lattice lattice_of(const LatticeTuple& of) {
+    const auto& [origin, spacing, counts] = of;
+    const auto [nx, ny, nz] = counts;
+    return {origin, spacing, {nx, ny, nz}};
+}
+
+py::dict solve(const LatticeTuple& lattice, int surfaces, const ContactsTuple& contacts,
+               const DipsAndNormals& dips, const BoundsTuple& bounds, double tolerance,
+               int most_centers, const std::optional<AnisotropyTuple>& anisotropy,
+               WatchedExecution* execution) {
+    fields::FieldData data;
+    data.surfaces = surfaces;
+    data.contacts = rows<3>(std::get<0>(contacts), "contacts");
+    data.contact_surfaces = view(std::get<1>(contacts));
+    data.dips = rows<3>(std::get<0>(dips), "dips");
+    data.normals = rows<3>(std::get<1>(dips), "normals");
+    data.bounds = rows<3>(std::get<0>(bounds), "bounds");
+    data.bound_below = view(std::get<1>(bounds));
+    data.bound_above = view(std::get<2>(bounds));
+    std::optional<fields::Anisotropy> known;
+    if (anisotropy) known = std::make_from_tuple<fields::Anisotropy>(*anisotropy);
+    const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr};
+    fields::Field made;
+    {
+        const py::gil_scoped_release unlocked;
+        made = fields::solve_field(lattice_of(lattice), data, options, run(execution));
+    }
+    py::dict out;
+    out["values"] = to_array(std::move(made.values));
+    out["levels"] = to_array(std::move(made.levels));
+    out["anisotropy"] = AnisotropyTuple(made.anisotropy.axes, made.anisotropy.ratios);
+    out["centers"] = made.centers;
+    out["misfit"] = made.misfit;
+    out["dips_missed"] = to_array(std::move(made.dips_missed));
+    out["bounds_missed"] = to_array(std::move(made.bounds_missed));
+    return out;
+}
+
+std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeTuple& lattice,
+                                                                  const Array<double>& values,
+                                                                  WatchedExecution* execution) {
+    std::vector<fields::CriticalPoint> found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = fields::critical_points(lattice_of(lattice), view(values), run(execution));
+    }
+    std::vector<std::int64_t> nodes;
+    std::vector<std::string> kinds;
+    for (const fields::CriticalPoint& point : found) {
+        nodes.push_back(point.node);
+        kinds.emplace_back(point.kind == fields::CriticalKind::kMinimum   ? "minimum"
+                           : point.kind == fields::CriticalKind::kMaximum ? "maximum"
+                                                                          : "saddle");
+    }
+    return {to_array(std::move(nodes)), kinds};
+}
+
+}  // namespace
+
+void bind_fields(py::module_& module) {
+    module.def("solve_field", &solve, py::arg("lattice"), py::arg("surfaces"), py::arg("contacts"),
+               py::arg("dips"), py::arg("bounds"), py::arg("tolerance") = 0.0,
+               py::arg("most_centers") = 2500, py::arg("anisotropy") = py::none(),
+               py::arg("execution") = py::none(),
+               R"(The smoothest field in space that honors the data, and the level of each surface.
+
+lattice: (origin, spacing, counts). surfaces: how many, oldest first. contacts: positions (N, 3) and the surface
+of each (N,). dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions (B, 3),
+the surface below each and above it (B,), -1: none. tolerance: the distance by which surfaces may miss contacts.
+most_centers: at most so many contacts carry the field. anisotropy: (axes, ratios) as it is returned; None: the
+most likely one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, centers, misfit, dips_missed,
+bounds_missed. Raises InputError.)");
+    module.def(
+        "critical_points", &critical, py::arg("lattice"), py::arg("values"),
+        py::arg("execution") = py::none(),
+        R"(The inner nodes at which a field that is linear on the lattice's tetrahedra has a critical point.
+
+lattice: (origin, spacing, counts). values: (nodes,). Returns the nodes (C,) int64 and for each "minimum", "saddle"
+or "maximum".)");
+}
+
+}  // namespace realmodel::bindings

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/execution.hpp"
+#include "realmodel/fields/lattice.hpp"
+
+namespace realmodel::fields {
+
+/// What is known of a field f whose level sets are surfaces, numbered from the oldest, which has
+/// the lowest level.
+struct FieldData {
+    using Points = std::span<const std::array<double, 3>>;
+
+    int surfaces = 0;
+    Points contacts;  ///< on surfaces
+    std::span<const std::int32_t> contact_surfaces;
+    Points dips;                                ///< where the direction of f's gradient is known
+    Points normals;                             ///< it; of length 1, toward younger rock
+    Points bounds;                              ///< between surfaces
+    std::span<const std::int32_t> bound_below;  ///< f is above the level of this one; -1: none
+    std::span<const std::int32_t> bound_above;  ///< f is below the level of this one; -1: none
+};
+
+/// How much less f may bend along some directions than across them.
+struct Anisotropy {
+    std::array<std::array<double, 3>, 3> axes;  ///< orthonormal; the first is the fold axis
+    std::array<double, 3> ratios;               ///< 1: as across; 0.01: a hundredth of it
+};
+
+struct FieldOptions {
+    double tolerance = 0;     ///< distance by which surfaces may miss contacts; 0: only by rounding
+    int most_centers = 2500;  ///< at most so many contacts carry the field
+    /// Found before; null: the one under which the data are most likely.
+    const Anisotropy* anisotropy = nullptr;
+};
+
+struct Field {
+    std::vector<double> values;  ///< of the lattice's nodes
+    std::vector<double> levels;  ///< of the surfaces, rising
+    Anisotropy anisotropy;
+    std::int64_t centers = 0;  ///< contacts that carry the field
+    double misfit = 0;         ///< the largest distance of a contact from its surface, nearly
+    std::vector<std::int64_t> dips_missed;    ///< dips against which f falls
+    std::vector<std::int64_t> bounds_missed;  ///< bounds that contradict other data
+};
+
+/// The smoothest field that honors the data: its third derivatives, integrated over all of space,
+/// are least (Duchon 1977; Lajaunie, Courrioux and Manuel 1997 with other covariances). On each
+/// surface it has one value, which is free; along a dip's plane it does not change, and how fast it
+/// rises across it is free, too: only the mean over all dips is given. Bounds, rising levels and
+/// polarities are inequalities, met by active sets (Nocedal and Wright 2006, section 16.5).
+///
+/// Space is scaled along the fold axis, which dips have in common, and across it in the axial
+/// plane, so that f bends less there: by those ratios under which the data are most likely
+/// (restricted likelihood; Patterson and Thompson 1971, Kitanidis 1983).
+///
+/// Of more contacts than the options allow those carry the field that it would miss most (Carr et
+/// al. 2001, "Reconstruction and representation of 3D objects with radial basis functions").
+/// @return  the same bytes for any number of threads
+/// @throws InputError kind "option", "not_finite", "outside" (items: contacts, dips or bounds, as
+///         the message says), "no_contacts" (surface), "no_direction", "contradicting" (items: two
+///         contacts), "wrong_order" (surface: the older; items: contacts), "against_order" (items:
+///         most of the dips), "polarity" (items: the dip); Cancelled
+Field solve_field(const Lattice& lattice, const FieldData& data, const FieldOptions& options,
+                  const Execution& execution = {});
+
+}  // namespace realmodel::fields

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/anisotropy.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "fields/spline.hpp"
+#include "realmodel/base/elementary.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+// So much the logarithm of the likelihood has to rise for a ratio and a direction more.
+constexpr double kWorth = 4;
+constexpr double kLeastRatio = 0.01;
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+struct Candidate {
+    Anisotropy anisotropy;
+    double likelihood = kNever;
+};
+
+/// Compares anisotropies.
+class Search {
+public:
+    Search(std::span<const Functional> known, const Execution& execution)
+        : known_(known), execution_(execution) {}
+
+    /// The best of some; the first of equal ones.
+    Candidate best(std::span<const Anisotropy> of) const {
+        std::vector<double> found(of.size(), kNever);
+        parallel_chunks(of.size(), execution_, [&](std::size_t n) {
+            const Spline spline(known_, map_of(of[n]), {1, nullptr});
+            found[n] = spline.log_likelihood().value_or(kNever);
+        });
+        const auto at = std::max_element(found.begin(), found.end()) - found.begin();
+        return {of[at], found[at]};
+    }
+
+    /// `other` where it is better by `worth`.
+    static void improve(Candidate& best, const Candidate& other, double worth) {
+        if (other.likelihood > best.likelihood + worth) best = other;
+    }
+
+private:
+    std::span<const Functional> known_;
+    Execution execution_;
+};
+
+/// The direction to which the normals are most nearly perpendicular.
+Vec3 fold_axis(std::span<const Vec3> normals) {
+    Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+    for (const Vec3& n : normals) {
+        const Eigen::Vector3d v(n[0], n[1], n[2]);
+        tensor += v * v.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor);
+    const Eigen::Vector3d axis = solver.eigenvectors().col(0);
+    Eigen::Index largest = 0;
+    axis.cwiseAbs().maxCoeff(&largest);
+    const double sign = axis(largest) < 0 ? -1 : 1;
+    return unit({sign * axis(0), sign * axis(1), sign * axis(2)});
+}
+
+Anisotropy along_axis(const Vec3& axis, double ratio) {
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+        if (std::abs(axis[k]) < std::abs(axis[least])) least = k;
+    }
+    Vec3 other{};
+    other[least] = 1;
+    const Vec3 second = unit(cross(axis, other));
+    return {{axis, second, cross(axis, second)}, {ratio, 1, 1}};
+}
+
+/// With its second axis turned about the first, and another ratio along it.
+Anisotropy turned(const Anisotropy& of, double degrees, double ratio) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3 second = unit(
+        plus(times(elementary::cos(angle), of.axes[1]), times(elementary::sin(angle), of.axes[2])));
+    return {{of.axes[0], second, cross(of.axes[0], second)}, {of.ratios[0], ratio, 1}};
+}
+
+std::vector<Vec3> main_directions() {
+    std::vector<Vec3> out;
+    for (int code = 14; code < 27; ++code) {
+        out.push_back(unit({code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0}));
+    }
+    return out;
+}
+
+void search_first(const Search& search, std::span<const Vec3> normals, Candidate& best) {
+    std::vector<Anisotropy> tried;
+    if (normals.size() >= 3) {
+        const Vec3 axis = fold_axis(normals);
+        for (const double ratio : {0.5, 0.25, 0.1, 0.05, 0.02, kLeastRatio})
+            tried.push_back(along_axis(axis, ratio));
+        Search::improve(best, search.best(tried), kWorth);
+    }
+    if (best.anisotropy.ratios[0] < 1) return;
+    tried.clear();
+    for (const Vec3& direction : main_directions())
+        tried.push_back(along_axis(direction, 0.5));
+    const Vec3 direction = search.best(tried).anisotropy.axes[0];
+    tried.clear();
+    for (const double ratio : {0.7, 0.5, 0.35, 0.25, 0.1})
+        tried.push_back(along_axis(direction, ratio));
+    Search::improve(best, search.best(tried), kWorth);
+}
+
+void search_second(const Search& search, Candidate& best) {
+    std::vector<Anisotropy> tried;
+    const Anisotropy first = best.anisotropy;
+    for (int degrees = 0; degrees < 180; degrees += 20) {
+        for (const double ratio : {0.6, 0.3})
+            tried.push_back(turned(first, degrees, ratio));
+    }
+    Candidate found = search.best(tried);
+    double step = 12, factor = 0.6;
+    for (int round = 0; round < 8; ++round) {
+        const Anisotropy at = found.anisotropy;
+        const double ratio = at.ratios[1];
+        tried = {turned(at, step, ratio), turned(at, -step, ratio),
+                 turned(at, 0, std::max(kLeastRatio, ratio * factor)),
+                 turned(at, 0, std::min(1.0, ratio / factor))};
+        const double before = found.likelihood;
+        Search::improve(found, search.best(tried), 0);
+        if (found.likelihood > before) continue;
+        step /= 2;
+        factor = std::sqrt(factor);
+    }
+    Search::improve(best, found, kWorth);
+}
+
+}  // namespace
+
+Map3 map_of(const Anisotropy& anisotropy) {
+    Map3 map{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Vec3& direction = anisotropy.axes[axis];
+        for (std::size_t row = 0; row < 3; ++row)
+            map[row] = moved(map[row], anisotropy.ratios[axis] * direction[row], direction);
+    }
+    return map;
+}
+
+Anisotropy likely_anisotropy(std::span<const Functional> known, std::span<const Vec3> normals,
+                             const Execution& execution) {
+    const Search search(known, execution);
+    Candidate best = search.best(std::array{kIsotropic});
+    search_first(search, normals, best);
+    search_second(search, best);
+    return best.anisotropy;
+}
+
+}  // namespace realmodel::fields

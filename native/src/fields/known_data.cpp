@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/known_data.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "fields/lattice_weights.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+constexpr double kLeastRise = 0.02;  // along the normal of a dip, of the mean
+// Of the largest moment of what is known: what a tilt that is known has at least.
+constexpr double kKnownTilt = 1e-10;
+
+}  // namespace
+
+Frame::Frame(const Lattice& lattice) : middle{}, unit(0) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double half = 0.5 * lattice.spacing[axis] * (lattice.counts[axis] - 1);
+        middle[axis] = lattice.origin[axis] + half;
+        unit += half * half;
+    }
+    unit = std::sqrt(unit);
+}
+
+KnownData::KnownData(const Lattice& lattice, const FieldData& data)
+    : lattice_(lattice), data_(data), frame_(lattice) {
+    check(lattice);
+    for (const Vec3& contact : data.contacts)
+        contacts_.push_back(frame_.to_local(contact));
+    find_references();
+    check_contradictions();
+    add_dips();
+    add_rise();
+    hold_tilts();
+}
+
+void KnownData::check(const Lattice& lattice) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (lattice.counts[axis] >= 2 && lattice.spacing[axis] > 0 &&
+            std::isfinite(lattice.spacing[axis]) && std::isfinite(lattice.origin[axis]))
+            continue;
+        throw InputError("option",
+                         "a lattice has two nodes along each axis or more, and spacings "
+                         "above 0");
+    }
+    if (data_.surfaces < 1) throw InputError("option", "a field has one surface or more");
+    check_places(lattice, data_.contacts, "contact");
+    check_places(lattice, data_.dips, "dip");
+    check_places(lattice, data_.bounds, "bound");
+    if (data_.contact_surfaces.size() != data_.contacts.size() ||
+        data_.normals.size() != data_.dips.size() ||
+        data_.bound_below.size() != data_.bounds.size() ||
+        data_.bound_above.size() != data_.bounds.size()) {
+        throw InputError("option",
+                         "each contact has a surface, each dip a normal, each bound two "
+                         "surfaces");
+    }
+    for (std::size_t n = 0; n < data_.contacts.size(); ++n) {
+        if (data_.contact_surfaces[n] >= 0 && data_.contact_surfaces[n] < data_.surfaces) continue;
+        throw InputError("option", "contact " + std::to_string(n) + " is on surface " +
+                                       std::to_string(data_.contact_surfaces[n]) + " of " +
+                                       std::to_string(data_.surfaces));
+    }
+    for (std::size_t n = 0; n < data_.normals.size(); ++n) {
+        if (std::abs(length(data_.normals[n]) - 1) < 1e-6) continue;
+        throw InputError("option", "the normal of dip " + std::to_string(n) + " is not of length 1",
+                         -1, {static_cast<std::int64_t>(n)});
+    }
+    check_bounds();
+}
+
+void KnownData::check_places(const Lattice& lattice, FieldData::Points points,
+                             const char* what) const {
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const Vec3& p = points[n];
+        const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+        if (finite && lattice.contains(p)) continue;
+        throw InputError(finite ? "outside" : "not_finite",
+                         std::string(what) + " " + std::to_string(n) +
+                             (finite ? " lies outside the lattice" : " is not finite"),
+                         -1, {static_cast<std::int64_t>(n)}, p);
+    }
+}
+
+void KnownData::check_bounds() const {
+    for (std::size_t n = 0; n < data_.bounds.size(); ++n) {
+        const std::int32_t below = data_.bound_below[n], above = data_.bound_above[n];
+        if (below >= -1 && above >= -1 && below < data_.surfaces && above < data_.surfaces &&
+            (above < 0 || below < above))
+            continue;
+        throw InputError("option",
+                         "bound " + std::to_string(n) + " is above surface " +
+                             std::to_string(below) + " and below surface " + std::to_string(above),
+                         -1, {static_cast<std::int64_t>(n)}, data_.bounds[n]);
+    }
+}
+
+void KnownData::find_references() {
+    constexpr auto kNone = SIZE_MAX;
+    references_.assign(static_cast<std::size_t>(data_.surfaces), kNone);
+    for (std::size_t n = contacts_.size(); n-- > 0;)
+        references_[surface_of(n)] = n;
+    for (std::size_t k = 0; k < references_.size(); ++k) {
+        if (references_[k] != kNone) continue;
+        throw InputError("no_contacts", "surface " + std::to_string(k) + " has no contact",
+                         static_cast<int>(k));
+    }
+}
+
+/// Two surfaces at one place.
+void KnownData::check_contradictions() const {
+    std::map<Vec3, std::size_t> first;
+    for (std::size_t n = 0; n < contacts_.size(); ++n) {
+        const auto [at, is_new] = first.emplace(data_.contacts[n], n);
+        if (is_new || surface_of(at->second) == surface_of(n)) continue;
+        throw InputError("contradicting", "two surfaces have a contact at one place", surface_of(n),
+                         {static_cast<std::int64_t>(at->second), static_cast<std::int64_t>(n)},
+                         data_.contacts[n]);
+    }
+}
+
+void KnownData::add_dips() {
+    for (std::size_t n = 0; n < data_.dips.size(); ++n) {
+        const Vec3& normal = data_.normals[n];
+        std::size_t least = 0;
+        for (std::size_t k = 1; k < 3; ++k) {
+            if (std::abs(normal[k]) < std::abs(normal[least])) least = k;
+        }
+        Vec3 other{};
+        other[least] = 1;
+        const Vec3 at = frame_.to_local(data_.dips[n]), first = unit(cross(normal, other));
+        fixed_.push_back(Functional::slope(at, first));
+        fixed_.push_back(Functional::slope(at, cross(normal, first)));
+    }
+}
+
+/// The mean over the dips is 1; without dips the highest level is as far above the lowest as the
+/// surfaces lie apart.
+void KnownData::add_rise() {
+    Functional rise;
+    if (data_.surfaces < 2 && !data_.dips.empty()) {
+        const double share = 1 / static_cast<double>(data_.dips.size());
+        for (std::size_t n = 0; n < data_.dips.size(); ++n)
+            rise.slopes.push_back({frame_.to_local(data_.dips[n]), times(share, data_.normals[n])});
+        rise.right = 1;
+        fixed_.push_back(rise);
+        return;
+    }
+    if (data_.surfaces < 2) {
+        throw InputError("no_direction",
+                         "neither dips nor a second surface say in which direction a field rises");
+    }
+    const std::int32_t last = data_.surfaces - 1;
+    std::array<Vec3, 2> middles{};
+    std::array<double, 2> counts{};
+    for (std::size_t n = 0; n < contacts_.size(); ++n) {
+        const std::int32_t surface = surface_of(n);
+        if (surface != 0 && surface != last) continue;
+        const std::size_t end = surface == 0 ? 0 : 1;
+        middles[end] = plus(middles[end], contacts_[n]);
+        counts[end] += 1;
+    }
+    rise = Functional::difference(contacts_[reference(last)], contacts_[reference(0)]);
+    rise.right = length(minus(times(1 / counts[1], middles[1]), times(1 / counts[0], middles[0])));
+    if (!(rise.right > 0)) rise.right = 1;
+    fixed_.push_back(rise);
+}
+
+/// Where all data lie in one plane and no dip says how f changes across it, it does not.
+void KnownData::hold_tilts() {
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    const auto add = [&](const Functional& f) {
+        const Vec3 terms = f.of_coordinates();
+        const Eigen::Vector3d v(terms[0], terms[1], terms[2]);
+        moments += v * v.transpose();
+    };
+    for (const Functional& f : fixed_)
+        add(f);
+    for (std::size_t n = 0; n < contacts_.size(); ++n)
+        add(on_surface(n));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+        if (solver.eigenvalues()(k) > kKnownTilt * solver.eigenvalues()(2)) continue;
+        const Eigen::Vector3d v = solver.eigenvectors().col(k);
+        fixed_.push_back(Functional::slope({0, 0, 0}, {v(0), v(1), v(2)}));
+    }
+}
+
+/// sign (f at a bound - the level of a surface), f as it is on the tetrahedron there.
+Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) const {
+    Functional out;
+    for (const auto& [position, weight] : corners_at(lattice_, data_.bounds[n])) {
+        if (weight > 0) out.values.push_back({frame_.to_local(position), sign * weight});
+    }
+    out.values.push_back({contacts_[reference(surface)], -sign});
+    return out;
+}
+
+std::vector<Inequality> KnownData::inequalities(double least_gap) const {
+    std::vector<Inequality> out;
+    for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
+        out.push_back({Functional::difference(contacts_[reference(k + 1)], contacts_[reference(k)]),
+                       least_gap, Inequality::Kind::kGap, k});
+    }
+    for (std::size_t n = 0; n < data_.dips.size(); ++n) {
+        out.push_back({Functional::slope(frame_.to_local(data_.dips[n]), data_.normals[n]),
+                       kLeastRise, Inequality::Kind::kPolarity, static_cast<std::int64_t>(n)});
+    }
+    for (std::size_t n = 0; n < data_.bounds.size(); ++n) {
+        const auto item = static_cast<std::int64_t>(n);
+        if (data_.bound_below[n] >= 0)
+            out.push_back({bound(n, data_.bound_below[n], 1), 0, Inequality::Kind::kBound, item});
+        if (data_.bound_above[n] >= 0)
+            out.push_back({bound(n, data_.bound_above[n], -1), 0, Inequality::Kind::kBound, item});
+    }
+    return out;
+}
+
+}  // namespace realmodel::fields

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fields/functional.hpp"
+#include "realmodel/fields/field.hpp"
+
+namespace realmodel::fields {
+
+/// Positions as the solution has them: the lattice's box is about the origin, half of its diagonal
+/// long.
+struct Frame {
+    Vec3 middle;
+    double unit;
+
+    explicit Frame(const Lattice& lattice);
+    Vec3 to_local(const Vec3& at) const { return times(1 / unit, minus(at, middle)); }
+};
+
+/// f of a functional is at least so much.
+struct Inequality {
+    enum class Kind { kGap, kPolarity, kBound };
+
+    Functional functional;
+    double least;
+    Kind kind;
+    std::int64_t item;  ///< the older surface, the dip or the bound
+};
+
+/// The data as functionals, in a frame.
+class KnownData {
+public:
+    /// @throws InputError as solve_field()
+    KnownData(const Lattice& lattice, const FieldData& data);
+
+    const Frame& frame() const { return frame_; }
+    const FieldData& data() const { return data_; }
+    const std::vector<Vec3>& contacts() const { return contacts_; }
+    std::int32_t surface_of(std::size_t contact) const { return data_.contact_surfaces[contact]; }
+    /// The contact at which a surface has its level.
+    std::size_t reference(std::int32_t surface) const { return references_[surface]; }
+
+    /// What holds in any case: planes of dips, how fast f rises, and that it is no steeper in
+    /// directions of which no datum says anything.
+    const std::vector<Functional>& fixed() const { return fixed_; }
+    Functional on_surface(std::size_t contact) const {
+        return Functional::difference(contacts_[contact],
+                                      contacts_[references_[surface_of(contact)]]);
+    }
+    /// Rising levels, polarities, bounds.
+    std::vector<Inequality> inequalities(double least_gap) const;
+
+private:
+    void check(const Lattice& lattice) const;
+    void check_places(const Lattice& lattice, FieldData::Points points, const char* what) const;
+    void check_bounds() const;
+    void check_contradictions() const;
+    void find_references();
+    void add_dips();
+    void add_rise();
+    void hold_tilts();
+    Functional bound(std::size_t n, std::int32_t surface, double sign) const;
+
+    const Lattice& lattice_;
+    FieldData data_;
+    Frame frame_;
+    std::vector<Vec3> contacts_;
+    std::vector<std::size_t> references_;
+    std::vector<Functional> fixed_;
+};
+
+}  // namespace realmodel::fields

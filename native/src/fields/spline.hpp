@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fields/functional.hpp"
+#include "interpolation/kriging/tiled_cholesky.hpp"
+#include "realmodel/base/execution.hpp"
+
+namespace realmodel::fields {
+
+/// The function in space that meets functionals and whose third derivatives are least, integrated
+/// over all of space: sum w_i L_i r^3 + b . x (Duchon 1977; with derivatives as data: Wahba 1990,
+/// "Spline models for observational data", sections 1.3 and 2.4). Space is mapped first, which
+/// makes it smoother along some directions.
+class Spline {
+public:
+    /// What is known, in the coordinates before the map; the least coordinates that
+    /// determine a tilt are among it.
+    Spline(std::span<const Functional> known, const Map3& map, const Execution& execution);
+
+    /// The logarithm of the restricted likelihood of what is known, if the function is a random one
+    /// with the kernel as generalized covariance, less a constant (Patterson and Thompson 1971;
+    /// Kitanidis 1983). To compare maps by. None where the system is singular to rounding.
+    std::optional<double> log_likelihood() const;
+
+    /// How much force a functional takes: 0 where the function would meet it anyhow.
+    double force(std::size_t functional) const { return forces_[functional]; }
+    /// Whether a functional follows from those before it, and was left out.
+    bool left_out(std::size_t functional) const;
+
+    double value(const Vec3& at) const;
+    Vec3 gradient(const Vec3& at) const;
+    double of(const Functional& functional) const;
+
+    /// The same as value() of each, faster.
+    void values_at(std::span<const Vec3> positions, std::span<double> values) const;
+
+private:
+    void factor(const Execution& execution);
+    void collect_centers();
+
+    Map3 map_;
+    std::vector<Functional> known_;  // mapped
+    Eigen::VectorXd scales_;         // of the rows, so that the diagonal is 1
+    std::optional<interpolation::TiledCholesky> factor_;
+    Eigen::Matrix4d products_;  // of the right side and the coordinates, by the inverse
+    double coordinates_log_determinant_ = 0;
+    std::vector<double> forces_;
+    Vec3 tilt_{};
+    std::vector<ValueAtom> value_centers_;
+    std::vector<SlopeAtom> slope_centers_;
+};
+
+}  // namespace realmodel::fields

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/spline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
+
+#include "fields/anisotropy.hpp"
+
+namespace realmodel::fields {
+namespace {
+
+const Map3 kIdentity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+const Map3 kStretched{{{0.3, 0.1, 0}, {0.1, 1, 0}, {0, 0, 0.7}}};
+
+/// Differences of values and slopes at random places, all of a function.
+std::vector<Functional> known_of(double (*value)(const Vec3&), Vec3 (*slope)(const Vec3&)) {
+    std::mt19937 random(7);
+    const auto drawn = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+    std::vector<Functional> known;
+    const Vec3 from{0.1, 0.2, -0.3};
+    for (int n = 0; n < 60; ++n) {
+        const Vec3 at{drawn(), drawn(), drawn()};
+        if (n % 3 == 0) {
+            const Vec3 along{drawn(), drawn(), drawn()};
+            known.push_back(Functional::slope(at, along));
+            known.back().right = dot(slope(at), along);
+        } else {
+            known.push_back(Functional::difference(at, from));
+            known.back().right = value(at) - value(from);
+        }
+    }
+    return known;
+}
+
+double wave(const Vec3& p) {
+    return p[2] + 0.2 * std::sin(3 * p[0]);
+}
+Vec3 wave_slope(const Vec3& p) {
+    return {0.6 * std::cos(3 * p[0]), 0, 1};
+}
+double plane(const Vec3& p) {
+    return 2 * p[0] - p[1] + 0.5 * p[2];
+}
+Vec3 plane_slope(const Vec3&) {
+    return {2, -1, 0.5};
+}
+
+TEST(Spline, MeetsValuesAndSlopes) {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    for (const Map3& map : {kIdentity, kStretched}) {
+        const Spline spline(known, map, {});
+        for (const Functional& f : known)
+            EXPECT_NEAR(spline.of(f), f.right, 1e-9);
+        EXPECT_TRUE(spline.log_likelihood().has_value());
+    }
+}
+
+TEST(Spline, APlaneComesOutAsItIs) {
+    const std::vector<Functional> known = known_of(plane, plane_slope);
+    const Spline spline(known, kStretched, {});
+    for (std::size_t n = 0; n < known.size(); ++n)
+        EXPECT_NEAR(spline.force(n), 0, 1e-9);
+    const Vec3 gradient = spline.gradient({5, -3, 2});
+    EXPECT_NEAR(gradient[0], 2, 1e-8);
+    EXPECT_NEAR(gradient[1], -1, 1e-8);
+    EXPECT_NEAR(gradient[2], 0.5, 1e-8);
+}
+
+TEST(Spline, GradientsAreThoseOfTheValues) {
+    const Spline spline(known_of(wave, wave_slope), kStretched, {});
+    const Vec3 at{0.31, -0.22, 0.47};
+    const Vec3 gradient = spline.gradient(at);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Vec3 step{};
+        step[axis] = 1e-5;
+        const double difference = spline.value(plus(at, step)) - spline.value(minus(at, step));
+        EXPECT_NEAR(gradient[axis], difference / 2e-5, 1e-6);
+    }
+}
+
+TEST(Spline, ManyValuesAtOnceAreThoseOfEach) {
+    const Spline spline(known_of(wave, wave_slope), kStretched, {});
+    std::vector<Vec3> at;
+    for (int n = 0; n < 150; ++n)
+        at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
+    std::vector<double> values(at.size());
+    spline.values_at(at, values);
+    for (std::size_t n = 0; n < at.size(); ++n)
+        EXPECT_NEAR(values[n], spline.value(at[n]), 1e-12);
+}
+
+TEST(Spline, WhatFollowsFromOthersIsLeftOut) {
+    std::vector<Functional> known = known_of(wave, wave_slope);
+    const std::size_t count = known.size();
+    known.push_back(known[1]);
+    const Spline spline(known, kIdentity, {});
+    EXPECT_TRUE(spline.left_out(count));
+    EXPECT_FALSE(spline.left_out(1));
+    EXPECT_NEAR(spline.of(known[1]), known[1].right, 1e-9);
+    EXPECT_FALSE(spline.log_likelihood().has_value());
+}
+
+/// The likelihood of contrasts without moments, from the kernel alone.
+double likelihood_by_contrasts(const std::vector<Functional>& known, const Map3& map) {
+    const auto n = static_cast<Eigen::Index>(known.size());
+    Eigen::MatrixXd kernel(n, n), terms(n, 3);
+    Eigen::VectorXd right(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Functional a = known[i].mapped_by(map);
+        for (Eigen::Index j = 0; j < n; ++j)
+            kernel(i, j) = a.with(known[j].mapped_by(map));
+        const Vec3 of = a.of_coordinates();
+        terms.row(i) << of[0], of[1], of[2];
+        right(i) = a.right;
+    }
+    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(terms).householderQ();
+    const Eigen::MatrixXd free = q.rightCols(n - 3);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(free.transpose() * kernel * free);
+    EXPECT_GT(solver.eigenvalues()(0), 0);
+    const Eigen::VectorXd along = solver.eigenvectors().transpose() * (free.transpose() * right);
+    double misfit = 0, logs = 0;
+    for (Eigen::Index i = 0; i < n - 3; ++i) {
+        misfit += along(i) * along(i) / solver.eigenvalues()(i);
+        logs += std::log(solver.eigenvalues()(i));
+    }
+    const auto count = static_cast<double>(n - 3);
+    return -0.5 * (count * std::log(misfit / count) + logs);
+}
+
+TEST(Spline, TheLikelihoodIsThatOfContrasts) {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    for (const Map3& map : {kIdentity, kStretched}) {
+        const double expected = likelihood_by_contrasts(known, map);
+        EXPECT_NEAR(*Spline(known, map, {}).log_likelihood(), expected, 1e-6 * std::abs(expected));
+    }
+}
+
+TEST(Anisotropy, MapsScaleAlongTheAxes) {
+    const double half = std::sqrt(0.5);
+    const Anisotropy of{{{{half, half, 0}, {-half, half, 0}, {0, 0, 1}}}, {0.1, 1, 0.5}};
+    const Vec3 along = mapped(map_of(of), {half, half, 2});
+    EXPECT_NEAR(along[0], 0.1 * half, 1e-15);
+    EXPECT_NEAR(along[1], 0.1 * half, 1e-15);
+    EXPECT_NEAR(along[2], 1, 1e-15);
+}
+
+TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    std::vector<Vec3> normals;
+    for (int n = 0; n < 20; ++n)
+        normals.push_back(unit(wave_slope({0.1 * n, 0, 0})));
+    for (const int threads : {1, 4}) {
+        const Anisotropy found = likely_anisotropy(known, normals, {threads, nullptr});
+        EXPECT_NEAR(std::abs(found.axes[0][1]), 1, 1e-9);
+        EXPECT_LE(found.ratios[0], 0.1);
+        // and upwards, along which the wave is only moved
+        EXPECT_NEAR(std::abs(found.axes[1][2]), 1, 0.02);
+        EXPECT_LT(found.ratios[1], 0.5);
+    }
+}
+
+}  // namespace
+}  // namespace realmodel::fields
