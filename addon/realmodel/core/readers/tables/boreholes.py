@@ -80,7 +80,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             place = holes.place(row, row.number("depth"), scale)
         else:
             holes.refuse_deviated(row)
-            place = (begin[0], begin[1], row.number(column)) * scale
+            place = np.array([begin[0], begin[1], row.number(column)]) * scale
         found.setdefault(name, []).append(place)
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = row.text("hole")

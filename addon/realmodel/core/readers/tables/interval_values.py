@@ -39,8 +39,8 @@ class IntervalValues:
     def some(self, chosen: np.ndarray) -> IntervalValues:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
         columns = {name: array[chosen] for name, array in self.columns.items()}
-        arrays = (array[chosen] for array in (self.holes, self.begins, self.ends, self.depths))
-        return IntervalValues(*arrays, columns)
+        begins, ends = self.begins[chosen], self.ends[chosen]
+        return IntervalValues(self.holes[chosen], begins, ends, self.depths[chosen], columns)
 
     @classmethod
     def joined(cls, parts: Sequence[IntervalValues]) -> IntervalValues:
@@ -48,7 +48,8 @@ class IntervalValues:
         names = list(dict.fromkeys(name for part in parts for name in part.columns))
         columns = {name: _joined(name, parts) for name in names}
         keys = ("holes", "begins", "ends", "depths")
-        return cls(*(np.concatenate([getattr(part, key) for part in parts]) for key in keys), columns)
+        arrays = {key: np.concatenate([getattr(part, key) for part in parts]) for key in keys}
+        return cls(**arrays, columns=columns)
 
 
 def _joined(name: str, parts: Sequence[IntervalValues]) -> np.ndarray:
