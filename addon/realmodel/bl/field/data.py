@@ -175,7 +175,7 @@ def _dips(rock, row):
         surfaces, blocks = dips.named
         names, kind = np.where(surfaces != "", surfaces, blocks), ROCK_DIP
     holes = np.full(len(dips), "")
-    return [Group(kind, rock.name, names, places, holes, dips.in_use_mask, np.arange(len(dips)), dips=dips)]
+    return [Group(kind, rock.name, names, places, holes, dips.in_use, np.arange(len(dips)), dips=dips)]
 
 
 def _observed(rock):

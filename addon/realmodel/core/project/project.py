@@ -139,7 +139,7 @@ class Surface(Shaped):
 
     def known_dips(self) -> Dips | None:
         """All dips that count for a surface that is read: none of them is switched off."""
-        given = [each.in_use() for each in (self.own_dips(), self.rock_dips) if each is not None]
+        given = [each.used_only() for each in (self.own_dips(), self.rock_dips) if each is not None]
         parts = [each for each in given if each is not None]
         return Dips.joined(parts) if len(parts) > 1 else next(iter(parts), None)
 

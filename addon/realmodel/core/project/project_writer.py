@@ -275,9 +275,9 @@ def dips_text(dips: Dips) -> bytes:
         if (texts != "").any():
             names.append(name)
             columns.append(texts.tolist())
-    if not dips.in_use_mask.all():
+    if not dips.in_use.all():
         names.append("use")
-        columns.append(dips.in_use_mask.astype(int).tolist())
+        columns.append(dips.in_use.astype(int).tolist())
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerows([names, *zip(*columns, strict=True)])

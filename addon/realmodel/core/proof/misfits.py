@@ -158,7 +158,7 @@ def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> It
     dips = surface.known_dips()  # its own ones first
     assert dips is not None
     own = surface.own_dips()
-    rows = np.empty(0, np.int64) if own is None else np.flatnonzero(own.in_use_mask)
+    rows = np.empty(0, np.int64) if own is None else np.flatnonzero(own.in_use)
     z = dips.heights
     slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
     normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))

@@ -91,13 +91,13 @@ class Dips:
         return Dips(self.positions[kept], self.gradients[kept], *chosen)
 
     @property
-    def in_use_mask(self) -> np.ndarray:
+    def in_use(self) -> np.ndarray:
         """(D,) bool: which are not switched off."""
         return np.ones(len(self), bool) if self.used is None else np.asarray(self.used, bool)
 
     def in_use(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
-        kept = self if self.used is None else replace(self.some(self.in_use_mask), used=None)
+        kept = self if self.used is None else replace(self.some(self.in_use), used=None)
         return kept if len(kept) else None
 
     @property
@@ -122,14 +122,15 @@ class Dips:
             for key in ("positions", "gradients")
         )
         z = np.concatenate([np.empty(0), *(part.heights for part in parts)])
-        used = np.concatenate([np.empty(0, bool), *(part.in_use_mask for part in parts)])
+        used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
         in_use = None if used.all() else used
         names = [
             np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
         ]
         if not names or not any((each != "").any() for each in names):
             return cls(positions, gradients, z, used=in_use)
-        return cls(positions, gradients, z, *names, used=in_use)
+        surfaces, blocks = names
+        return cls(positions, gradients, z, surfaces, blocks, in_use)
 
     def checked(self) -> Dips:
         """The same as arrays of float64. Raises InputRefused."""
