@@ -95,7 +95,7 @@ class Dips:
         """(D,) bool: which are not switched off."""
         return np.ones(len(self), bool) if self.used is None else np.asarray(self.used, bool)
 
-    def in_use(self) -> Dips | None:
+    def used_only(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
         kept = self if self.used is None else replace(self.some(self.in_use), used=None)
         return kept if len(kept) else None
