@@ -14,8 +14,7 @@ _NEAR = 24  # pixels between the mouse and a datum, at most
 
 
 def any_data(context):
-    there = any(len(group.places) for group in data.groups(context.scene))
-    return None if there else "there are no field data; import some first"
+    return None if data.are_there(context.scene) else "there are no field data; import some first"
 
 
 def a_datum(context):
@@ -24,8 +23,7 @@ def a_datum(context):
 
 
 def any_switched_off(context):
-    there = any(not group.used.all() for group in data.groups(context.scene))
-    return None if there else "no datum is switched off"
+    return None if data.switched_off(context.scene) else "no datum is switched off"
 
 
 def _shown_places(scene):
@@ -64,6 +62,8 @@ class REALMODEL_OT_datum_pick(Reporting, bpy.types.Operator):
         given = self.properties.is_property_set("location")
         at = np.array(self.location if given else context.scene.cursor.location)
         groups, numbers, places = _shown_places(context.scene)
+        if not groups:
+            raise InputRefused("there are no data with a place", advice="import points, boreholes or dips")
         best = int(np.linalg.norm(places - at, axis=1).argmin())
         self._activate(context, groups[best].datum(numbers[best]))
 

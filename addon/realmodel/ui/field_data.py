@@ -27,8 +27,7 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, group):
         layout.operator("realmodel.boreholes_read", text="Import Field Data...", icon="IMPORT")
-        groups = data.groups(context.scene)
-        if not groups:
+        if not data.are_there(context.scene):
             hint(layout, "Boreholes, outcrops, dips and maps: choose all their files at once.")
             return
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
@@ -41,14 +40,14 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
             if boreholes.columns(context.scene):
                 column.prop(group.view, "boreholes_by")
             column.prop(group.view, "hole_width")
-        _draw_datum(layout, context, groups)
+        _draw_datum(layout, context)
 
 
-def _draw_datum(layout, context, groups):
+def _draw_datum(layout, context):
     row = layout.row(align=True)
     row.operator("realmodel.datum_pick", text="Pick Datum", icon="EYEDROPPER")
     datum = handle.active(context.scene)
-    off = sum(int((~group.used).sum()) for group in groups)
+    off = data.switched_off(context.scene)
     if datum is not None:
         row.operator("realmodel.datum_show", text="", icon="ZOOM_SELECTED")
         row.operator("realmodel.datum_leave", text="", icon="X")

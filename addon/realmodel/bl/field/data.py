@@ -3,6 +3,7 @@
 so it is found again after undo, and after an import of others."""
 
 import json
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,14 @@ from .. import borehole_picks, caches, data_objects, observed_blocks, stored_arr
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
 ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block
 DIPS = (DIP, ROCK_DIP)
-_groups = caches.new(most=8)  # by what they are made from
+KINDS = (POINT, *DIPS, PLACE, INTERVAL)
+
+
+def _bytes_of(found):
+    return sum(3 * group.places.nbytes for group in found or ())
+
+
+_groups = caches.new(most=256 << 20, size_of=_bytes_of)  # lists of Groups, by what they are made from
 
 
 class Datum(NamedTuple):
@@ -78,29 +86,56 @@ class Group(NamedTuple):
         return int(found[0]) if len(found) else None
 
 
-def groups(scene):
-    """All Groups of a scene. Data that cannot be read are in none: a build reports why."""
+def groups(scene, kinds=KINDS):
+    """All Groups of a scene of these kinds. Data that cannot be read are in none: a build reports why."""
     found = []
     for rock in scene.realmodel.rocks:
-        holes = None
-        for row in rock.surfaces:
-            stamp = "" if row.stored or not row.filepath else _stamp(row)
-            key = (rock.name, row.name, row.source, row.stored, row.left_out, stamp, rock.hole_picks)
-            if key not in _groups and row.source in ("POINTS_FILE", "NONE"):
-                holes = _holes_of_points(rock) if holes is None else holes
-                _groups[key] = _points(scene, rock, row, holes)
-            if row.source in ("POINTS_FILE", "NONE") and _groups[key] is not None:
-                found.append(_groups[key])
-            if row.dips:
-                found += _dips(rock, row)
-        if rock.dips:
+        if POINT in kinds:
+            found += _all_points(scene, rock)
+        if DIP in kinds:
+            found += [group for row in rock.surfaces if row.dips for group in _dips(rock, row)]
+        if ROCK_DIP in kinds and rock.dips:
             found += _dips(rock, rock)
-        if rock.observations:
+        if rock.observations and (PLACE in kinds or INTERVAL in kinds):
             key = (rock.name, rock.observations)
             if key not in _groups:
                 _groups[key] = _observed(rock)
             found += _groups[key]
-    return [group for group in found if len(group.places)]
+    return [group for group in found if group.kind in kinds and len(group.places)]
+
+
+def are_there(scene):
+    """Whether a scene has field data, without a look at files."""
+    rocks = scene.realmodel.rocks
+    of_rocks = any(rock.dips or rock.observations or rock.interval_values or rock.map for rock in rocks)
+    return of_rocks or any(
+        row.dips or row.left_out or (row.source == "POINTS_FILE" and (row.stored or row.filepath))
+        for rock in rocks
+        for row in rock.surfaces
+    )
+
+
+def switched_off(scene):
+    """How many data of a scene are switched off."""
+    count = sum(int((~group.used).sum()) for group in groups(scene, (*DIPS, PLACE, INTERVAL)))
+    for rock in scene.realmodel.rocks:
+        for row in rock.surfaces:
+            with suppress(RealModelError):  # damaged text, which a build refuses
+                count += len(left_out(row))
+    return count
+
+
+def _all_points(scene, rock):
+    holes = None
+    for row in rock.surfaces:
+        if row.source not in ("POINTS_FILE", "NONE"):
+            continue
+        stamp = "" if row.stored or not row.filepath else _stamp(row)
+        key = (rock.name, row.name, row.source, row.stored, row.left_out, stamp, rock.hole_picks)
+        if key not in _groups:
+            holes = _holes_of_points(rock) if holes is None else holes
+            _groups[key] = _points(scene, rock, row, holes)
+        yield from _groups[key]
 
 
 def _stamp(row):
@@ -154,13 +189,15 @@ def _points(scene, rock, row, holes):
     try:
         used, off = own_points(scene, row), left_out(row)
     except (RealModelError, KeyError):
-        return None
+        return []
     places = np.concatenate([used, off])
-    of_hole = [holes.get((row.name, tuple(place)), "") for place in places.tolist()]
+    of_hole = [""] * len(places)
+    if holes:
+        of_hole = [holes.get((row.name, tuple(place)), "") for place in places.tolist()]
     in_use = np.arange(len(places)) < len(used)
     rows = np.concatenate([np.arange(len(used)), np.arange(len(off))])
     names = np.full(len(places), row.name)
-    return Group(POINT, rock.name, names, places, np.array(of_hole, str), in_use, rows)
+    return [Group(POINT, rock.name, names, places, np.array(of_hole, str), in_use, rows)]
 
 
 def _dips(rock, row):

@@ -12,7 +12,7 @@ from . import data
 
 def find(scene, datum):
     """(Group, number) of a datum. Raises InputRefused where it is not there any more."""
-    for group in data.groups(scene):
+    for group in data.groups(scene, (datum.kind,)):
         if (number := group.find(datum)) is not None:
             return group, number
     what = f"the {datum.kind} of '{datum.name}' is not there any more"
