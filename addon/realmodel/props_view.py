@@ -116,6 +116,7 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.field_data,
     )
+    holes_on: StringProperty(options={"HIDDEN"})  # JSON of the cut that the boreholes are shown on
     show_contacts: BoolProperty(
         name="Contacts",
         description="Show the points of the surfaces, the observed places, and the tops of logged intervals, "

@@ -100,7 +100,11 @@ class HoleValues(PanelCase):
         self.assertEqual(len(middles), 4)
         self.assertTrue(np.allclose(middles[:, 1], 50.5, atol=1e-4), "on the plane")
         self.assertEqual([name for name, _ in boreholes.labels(self.scene)], ["B0", "B1"])
-        view.plane.location.y += 1.5
+        view.plane.location.y += 30.0
+        bpy.context.view_layer.update()
+        ops.section_update()
+        self.assertFalse([o for o in self.scene.objects if o.get("realmodel_view") == "boreholes"])
+        view.plane.location.y -= 28.5
         bpy.context.view_layer.update()
         ops.section_update()
         _, middles, _ = self.tubes()

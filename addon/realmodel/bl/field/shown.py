@@ -16,7 +16,6 @@ MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
 KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration
 _OFF, _RED = ("Switched Off", "#8c8c8c"), ("Misfit", "#e01818")
 _STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that it is shaped for
-_CUT = "realmodel_cut"  # on boreholes: the state of the cut that they lie on
 _MOST = 20_000  # data of a kind shown at most
 _LIFT = 1e-3  # of a map over the ground, of the size of all, against flickering
 _DISC = 0.025  # radius of a disc, of the size of all
@@ -39,7 +38,7 @@ def show(scene):
     view = scene.realmodel.view
     misfits.fill(scene)
     for kind, wanted, shown in (
-        (boreholes.BOREHOLES, view.show_boreholes, boreholes.show),
+        (boreholes.BOREHOLES, view.show_boreholes, _boreholes),
         (MAP, view.show_map, _maps),
         (CONTACTS, view.show_contacts, _contacts),
         (DIPS, view.show_dips, _dips),
@@ -52,7 +51,6 @@ def show(scene):
             except RealModelError as error:
                 view.message = str(error)
         for item in bodies.listed(scene, kind):
-            item[_CUT] = view.cut if boreholes.is_on_cut(scene) else ""
             item[_STRETCH] = exaggeration.factor(scene)
 
 
@@ -65,14 +63,19 @@ def follow_exaggeration(scene):
 
 def follow_cut(scene):
     """Shows the boreholes on the section plane, where that has moved."""
-    if not scene.realmodel.view.show_boreholes:
-        return
-    state = scene.realmodel.view.cut if boreholes.is_on_cut(scene) else ""
-    if any(item.get(_CUT, "") != state for item in bodies.listed(scene, boreholes.BOREHOLES)):
-        boreholes.show(scene)
-        for item in bodies.listed(scene, boreholes.BOREHOLES):
-            item[_CUT] = state
+    if scene.realmodel.view.show_boreholes and scene.realmodel.view.holes_on != _cut(scene):
+        _boreholes(scene)
         display.exaggeration_changed(scene)
+
+
+def _cut(scene):
+    """The state of the cut that boreholes lie on; empty where they stand in their places."""
+    return scene.realmodel.view.cut if boreholes.is_on_cut(scene) else ""
+
+
+def _boreholes(scene):
+    boreholes.show(scene)
+    scene.realmodel.view.holes_on = _cut(scene)
 
 
 def _contacts(scene):
