@@ -49,7 +49,6 @@ from gallery_picture import (
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
-IN_GUIDE, NARROW = ("tunnel",), 900  # pictures that the guide, and so the zip, has too; pixels
 FRAME = (600, 300)  # of a film strip
 PHOTOS = (
     "rocks",
@@ -82,10 +81,6 @@ def main(names):
                 palette = whole.quantize(256, Image.Quantize.FASTOCTREE)
                 small = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
                 small.save(images / path.name, optimize=True)
-                if path.stem in IN_GUIDE and DRAFT == 1:
-                    whole.thumbnail((NARROW, NARROW), Image.Resampling.LANCZOS)
-                    narrow = whole.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-                    narrow.save(IMAGES.parent / "guide" / path.name, optimize=True)
     return done.returncode
 
 

@@ -434,50 +434,6 @@ def section(walk):
     yield from keep(walk, "section_fence", "WINDOW")
 
 
-def trim_above(item, ground):
-    """Ends a mesh where it comes out of the ground, whose vertices are given (N, 3)."""
-    import bmesh
-    import numpy as np
-
-    mesh = bmesh.new()
-    mesh.from_mesh(item.data)
-    out = []
-    for vertex in mesh.verts:
-        place = np.array(item.matrix_world @ vertex.co)
-        nearest = ground[np.hypot(*(ground[:, :2] - place[:2]).T).argmin()]
-        if place[2] > nearest[2] + 1.5:
-            out.append(vertex)
-    bmesh.ops.delete(mesh, geom=out, context="VERTS")
-    mesh.to_mesh(item.data)
-    mesh.free()
-
-
-def quarry(walk):
-    """A pit as the youngest surface."""
-    import bpy
-    import numpy as np
-
-    yield from example(walk, "two_layers")
-    group = bpy.context.scene.realmodel
-    ground = group.rocks[0].surfaces[-1].interface
-    heights = np.array([vertex.co[:] for vertex in ground.data.vertices])
-    middle, top = heights.mean(axis=0), heights[:, 2].max()
-    bpy.ops.mesh.primitive_grid_add(
-        x_subdivisions=40, y_subdivisions=40, size=44.0, location=(*middle[:2], 0)
-    )
-    pit = bpy.context.active_object
-    pit.name = "pit"
-    for vertex in pit.data.vertices:
-        away = max(abs(vertex.co.x), abs(vertex.co.y))
-        vertex.co.z = top - 9.0 + max(0.0, away - 12.0) * 1.2
-    trim_above(pit, heights)
-    bpy.ops.realmodel.surface_add(use_object=True)
-    yield from build(walk)
-    pit.hide_set(True)
-    frame(walk)
-    yield from keep(walk, "quarry", panels=["surfaces", "results"])
-
-
 # -- a graben between two faults, and a dome
 
 
@@ -579,7 +535,7 @@ def graben():
     scene.realmodel.bodies[0].after = "Limestone"
 
 
-CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, quarry, structures)
+CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, structures)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:
