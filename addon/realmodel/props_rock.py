@@ -87,6 +87,7 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
     dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
+    series: StringProperty(options={"HIDDEN"})  # JSON of realmodel.core.Series
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)
     constraints_stored: StringProperty(options={"HIDDEN"})

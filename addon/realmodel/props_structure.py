@@ -20,7 +20,12 @@ _POINTS_SOURCE = (
     "Points File",
     "File with fault sticks or scattered points; a surface is fitted through them",
 )
-_TRACE_SOURCES = (
+_LINE_SOURCES = (
+    (
+        "STICKS_OBJECT",
+        "Sticks Object",
+        "A curve, or a mesh of edges: each line is a fault stick; a surface is fitted through them",
+    ),
     ("TRACE_OBJECT", "Trace Object", "A curve, or a mesh of edges, along the fault on the ground"),
     ("TRACE_FILE", "Trace File", "File with the line of the fault on the ground, as of a geological map"),
 )
@@ -89,7 +94,7 @@ class RealModelFault(
         **{key: changes.unset_of_file(key) for key in ("dip", "dip_direction")},
     ),
     settings_of(READING, changes.reading),
-    _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE, *_TRACE_SOURCES), settings.is_fault_object),
+    _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE, *_LINE_SOURCES), settings.is_fault_object),
     bpy.types.PropertyGroup,
 ):
     """A fault: where its surface comes from, and what it displaces."""

@@ -134,9 +134,15 @@ using PartSurfaceArrays =
 /// stack, surfaces, emptied, fills
 using PartStackArrays = std::tuple<RockArrays, std::vector<PartSurfaceArrays>,
                                    std::vector<std::size_t>, std::vector<std::uint8_t>>;
-/// sides, rocks, wanted
-using PartArrays =
-    std::tuple<structures::Sides, std::vector<PartStackArrays>, std::optional<WantedArrays>>;
+/// vertices, triangles, surface
+using SolidArrays = std::tuple<Array<double>, Array<std::int32_t>, std::int32_t>;
+/// solids; of what is between them sides and rocks
+using BetweenArrays =
+    std::pair<std::vector<SolidArrays>,
+              std::vector<std::pair<structures::Sides, std::vector<PartStackArrays>>>>;
+/// sides, rocks, wanted, between solids
+using PartArrays = std::tuple<structures::Sides, std::vector<PartStackArrays>,
+                              std::optional<WantedArrays>, std::optional<BetweenArrays>>;
 
 structures::PartStack view_of(const PartStackArrays& arrays) {
     const auto& [rock, surfaces, emptied, fills] = arrays;
@@ -151,11 +157,22 @@ structures::PartStack view_of(const PartStackArrays& arrays) {
 }
 
 structures::PartOfSpace view_of(const PartArrays& arrays) {
-    const auto& [sides, rocks, wanted] = arrays;
+    const auto& [sides, rocks, wanted, between] = arrays;
     structures::PartOfSpace part{sides, {}};
     for (const PartStackArrays& rock : rocks)
         part.rocks.push_back(view_of(rock));
     if (wanted) part.wanted = view_of(*wanted);
+    if (!between) return part;
+    for (const auto& [vertices, triangles, surface] : between->first) {
+        require_columns(vertices, 3, "vertices of a solid");
+        require_columns(triangles, 3, "triangles of a solid");
+        part.solids.push_back({{view(vertices), view(triangles)}, surface});
+    }
+    for (const auto& [own, stacks] : between->second) {
+        part.between.push_back({own, {}});
+        for (const PartStackArrays& rock : stacks)
+            part.between.back().rocks.push_back(view_of(rock));
+    }
     return part;
 }
 
@@ -269,16 +286,20 @@ InputError (surface: the number of the structure) and Cancelled.)");
                py::arg("piece") = std::nullopt,
                R"(A model with faults and bodies: the stacks of all parts of space, cut and joined.
 
-parts: list of (sides: one a structure; rocks: one for each rock mass; wanted). rocks: list of (stack: as of
+parts: list of (sides: one a structure; rocks: one for each rock mass; wanted; between). rocks: list of (stack: as of
 build_rock_masses, without surfaces where the rock mass is not there; surfaces: of each of its surfaces
-(number: its own in the model, -1 or -2 where there it is none but a wall or a base; block: that of the block
+(number: its own in the model, -1, -2 or -3 where there it is none but a wall, a base or a cut; block: that of the block
 beneath it, -1: nothing; triangles: None, or (T,) int64, of each triangle the number in the model's surface);
 emptied: the surfaces, ascending, before which all that is there becomes air, and only what was protected
 stays so (no base elevation); fills: for each surface before the last of these 1 where it is the top of a
 body: then what is below the oldest surface stays, but for places at which a body was there first; none:
 nothing stays). wanted: None, or (low (3,), step (3,), cells (nx, ny, nz) uint8), the least corner of a grid,
 the size of a cell and of each whether it is wanted: columns that lie nowhere in these may be left out (nz:
-64 at most; what is above or below the grid is wanted, beside it is as in the nearest cells). structures:
+64 at most; what is above or below the grid is wanted, beside it is as in the nearest cells). between: None,
+or of a part that closed surfaces divide, which then has no rocks of its own (list of (vertices (V, 3)
+float64, triangles (T, 3) int32, number of the surface in the model); list of what is between them (sides: 1
+outside of each, -1 inside, 0 either; rocks)): such a surface ends cells where the blocks on its two sides
+differ. structures:
 (how many surfaces there are, which they are counted after; list as of structure_parts). acts: (S, B) uint8,
 whether a structure divides a block. cells: "columns" or "blocks". piece: None, or of a piece of a whole
 model (continued: of each structure, as of continued_structures, or of some of its triangles; empty: it is

@@ -118,6 +118,7 @@ MADE = {
     "cut_by_surface": lambda m, _: m.cut_by_surface(*sloping(m)),
     "eroded": lambda m, _: m.eroded(),
     "face_corners": lambda m, _: m.face_corners(np.arange(20), np.arange(20) % 2 == 0),
+    "field": lambda m, _: [m.field(own.name) for entry in m.rock_inputs for own in entry.fields],
     "fence": lambda m, _: m.fence(m.vertices[:, :2].mean(axis=0) + np.array([[-20, 0], [20, 5]])),
     "geological_map": lambda m, _: m.geological_map(),
     "native": lambda m, _: m.native(),

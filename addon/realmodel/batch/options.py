@@ -123,6 +123,13 @@ OPTIONS = (
         [],
     ),
     Option(
+        "export-field",
+        "F",
+        "write the fields of series to F.vtu: the tetrahedra of their lattices, with the value at each node",
+        Path,
+        ending=".vtu",
+    ),
+    Option(
         "cell-size",
         "X[,Y[,Z]]",
         "the cells of regular grids by --export and --cut (.csv, .vti, .tif, .asc, and beside the blocks in "

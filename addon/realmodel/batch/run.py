@@ -19,6 +19,7 @@ from ..core import (
 )
 from ..core.base.atomic import Outputs, make_folder
 from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
+from ..core.exporters.fields import write_fields
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import model_report, write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
@@ -67,6 +68,9 @@ def run(options: argparse.Namespace) -> None:
             mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
             cells = _cleaned_cells(options, model, progress)
             _export(options, model, outputs, progress, cells)
+            if options.export_field is not None:
+                with outputs.file(options.export_field) as file:
+                    write_fields(model, file)
             if options.blend is not None or options.render is not None:
                 _write_with_blender(options, project, model, outputs, progress)
             if options.report is not None:
@@ -264,7 +268,8 @@ def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> 
             raise UsageError(
                 f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
             )
-    paths = [*exported, *(p for p in (options.report, options.blend, options.render) if p is not None)]
+    single = (options.export_field, options.report, options.blend, options.render)
+    paths = [*exported, *(p for p in single if p is not None)]
     paths += [path for request in requests for path in request.outputs]
     targets = [output_target(path) for path in paths]
     if mesh is not None:

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from ..core import Surface
 from ..core.surfaces.age_order import age_order
 from . import data_objects, library_rows, reading_text, settings, stored_arrays
 
@@ -18,7 +19,7 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
     points = picks.points
     given = {row.name for row in rock.surfaces}
     new = [name for name in dict.fromkeys((*points, *units)) if name not in given]
-    own = {row.name: _own_points(scene, row) for row in rock.surfaces if row.name in points}
+    own = {row.name: own_points(scene, row) for row in rock.surfaces if row.name in points}
     warnings = []
     with settings.filling():
         if add_surfaces:
@@ -35,7 +36,7 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
             warnings += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
         for row in rock.surfaces:  # Blender may have moved all of them when some were added
             if own.get(row.name) is not None:
-                _keep(row, np.concatenate([own[row.name], points[row.name]]))
+                keep_points(row, np.concatenate([own[row.name], points[row.name]]))
         warnings += [
             f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
             for name, array in own.items()
@@ -51,17 +52,23 @@ def _tops(picks, name):
     return np.array(tops) if tops else None
 
 
-def _own_points(scene, row):
-    """The points that a surface has from its file; None where it is no surface of such points."""
+def own_points(scene, row):
+    """The points that a surface has from its file, without contacts that follow from observations; None where
+    it is no surface of such points."""
     if row.source == "NONE":
         return np.empty((0, 3))
     if row.source != "POINTS_FILE":
         return None
     found = data_objects.read_points(scene, row)
-    return np.empty((0, 3)) if found is None else found
+    if found is None:
+        return np.empty((0, 3))
+    contacts = stored_arrays.unpack(row.stored).get("contacts") if row.stored else None
+    own = Surface(row.name, points=found, contacts=contacts).own_points()
+    return np.empty((0, 3)) if own is None else own
 
 
-def _keep(row, points):
+def keep_points(row, points):
+    """Gives a surface points that are stored in the .blend."""
     row.source, row.filepath = "POINTS_FILE", ""
     reading_text.fill(row, {})
     row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""

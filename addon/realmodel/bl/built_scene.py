@@ -506,7 +506,7 @@ def _remove_model(scene):
             _release(scene, item)
     collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
     last = [group.structures, group.collection]
-    for key in ("rocks", "faults", "bodies", "results", "library"):
+    for key in ("rocks", "faults", "bodies", "results", "library", "planned_holes"):
         getattr(group, key).clear()
     group.structures = group.collection = None
     for collection in [c for three in collections for c in three] + last:

@@ -142,7 +142,7 @@ def reading(row, context):
 
 def extended(fault, context):
     """The extension of a fault: what is made from its file depends on it; of a trace the line is kept."""
-    (setting if fault.source in ("MESH_OBJECT", *settings.TRACES) else reading)(fault, context)
+    (setting if fault.source in (*settings.OF_OBJECTS, *settings.TRACES) else reading)(fault, context)
 
 
 def fitted(fault, context):

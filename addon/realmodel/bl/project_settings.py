@@ -29,6 +29,7 @@ from . import (
     observed_blocks,
     plan_mesh,
     reading_text,
+    series_settings,
     settings,
     shapes,
     stored_arrays,
@@ -112,11 +113,12 @@ def compose(scene, depsgraph, whole=True):
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
             rock.dips = surface_dips.of_row(row)
+            rock.series = series_settings.of_row(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
         for at, surface_row in enumerate(row.surfaces):
-            surface = _plain_surface(surface_row)
+            surface = _plain_surface(surface_row, series_settings.fields(row))
             with naming(surface_item(rock, surface)):
                 _shape(source, composed, (number, at), surface, surface_row)
             rock.surfaces.append(surface)
@@ -131,9 +133,12 @@ def compose(scene, depsgraph, whole=True):
     return composed
 
 
-def _plain_surface(row):
-    """A surface with everything but its shape."""
+def _plain_surface(row, fields):
+    """A surface with everything but its shape. fields: the names of series whose surfaces are level sets."""
     surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
+    surface.series = row.series or None
+    if surface.series in fields:
+        return surface
     if method_settings.has_method(row):
         surface.method = row.method
         surface.options = method_settings.options_of(row)
@@ -200,8 +205,8 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
-    if row.source == "TRACE_OBJECT":
-        _trace_of_object(source, composed, surface, row)
+    if row.source in ("TRACE_OBJECT", "STICKS_OBJECT"):
+        _lines_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
@@ -285,10 +290,14 @@ def _from_object(source, composed, place, surface, row):
     _take_mesh(composed, surface, row.object, given, triangles, base)
 
 
-def _trace_of_object(source, composed, fault, row):
+def _lines_of_object(source, composed, fault, row):
+    """The trace of a fault, or its sticks."""
     if row.object is None:
-        raise InputRefused("it has no object", advice="choose the curve or mesh along its trace")
+        raise InputRefused("it has no object", advice="choose the curve or mesh with its trace or its sticks")
     lines = [line + composed.origin for line in shapes.lines(row.object, source.depsgraph)]
+    if row.source == "STICKS_OBJECT":
+        fault.points = lines
+        return
     structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
 
 
@@ -392,11 +401,7 @@ def fill(scene, project):
 
 
 def add_rock(group, rock):
-    """A row for a realmodel.core.Rock. Raises InputRefused for one with series, which no row has yet."""
-    for series in rock.series:
-        raise series.refused(
-            "series are not in the panel yet", None, "build it by build_model.py without --blend", rock.item
-        )
+    """A row for a realmodel.core.Rock."""
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
@@ -413,13 +418,14 @@ def add_rock(group, rock):
         borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
         surface_dips.keep(row, rock.dips)
+        series_settings.keep(row, rock.series)
     return row
 
 
 def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
-        for key in ("name", "rule", "property", "block", *_OF_INTERPOLATED):
+        for key in ("name", "rule", "property", "block", "series", *_OF_INTERPOLATED):
             method_settings.set_value(row, key, SURFACE, getattr(surface, key))
         given = surface.method is not None or surface.options
         row.use_continuation = bool(given) and not surface.interpolated
@@ -428,12 +434,13 @@ def fill_surface(row, surface):
         surface_dips.keep(row, surface.own_dips())
         if surface.left_out is not None and len(surface.left_out):
             row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
+        has_points = surface.interpolated or surface.is_level_set
         if surface.input_file is not None:
-            row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
+            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
             row.filepath = str(surface.input_file)
             reading_text.fill(row, vars(surface.point_file or surface.mesh_file))
         elif surface.interpolated and not len(surface.point_array()):
             row.source = "NONE"
         else:
-            row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
-            setattr(row, "stored" if surface.interpolated else "stored_mesh", packed(surface))
+            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
+            setattr(row, "stored" if has_points else "stored_mesh", packed(surface))

@@ -20,6 +20,11 @@ _LABELS = {
         "Fault Blocks",
         "Faults from sticks: a branch, one that dies out, a younger cover",
     ),
+    "recumbent_fold": (
+        "Recumbent Fold",
+        "Overturned beds below an unconformity: level sets of one field, from contacts and dips",
+    ),
+    "faulted_dome": ("Faulted Dome", "A leaning dome displaced by a fault: a field on each side"),
     "intrusion": ("Intrusion", "A granite and a dike in lifted layers, cut by erosion"),
     "tunnel": ("Tunnel", "A tunnel and a shaft through a hill: the rock that they take of each layer"),
     "canyon": ("Canyon", "Forty beds in the walls of a canyon, and the river in it"),

@@ -10,6 +10,7 @@ import math
 
 import bpy
 import numpy as np
+from bpy_extras import view3d_utils
 from mathutils import Matrix, Vector
 
 from . import model_tree
@@ -105,6 +106,36 @@ def frame_items(items, shown):
         space.region_3d.view_rotation = view_rotation().to_quaternion()
         if middle[2] < 0.0:
             space.overlay.show_floor = False  # its lines would lie over a model below it
+
+
+def under_mouse(context, event):
+    """(area, (x, y) in its window region) of the 3D viewport under the mouse; None where there is none, or
+    where a sidebar, a toolbar or a header lies over it."""
+    for area in context.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        x, y = event.mouse_x, event.mouse_y
+        there = [r for r in area.regions if r.x <= x < r.x + r.width and r.y <= y < r.y + r.height]
+        if there and all(region.type == "WINDOW" for region in there):
+            return area, (x - there[0].x, y - there[0].y)
+    return None
+
+
+def ray(area, at):
+    """(start, direction) of the ray into a viewport at a position in its window region, as Vectors."""
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    view = area.spaces.active.region_3d
+    start = view3d_utils.region_2d_to_origin_3d(region, view, at)
+    along = view3d_utils.region_2d_to_vector_3d(region, view, at)
+    if not view.is_perspective:  # the origin of such a ray may lie within the model
+        start = start - along * 1e-1 * area.spaces.active.clip_end
+    return start, along
+
+
+def pixel(area, place):
+    """(x, y) of a place of the world in the window region of a viewport, or None behind the eye."""
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    return view3d_utils.location_3d_to_region_2d(region, area.spaces.active.region_3d, place)
 
 
 def show_status():

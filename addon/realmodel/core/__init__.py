@@ -14,6 +14,7 @@ from .base.errors import (
 from .cells.blocks import Block, BlockBoundary
 from .exporters.meshes import save_mesh
 from .exporters.report import Report
+from .fields import Lattice, ScalarField
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -76,6 +77,7 @@ __all__ = [
     "Interpolation",
     "Intersection",
     "Interval",
+    "Lattice",
     "LeftOut",
     "Library",
     "Loop",
@@ -100,6 +102,7 @@ __all__ = [
     "RealModelError",
     "Report",
     "Rock",
+    "ScalarField",
     "Section",
     "Series",
     "SimulationMesh",

@@ -3,10 +3,9 @@
 
 import bpy
 from bpy.props import EnumProperty, IntProperty
-from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, project_settings, settings, units
+from ..bl import display, project_settings, settings, units, viewports
 from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
 from .reporting import (
@@ -260,19 +259,8 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
 
 def _under_mouse(context, event):
     """The place of the model under the mouse, in whatever 3D viewport that is."""
-    for area in context.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
-        region = next(r for r in area.regions if r.type == "WINDOW")
-        at = event.mouse_x - region.x, event.mouse_y - region.y
-        if 0 <= at[0] < region.width and 0 <= at[1] < region.height:
-            view = area.spaces.active.region_3d
-            start = view3d_utils.region_2d_to_origin_3d(region, view, at)
-            along = view3d_utils.region_2d_to_vector_3d(region, view, at)
-            if not view.is_perspective:  # the origin of such a ray may lie within the model
-                start = start - along * 1e-1 * area.spaces.active.clip_end
-            return coordinates.under_ray(context.scene, start, along)
-    return None
+    found = viewports.under_mouse(context, event)
+    return None if found is None else coordinates.under_ray(context.scene, *viewports.ray(*found))
 
 
 def place_text(scene, place):

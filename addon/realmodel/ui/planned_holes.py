@@ -42,7 +42,7 @@ class REALMODEL_PT_planned_holes(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         for key in ("azimuth", "dip", "length"):
             column.prop(hole, key)
         _draw_table(layout, scene, hole)
-        line = layout.row(align=True)
+        line = layout.column(align=True)
         line.operator("realmodel.planned_hole_certainty", icon="MOD_ARRAY")
         line.operator("realmodel.planned_hole_save", text="Save Table...", icon="FILE_TICK")
 
@@ -59,7 +59,7 @@ def _draw_table(layout, scene, row):
     if not hole.intervals:
         hint(layout, "It meets no block.")
         return
-    box = layout.box()
+    box = layout.box().column(align=True)
     unit, factor = units.shown_unit(scene, 1)
     has_shares = hole.probability is not None
     _line(box, f"From ({unit})", "Vertical", "±", "%" if has_shares else "")
@@ -89,6 +89,6 @@ def _draw_table(layout, scene, row):
 
 def _line(layout, *texts):
     """Depth along the hole, vertical depth, standard deviation of the depth, probability."""
-    cells = layout.row(align=True)
+    cells = layout.grid_flow(columns=len(texts), even_columns=True, align=True)
     for text in texts:
         right_label(cells, text)

@@ -67,6 +67,7 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
 
 
 def _draw_fault(layout, fault):
+    layout.operator("realmodel.draw_stick", icon="GREASEPENCIL")
     if fault.source in settings.TRACES:
         for key in ("dip", "dip_direction", "elevation"):
             setting_rows.draw(layout, fault, key, FAULT)

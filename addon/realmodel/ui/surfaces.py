@@ -81,6 +81,8 @@ def _draw_surface(layout, context, surface):
         field = line.row()
         field.active = surface.use_continuation
         field.prop(surface, "method", text="")
+    if surface.source in ("NONE", "POINTS_FILE", "POINTS_OBJECT"):
+        layout.operator("realmodel.draw_contacts", icon="GREASEPENCIL")
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")

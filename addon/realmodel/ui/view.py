@@ -135,6 +135,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             row.operator("realmodel.section_flip", text="Flip", icon="ARROW_LEFTRIGHT")
             row.operator("realmodel.section_remove", text="", icon="X")
         layout.prop(view, "plane", text="Plane")
+        layout.operator("realmodel.image_place", text="Place Image...", icon="IMAGE_DATA")
         if plane is not None:
             _section_buttons(layout, "section", "PLANE", "Save Section...")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")

@@ -22,7 +22,7 @@ constexpr double kLeastRatio = 0.01;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 struct Candidate {
-    Anisotropy anisotropy;
+    Likely what;
     double likelihood = kNever;
 };
 
@@ -33,14 +33,20 @@ public:
         : known_(known), execution_(execution) {}
 
     /// The best of some; the first of equal ones.
-    Candidate best(std::span<const Anisotropy> of) const {
+    Candidate best(std::span<const Likely> of) const {
         std::vector<double> found(of.size(), kNever);
         parallel_chunks(of.size(), execution_, [&](std::size_t n) {
-            const Spline spline(known_, map_of(of[n]), {1, nullptr});
+            const Spline spline(known_, map_of(of[n].anisotropy), of[n].errors, {1, nullptr});
             found[n] = spline.log_likelihood().value_or(kNever);
         });
         const auto at = std::max_element(found.begin(), found.end()) - found.begin();
         return {of[at], found[at]};
+    }
+    Candidate best(std::span<const Anisotropy> of, const Errors& errors) const {
+        std::vector<Likely> all;
+        for (const Anisotropy& anisotropy : of)
+            all.push_back({anisotropy, errors});
+        return best(all);
     }
 
     /// `other` where it is better by `worth`.
@@ -96,46 +102,58 @@ std::vector<Vec3> main_directions() {
 }
 
 void search_first(const Search& search, std::span<const Vec3> normals, Candidate& best) {
+    const Errors errors = best.what.errors;
     std::vector<Anisotropy> tried;
     if (normals.size() >= 3) {
         const Vec3 axis = fold_axis(normals);
         for (const double ratio : {0.5, 0.25, 0.1, 0.05, 0.02, kLeastRatio})
             tried.push_back(along_axis(axis, ratio));
-        Search::improve(best, search.best(tried), kWorth);
+        Search::improve(best, search.best(tried, errors), kWorth);
     }
-    if (best.anisotropy.ratios[0] < 1) return;
+    if (best.what.anisotropy.ratios[0] < 1) return;
     tried.clear();
     for (const Vec3& direction : main_directions())
         tried.push_back(along_axis(direction, 0.5));
-    const Vec3 direction = search.best(tried).anisotropy.axes[0];
+    const Vec3 direction = search.best(tried, errors).what.anisotropy.axes[0];
     tried.clear();
     for (const double ratio : {0.7, 0.5, 0.35, 0.25, 0.1})
         tried.push_back(along_axis(direction, ratio));
-    Search::improve(best, search.best(tried), kWorth);
+    Search::improve(best, search.best(tried, errors), kWorth);
 }
 
 void search_second(const Search& search, Candidate& best) {
+    const Errors errors = best.what.errors;
     std::vector<Anisotropy> tried;
-    const Anisotropy first = best.anisotropy;
+    const Anisotropy first = best.what.anisotropy;
     for (int degrees = 0; degrees < 180; degrees += 20) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
     }
-    Candidate found = search.best(tried);
+    Candidate found = search.best(tried, errors);
     double step = 12, factor = 0.6;
     for (int round = 0; round < 8; ++round) {
-        const Anisotropy at = found.anisotropy;
+        const Anisotropy at = found.what.anisotropy;
         const double ratio = at.ratios[1];
         tried = {turned(at, step, ratio), turned(at, -step, ratio),
                  turned(at, 0, std::max(kLeastRatio, ratio * factor)),
                  turned(at, 0, std::min(1.0, ratio / factor))};
         const double before = found.likelihood;
-        Search::improve(found, search.best(tried), 0);
+        Search::improve(found, search.best(tried, errors), 0);
         if (found.likelihood > before) continue;
         step /= 2;
         factor = std::sqrt(factor);
     }
     Search::improve(best, found, kWorth);
+}
+
+/// Other errors with the anisotropy of the best.
+void search_errors(const Search& search, Candidate& best) {
+    std::vector<Likely> tried;
+    for (const double value : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5}) {
+        for (const double slope : {0.0, 1e-4, 1e-3, 1e-2, 1e-1})
+            tried.push_back({best.what.anisotropy, {value, slope}});
+    }
+    Search::improve(best, search.best(tried), kWorth);
 }
 
 }  // namespace
@@ -150,13 +168,21 @@ Map3 map_of(const Anisotropy& anisotropy) {
     return map;
 }
 
-Anisotropy likely_anisotropy(std::span<const Functional> known, std::span<const Vec3> normals,
-                             const Execution& execution) {
+Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
+                   const Execution& execution) {
     const Search search(known, execution);
-    Candidate best = search.best(std::array{kIsotropic});
-    search_first(search, normals, best);
-    search_second(search, best);
-    return best.anisotropy;
+    const auto climb = [&](Candidate best) {
+        search_first(search, normals, best);
+        search_second(search, best);
+        search_errors(search, best);
+        return best;
+    };
+    const Candidate start = search.best(std::array{Likely{}});
+    Candidate rough = start;
+    search_errors(search, rough);
+    Candidate best = climb(start);
+    if (rough.likelihood > start.likelihood) Search::improve(best, climb(rough), kWorth);
+    return best.what;
 }
 
 }  // namespace realmodel::fields

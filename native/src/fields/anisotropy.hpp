@@ -4,6 +4,7 @@
 #include <span>
 
 #include "fields/functional.hpp"
+#include "fields/spline.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/fields/field.hpp"
 
@@ -14,10 +15,16 @@ inline constexpr Anisotropy kIsotropic{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {1, 
 /// Scales space by the ratios along the axes.
 Map3 map_of(const Anisotropy& anisotropy);
 
-/// The anisotropy under which what is known is most likely: along the fold axis, to which the
-/// normals are most nearly perpendicular, or where they show none along the best of some
-/// directions; then along a direction across it.
-Anisotropy likely_anisotropy(std::span<const Functional> known, std::span<const Vec3> normals,
-                             const Execution& execution);
+/// What kind of random function data are most likely to be of.
+struct Likely {
+    Anisotropy anisotropy = kIsotropic;
+    Errors errors;
+};
+
+/// The anisotropy and the errors of measurement under which what is known is most likely. The
+/// anisotropy is along the fold axis, to which the normals are most nearly perpendicular, or where
+/// they show none along the best of some directions; then along a direction across it.
+Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
+                   const Execution& execution);
 
 }  // namespace realmodel::fields

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "fields/anisotropy.hpp"
 #include "fields/known_data.hpp"
+#include "fields/lattice_values.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -19,11 +23,15 @@ namespace {
 
 using Kind = Inequality::Kind;
 
-constexpr double kMet = 1e-9;       // in the frame: what is left by rounding
-constexpr double kLeastGap = 1e-3;  // of the mean gap of levels
+constexpr double kMet = 1e-9;  // in the frame: what is left by rounding
+constexpr int kGapRounds = 6;
+// A field that is so much steeper between some surfaces than between others has drawn levels
+// together.
+constexpr double kUneven = 4;
 // Levels that come out in the wrong order by more than this share of the mean gap are refused.
 constexpr double kWrongOrder = 0.5;
-constexpr std::size_t kFirstCenters = 600, kSampledContacts = 160, kSampledDips = 90;
+constexpr std::size_t kFirstCenters = 600, kSampledContacts = 160, kSampledDips = 90,
+                      kSampledForDistance = 2000;
 constexpr int kMostRounds = 40;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
@@ -57,6 +65,8 @@ public:
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
+        for (std::size_t n = 0; n < known.contacts().size(); ++n)
+            surface_of_[known.contacts()[n]] = known.surface_of(n);
         const std::size_t most = static_cast<std::size_t>(std::max(options.most_centers, 1));
         const std::size_t all = known.contacts().size();
         if (all <= std::min<std::size_t>(most, 2 * kFirstCenters)) {
@@ -66,7 +76,10 @@ public:
                 is_center_[n] = 1;
         }
         begin(0.0, 0.3, "anisotropy of the field");
-        anisotropy_ = options.anisotropy != nullptr ? *options.anisotropy : likely();
+        sample_ = sample();
+        refuse_wrong_order();
+        find_likely();
+        if (options.anisotropy != nullptr) likely_.anisotropy = *options.anisotropy;
         begin(0.3, 0.7, "field through the data");
     }
 
@@ -74,10 +87,7 @@ public:
     void solve() {
         fit();
         refuse_contradictions();
-        const std::int32_t last = known_.data().surfaces - 1;
-        const double mean_gap = last > 0 ? std::abs(level(last) - level(0)) / last : 0;
-        refuse_wrong_order(mean_gap);
-        inequalities_ = known_.inequalities(kLeastGap * mean_gap);
+        inequalities_ = known_.inequalities();
         refuse_polarities();
         states_.assign(inequalities_.size(), {});
         for (int round = 0; round < kMostRounds; ++round) {
@@ -93,27 +103,20 @@ public:
         Field out;
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        out.values.resize(lattice.nodes());
-        parallel_ranges(
-            out.values.size(), 512, execution_,
-            [&](std::size_t from, std::size_t to) {
-                std::vector<Vec3> at(to - from);
-                const auto nx = static_cast<std::size_t>(lattice.counts[0]);
-                const auto ny = static_cast<std::size_t>(lattice.counts[1]);
-                for (std::size_t n = from; n < to; ++n) {
-                    at[n - from] = known_.frame().to_local(
-                        lattice.position(static_cast<int>(n % nx), static_cast<int>(n / nx % ny),
-                                         static_cast<int>(n / nx / ny)));
-                }
-                const std::span<double> values(out.values.data() + from, to - from);
-                spline_->values_at(at, values);
+        out.values = lattice_values(
+            lattice,
+            [&](std::span<const Vec3> positions, std::span<double> values) {
+                std::vector<Vec3> local(positions.size());
+                std::transform(positions.begin(), positions.end(), local.begin(),
+                               [&](const Vec3& at) { return known_.frame().to_local(at); });
+                spline_->values_at(local, values);
                 for (double& value : values)
                     value *= unit;
             },
-            1.0);
+            execution_);
         for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
             out.levels.push_back(unit * level(k));
-        out.anisotropy = anisotropy_;
+        out.anisotropy = likely_.anisotropy;
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
         report_missed(out);
@@ -129,30 +132,137 @@ private:
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
     }
 
-    double level(std::int32_t surface) const {
-        return spline_->value(known_.contacts()[known_.reference(surface)]);
+    double level(std::int32_t surface) const { return level_in(*spline_, surface); }
+    double level_in(const Spline& spline, std::int32_t surface) const {
+        return spline.of({{{known_.contacts()[known_.reference(surface)], 1, true}}, {}, 0, false});
     }
 
-    Anisotropy likely() const {
-        std::vector<Functional> sample;
-        const std::vector<Functional>& fixed = known_.fixed();
+    /// A part of the data that likelihoods are compared by: contacts that are spread, and those
+    /// nearest to them.
+    std::vector<Functional> sample() const {
+        const std::vector<Vec3>& at = known_.contacts();
+        std::set<std::size_t> numbers;
+        for (const std::size_t n : thinned(known_, kSampledContacts / 2)) {
+            numbers.insert(n);
+            std::size_t nearest = n;
+            double least = 1e300;
+            for (std::size_t m = 0; m < at.size(); ++m) {
+                const Vec3 d = minus(at[m], at[n]);
+                const double squared = dot(d, d);
+                if (m == n || known_.surface_of(m) != known_.surface_of(n) || !(squared > 0) ||
+                    squared >= least)
+                    continue;
+                least = squared;
+                nearest = m;
+            }
+            numbers.insert(nearest);
+        }
+        std::vector<Functional> out;
+        for (const std::size_t n : numbers) {
+            if (n != known_.reference(known_.surface_of(n))) out.push_back(known_.on_surface(n));
+        }
+        return out;
+    }
+
+    /// The fixed functionals, of many dips only some, and others.
+    std::vector<Functional> joined(std::vector<Functional> fixed,
+                                   std::span<const Functional> others) const {
         const std::size_t dips = known_.data().dips.size();
         const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
-        for (std::size_t n = 0; n < dips; ++n) {
-            if (n % each != 0) continue;
-            sample.push_back(fixed[2 * n]);
-            sample.push_back(fixed[2 * n + 1]);
+        std::vector<Functional> out;
+        for (std::size_t n = 0; n < fixed.size(); ++n) {
+            if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
         }
-        sample.insert(sample.end(), fixed.begin() + static_cast<std::ptrdiff_t>(2 * dips),
-                      fixed.end());
-        for (const std::size_t n : thinned(known_, kSampledContacts)) {
-            if (n != known_.reference(known_.surface_of(n))) sample.push_back(known_.on_surface(n));
+        out.insert(out.end(), others.begin(), others.end());
+        return out;
+    }
+
+    /// Levels are free, unless the field would be far steeper between some of them than between
+    /// others: it is smoothest where it is flat, so that rough surfaces can draw their levels
+    /// together.
+    void find_likely() {
+        const auto look = [&] {
+            likely_ = most_likely(joined(known_.fixed(gaps_), sample_), known_.data().normals,
+                                  execution_);
+        };
+        look();
+        if (known_.data().surfaces < 3) return;
+        const Spline spline(joined(known_.fixed(gaps_), sample_), map_of(likely_.anisotropy),
+                            likely_.errors, execution_);
+        double low = 1e300, high = 0;
+        const std::vector<double> apart = distances();
+        for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
+            const double steep = (level_in(spline, k + 1) - level_in(spline, k)) / apart[k];
+            low = std::min(low, steep);
+            high = std::max(high, steep);
         }
-        return likely_anisotropy(sample, known_.data().normals, execution_);
+        if (high <= kUneven * low) return;
+        find_gaps({kIsotropic, {1e-6, 1e-3}});
+        look();
+        find_gaps(likely_);
+        look();
+    }
+
+    /// Differences of levels with which the field is as steep between all surfaces.
+    void find_gaps(const Likely& likely) {
+        const std::int32_t last = known_.data().surfaces - 1;
+        gaps_ = distances();
+        std::vector<Functional> all = joined(known_.fixed(gaps_), sample_);
+        Spline spline(all, map_of(likely.anisotropy), likely.errors, execution_);
+        for (int round = 0; round < kGapRounds; ++round) {
+            const std::vector<double> steep = steepness(spline);
+            for (std::int32_t k = 0; k < last; ++k)
+                gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
+            all = joined(known_.fixed(gaps_), sample_);
+            spline.set_right(all);
+        }
+    }
+
+    /// About how far each surface is from the next: a tenth of the contacts have one of the next
+    /// nearer to them.
+    std::vector<double> distances() const {
+        const std::vector<Vec3>& at = known_.contacts();
+        std::vector<std::vector<std::size_t>> on(known_.data().surfaces);
+        for (const std::size_t n : thinned(known_, kSampledForDistance))
+            on[known_.surface_of(n)].push_back(n);
+        std::vector<double> out;
+        for (std::size_t k = 0; k + 1 < on.size(); ++k) {
+            std::vector<double> nearest;
+            for (const std::size_t n : on[k]) {
+                double least = 1e300;
+                for (const std::size_t m : on[k + 1])
+                    least = std::min(least, length(minus(at[m], at[n])));
+                nearest.push_back(least);
+            }
+            const auto tenth = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 10);
+            std::nth_element(nearest.begin(), tenth, nearest.end());
+            out.push_back(std::max(*tenth, 1e-6));
+        }
+        return out;
+    }
+
+    /// How steep a field is on the two surfaces of each layer.
+    std::vector<double> steepness(const Spline& spline) const {
+        std::vector<std::vector<double>> on(known_.data().surfaces);
+        for (const Functional& f : sample_) {
+            const Vec3& at = f.values[0].at;
+            on[surface_of_.at(at)].push_back(length(spline.gradient(at)));
+        }
+        std::vector<double> out;
+        for (std::size_t k = 0; k + 1 < on.size(); ++k) {
+            std::vector<double> both = on[k];
+            both.insert(both.end(), on[k + 1].begin(), on[k + 1].end());
+            if (both.empty()) both.push_back(1);
+            const auto middle = both.begin() + static_cast<std::ptrdiff_t>(both.size() / 2);
+            std::nth_element(both.begin(), middle, both.end());
+            out.push_back(std::max(*middle, 1e-9));
+        }
+        return out;
     }
 
     void fit() {
-        std::vector<Functional> all = known_.fixed();
+        std::vector<Functional> all = known_.fixed(gaps_);
+        first_contact_ = all.size();
         for (std::size_t n = 0; n < is_center_.size(); ++n) {
             if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
                 all.push_back(known_.on_surface(n));
@@ -163,7 +273,7 @@ private:
             all.push_back(inequalities_[n].functional);
             all.back().right = inequalities_[n].least;
         }
-        spline_.emplace(all, map_of(anisotropy_), execution_);
+        spline_.emplace(all, map_of(likely_.anisotropy), likely_.errors, execution_);
     }
 
     /// How far contacts are from their surfaces, nearly.
@@ -188,40 +298,57 @@ private:
             level_of_.push_back(level(k));
     }
 
-    /// Those of the contacts that are missed most, no two of them near each other.
+    /// Those of the contacts that are missed most, no two of them near each other, of all surfaces
+    /// by turns.
     bool add_centers() {
         set_levels();
         const std::vector<double> missed = misfits();
         misfit_ = *std::max_element(missed.begin(), missed.end());
-        const double tolerance = std::max(options_.tolerance / known_.frame().unit, 1e3 * kMet);
         const auto have =
             static_cast<std::size_t>(std::count(is_center_.begin(), is_center_.end(), 1));
         const auto most = static_cast<std::size_t>(std::max(options_.most_centers, 1));
-        std::vector<std::size_t> order;
-        for (std::size_t n = 0; n < missed.size(); ++n) {
-            if (is_center_[n] == 0 && missed[n] > tolerance) order.push_back(n);
-        }
-        if (have >= most || order.empty()) return false;
-        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return missed[a] != missed[b] ? missed[a] > missed[b] : a < b;
-        });
+        if (have >= most) return false;
+        const std::vector<std::size_t> order = by_turns(missed);
         // Cubes as large as a center's share of the contacts' sheets.
         const double size = 1 / std::sqrt(static_cast<double>(have + most));
-        std::map<std::array<std::int64_t, 4>, char> taken;
+        std::set<std::array<std::int64_t, 4>> taken;
         std::size_t left = std::min(most - have, have);
-        bool added = false;
         for (const std::size_t n : order) {
+            if (left == 0) break;
             std::array<std::int64_t, 4> key{0, 0, 0, known_.surface_of(n)};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 key[axis] =
                     static_cast<std::int64_t>(std::floor(known_.contacts()[n][axis] / size));
             }
-            if (!taken.emplace(key, 1).second) continue;
+            if (!taken.insert(key).second) continue;
             is_center_[n] = 1;
-            added = true;
-            if (--left == 0) break;
+            --left;
         }
-        return added;
+        return !order.empty();
+    }
+
+    /// The contacts that are missed by more than the tolerance, on each surface the worst first.
+    std::vector<std::size_t> by_turns(const std::vector<double>& missed) const {
+        const double error = std::sqrt(std::max(0.0, likely_.errors.value * spline_->scale()));
+        const double tolerance =
+            std::max({options_.tolerance / known_.frame().unit, 1e3 * kMet, 2 * error});
+        std::vector<std::vector<std::size_t>> on(known_.data().surfaces);
+        for (std::size_t n = 0; n < missed.size(); ++n) {
+            if (is_center_[n] == 0 && missed[n] > tolerance) on[known_.surface_of(n)].push_back(n);
+        }
+        std::vector<std::pair<std::size_t, std::size_t>> ranked;
+        for (std::vector<std::size_t>& numbers : on) {
+            std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
+                return missed[a] != missed[b] ? missed[a] > missed[b] : a < b;
+            });
+            for (std::size_t rank = 0; rank < numbers.size(); ++rank)
+                ranked.emplace_back(rank, numbers[rank]);
+        }
+        std::sort(ranked.begin(), ranked.end());
+        std::vector<std::size_t> out;
+        for (const auto& [rank, n] : ranked)
+            out.push_back(n);
+        return out;
     }
 
     /// Inequalities that do not hold.
@@ -258,7 +385,8 @@ private:
     }
 
     void refuse_contradictions() const {
-        std::size_t row = known_.fixed().size();
+        if (likely_.errors.value > 0) return;
+        std::size_t row = first_contact_;
         for (std::size_t n = 0; n < is_center_.size(); ++n) {
             if (is_center_[n] == 0 || n == known_.reference(known_.surface_of(n))) continue;
             if (!spline_->left_out(row++)) continue;
@@ -270,9 +398,14 @@ private:
         }
     }
 
-    void refuse_wrong_order(double mean_gap) const {
-        for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
-            if (level(k + 1) - level(k) >= -kWrongOrder * mean_gap) continue;
+    void refuse_wrong_order() const {
+        const std::int32_t last = known_.data().surfaces - 1;
+        if (last < 1) return;
+        const Spline spline(joined(known_.fixed({}), sample_), map_of(kIsotropic), {1e-6, 1e-3},
+                            execution_);
+        const double mean_gap = known_.total_gap() / last;
+        for (std::int32_t k = 0; k < last; ++k) {
+            if (level_in(spline, k + 1) - level_in(spline, k) >= -kWrongOrder * mean_gap) continue;
             const auto older = known_.reference(k), younger = known_.reference(k + 1);
             throw InputError("wrong_order",
                              "surface " + std::to_string(k + 1) +
@@ -327,7 +460,6 @@ private:
 
     void report_missed(Field& out) const {
         for (const Inequality& inequality : inequalities_) {
-            if (inequality.kind == Kind::kGap) continue;
             const double lack = inequality.least - spline_->of(inequality.functional);
             if (lack <= 1e3 * kMet) continue;
             auto& missed = inequality.kind == Kind::kPolarity ? out.dips_missed : out.bounds_missed;
@@ -340,12 +472,15 @@ private:
     FieldOptions options_;
     Execution execution_;
     std::vector<char> is_center_;
-    Anisotropy anisotropy_{};
+    std::vector<Functional> sample_;
+    std::map<Vec3, std::int32_t> surface_of_;
+    std::vector<double> gaps_;
+    Likely likely_;
     std::vector<Inequality> inequalities_;
     std::vector<State> states_;
     std::vector<char> released_;
     std::vector<double> level_of_;
-    std::size_t first_active_ = 0;
+    std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;
 };

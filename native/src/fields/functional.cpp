@@ -5,9 +5,10 @@ namespace realmodel::fields {
 
 namespace {
 
-double between(const ValueAtom& a, const ValueAtom& b) {
+double between(const ValueAtom& a, const ValueAtom& b, double error) {
     const Vec3 d = minus(a.at, b.at);
     const double squared = dot(d, d);
+    if (!(squared > 0)) return a.measured && b.measured ? error * a.weight * b.weight : 0;
     return a.weight * b.weight * squared * std::sqrt(squared);
 }
 
@@ -26,7 +27,7 @@ double between(const SlopeAtom& a, const SlopeAtom& b) {
 }  // namespace
 
 Functional Functional::mapped_by(const Map3& map) const {
-    Functional out{values, slopes, right};
+    Functional out = *this;
     for (ValueAtom& atom : out.values)
         atom.at = mapped(map, atom.at);
     for (SlopeAtom& atom : out.slopes)
@@ -43,11 +44,11 @@ Vec3 Functional::of_coordinates() const {
     return sum;
 }
 
-double Functional::with(const Functional& other) const {
+double Functional::with(const Functional& other, double error) const {
     double sum = 0;
     for (const ValueAtom& a : values) {
         for (const ValueAtom& b : other.values)
-            sum += between(a, b);
+            sum += between(a, b, error);
         for (const SlopeAtom& b : other.slopes)
             sum += between(a, b);
     }

@@ -18,6 +18,7 @@ inline Vec3 mapped(const Map3& map, const Vec3& v) {
 struct ValueAtom {
     Vec3 at;
     double weight;
+    bool measured = false;  ///< of the value as it was measured here, with its error
 };
 
 /// The derivative along a vector, which says its weight by its length.
@@ -31,20 +32,23 @@ struct Functional {
     std::vector<ValueAtom> values;
     std::vector<SlopeAtom> slopes;
     double right = 0;
+    bool measured_slope = false;  ///< it has an error of its own
 
-    /// f(at) - f(from)
+    /// f(at) - f(from), both measured
     static Functional difference(const Vec3& at, const Vec3& from) {
-        return {{{at, 1.0}, {from, -1.0}}, {}, 0};
+        return {{{at, 1.0, true}, {from, -1.0, true}}, {}, 0, false};
     }
-    static Functional slope(const Vec3& at, const Vec3& along) { return {{}, {{at, along}}, 0}; }
+    static Functional slope(const Vec3& at, const Vec3& along, bool measured = false) {
+        return {{}, {{at, along}}, 0, measured};
+    }
 
     Functional mapped_by(const Map3& map) const;
 
     /// Of the three coordinates.
     Vec3 of_coordinates() const;
 
-    /// Of the kernel r^3, in both of its arguments.
-    double with(const Functional& other) const;
+    /// Of the kernel r^3, in both of its arguments. @param error  variance of measured values
+    double with(const Functional& other, double error) const;
 };
 
 }  // namespace realmodel::fields

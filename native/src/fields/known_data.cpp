@@ -37,7 +37,6 @@ KnownData::KnownData(const Lattice& lattice, const FieldData& data)
     find_references();
     check_contradictions();
     add_dips();
-    add_rise();
     hold_tilts();
 }
 
@@ -136,27 +135,25 @@ void KnownData::add_dips() {
         Vec3 other{};
         other[least] = 1;
         const Vec3 at = frame_.to_local(data_.dips[n]), first = unit(cross(normal, other));
-        fixed_.push_back(Functional::slope(at, first));
-        fixed_.push_back(Functional::slope(at, cross(normal, first)));
+        planes_.push_back(Functional::slope(at, first, true));
+        planes_.push_back(Functional::slope(at, cross(normal, first), true));
     }
 }
 
-/// The mean over the dips is 1; without dips the highest level is as far above the lowest as the
-/// surfaces lie apart.
-void KnownData::add_rise() {
-    Functional rise;
-    if (data_.surfaces < 2 && !data_.dips.empty()) {
-        const double share = 1 / static_cast<double>(data_.dips.size());
-        for (std::size_t n = 0; n < data_.dips.size(); ++n)
-            rise.slopes.push_back({frame_.to_local(data_.dips[n]), times(share, data_.normals[n])});
-        rise.right = 1;
-        fixed_.push_back(rise);
-        return;
-    }
-    if (data_.surfaces < 2) {
+Functional KnownData::mean_rise() const {
+    if (data_.dips.empty()) {
         throw InputError("no_direction",
                          "neither dips nor a second surface say in which direction a field rises");
     }
+    Functional rise;
+    const double share = 1 / static_cast<double>(data_.dips.size());
+    for (std::size_t n = 0; n < data_.dips.size(); ++n)
+        rise.slopes.push_back({frame_.to_local(data_.dips[n]), times(share, data_.normals[n])});
+    rise.right = 1;
+    return rise;
+}
+
+double KnownData::total_gap() const {
     const std::int32_t last = data_.surfaces - 1;
     std::array<Vec3, 2> middles{};
     std::array<double, 2> counts{};
@@ -167,10 +164,29 @@ void KnownData::add_rise() {
         middles[end] = plus(middles[end], contacts_[n]);
         counts[end] += 1;
     }
-    rise = Functional::difference(contacts_[reference(last)], contacts_[reference(0)]);
-    rise.right = length(minus(times(1 / counts[1], middles[1]), times(1 / counts[0], middles[0])));
-    if (!(rise.right > 0)) rise.right = 1;
-    fixed_.push_back(rise);
+    const double gap =
+        length(minus(times(1 / counts[1], middles[1]), times(1 / counts[0], middles[0])));
+    return gap > 0 ? gap : 1;
+}
+
+/// f would else be 0: one surface has a mean rise of 1 across dips, more have different levels.
+std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
+    std::vector<Functional> out = planes_;
+    const auto add = [&](std::int32_t older, std::int32_t younger, double gap) {
+        out.push_back(
+            Functional::difference(contacts_[reference(younger)], contacts_[reference(older)]));
+        out.back().right = gap;
+    };
+    if (data_.surfaces < 2) {
+        out.push_back(mean_rise());
+    } else if (gaps.empty()) {
+        add(0, data_.surfaces - 1, total_gap());
+    } else {
+        for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k)
+            add(k, k + 1, gaps[k]);
+    }
+    out.insert(out.end(), tilts_.begin(), tilts_.end());
+    return out;
 }
 
 /// Where all data lie in one plane and no dip says how f changes across it, it does not.
@@ -181,7 +197,7 @@ void KnownData::hold_tilts() {
         const Eigen::Vector3d v(terms[0], terms[1], terms[2]);
         moments += v * v.transpose();
     };
-    for (const Functional& f : fixed_)
+    for (const Functional& f : fixed({}))
         add(f);
     for (std::size_t n = 0; n < contacts_.size(); ++n)
         add(on_surface(n));
@@ -189,7 +205,7 @@ void KnownData::hold_tilts() {
     for (Eigen::Index k = 0; k < 3; ++k) {
         if (solver.eigenvalues()(k) > kKnownTilt * solver.eigenvalues()(2)) continue;
         const Eigen::Vector3d v = solver.eigenvectors().col(k);
-        fixed_.push_back(Functional::slope({0, 0, 0}, {v(0), v(1), v(2)}));
+        tilts_.push_back(Functional::slope({0, 0, 0}, {v(0), v(1), v(2)}));
     }
 }
 
@@ -199,16 +215,12 @@ Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) co
     for (const auto& [position, weight] : corners_at(lattice_, data_.bounds[n])) {
         if (weight > 0) out.values.push_back({frame_.to_local(position), sign * weight});
     }
-    out.values.push_back({contacts_[reference(surface)], -sign});
+    out.values.push_back({contacts_[reference(surface)], -sign, true});
     return out;
 }
 
-std::vector<Inequality> KnownData::inequalities(double least_gap) const {
+std::vector<Inequality> KnownData::inequalities() const {
     std::vector<Inequality> out;
-    for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
-        out.push_back({Functional::difference(contacts_[reference(k + 1)], contacts_[reference(k)]),
-                       least_gap, Inequality::Kind::kGap, k});
-    }
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         out.push_back({Functional::slope(frame_.to_local(data_.dips[n]), data_.normals[n]),
                        kLeastRise, Inequality::Kind::kPolarity, static_cast<std::int64_t>(n)});

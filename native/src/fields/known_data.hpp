@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fields/functional.hpp"
@@ -21,12 +22,12 @@ struct Frame {
 
 /// f of a functional is at least so much.
 struct Inequality {
-    enum class Kind { kGap, kPolarity, kBound };
+    enum class Kind { kPolarity, kBound };
 
     Functional functional;
     double least;
     Kind kind;
-    std::int64_t item;  ///< the older surface, the dip or the bound
+    std::int64_t item;  ///< the dip or the bound
 };
 
 /// The data as functionals, in a frame.
@@ -42,15 +43,18 @@ public:
     /// The contact at which a surface has its level.
     std::size_t reference(std::int32_t surface) const { return references_[surface]; }
 
-    /// What holds in any case: planes of dips, how fast f rises, and that it is no steeper in
-    /// directions of which no datum says anything.
-    const std::vector<Functional>& fixed() const { return fixed_; }
+    /// What holds in any case: planes of dips, two for each; how fast f rises; and that it is no
+    /// steeper in directions of which no datum says anything.
+    /// @param gaps  differences of the levels; none: only that of the first and the last is given
+    std::vector<Functional> fixed(std::span<const double> gaps) const;
     Functional on_surface(std::size_t contact) const {
         return Functional::difference(contacts_[contact],
                                       contacts_[references_[surface_of(contact)]]);
     }
-    /// Rising levels, polarities, bounds.
-    std::vector<Inequality> inequalities(double least_gap) const;
+    /// Polarities and bounds.
+    std::vector<Inequality> inequalities() const;
+    /// About the distance of the first surface from the last.
+    double total_gap() const;
 
 private:
     void check(const Lattice& lattice) const;
@@ -59,7 +63,7 @@ private:
     void check_contradictions() const;
     void find_references();
     void add_dips();
-    void add_rise();
+    Functional mean_rise() const;
     void hold_tilts();
     Functional bound(std::size_t n, std::int32_t surface, double sign) const;
 
@@ -68,7 +72,7 @@ private:
     Frame frame_;
     std::vector<Vec3> contacts_;
     std::vector<std::size_t> references_;
-    std::vector<Functional> fixed_;
+    std::vector<Functional> planes_, tilts_;
 };
 
 }  // namespace realmodel::fields

@@ -18,46 +18,67 @@ constexpr Eigen::Index kBlock = 64;
 
 }  // namespace
 
-Spline::Spline(std::span<const Functional> known, const Map3& map, const Execution& execution)
-    : map_(map) {
+Spline::Spline(std::span<const Functional> known, const Map3& map, const Errors& errors,
+               const Execution& execution)
+    : map_(map), errors_(errors) {
     known_.reserve(known.size());
     for (const Functional& f : known)
         known_.push_back(f.mapped_by(map));
     factor(execution);
+    solve(execution);
+    collect_centers();
+}
+
+void Spline::set_right(std::span<const Functional> known) {
+    for (std::size_t i = 0; i < known.size(); ++i)
+        known_[i].right = known[i].right;
+    solve({});
     collect_centers();
 }
 
 void Spline::factor(const Execution& execution) {
     const auto n = static_cast<Eigen::Index>(known_.size());
-    Eigen::MatrixXd sides(n, 4);
+    Eigen::MatrixXd terms(n, 3);
     for (Eigen::Index i = 0; i < n; ++i) {
-        const Vec3 terms = known_[i].of_coordinates();
-        sides.row(i) << known_[i].right, terms[0], terms[1], terms[2];
+        const Vec3 of = known_[i].of_coordinates();
+        terms.row(i) << of[0], of[1], of[2];
     }
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
-        return known_[i].with(known_[j]) +
-               kProducts * (sides(i, 1) * sides(j, 1) + sides(i, 2) * sides(j, 2) +
-                            sides(i, 3) * sides(j, 3));
+        const double error = i == j && known_[i].measured_slope ? errors_.slope : 0;
+        return known_[i].with(known_[j], errors_.value) + error +
+               kProducts * (terms(i, 0) * terms(j, 0) + terms(i, 1) * terms(j, 1) +
+                            terms(i, 2) * terms(j, 2));
     };
     scales_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const double own = entry(i, i);
         scales_(i) = own > 0 ? 1 / std::sqrt(own) : 0;
     }
-    const Eigen::Matrix3d moments = sides.rightCols<3>().transpose() * sides.rightCols<3>();
+    const Eigen::Matrix3d moments = terms.transpose() * terms;
     const auto scaled = [&](Eigen::Index i, Eigen::Index j) {
         return scales_(i) * scales_(j) * entry(i, j);
     };
     factor_.emplace(n, scaled, kRedundant, execution, 0.0);
-    sides = scales_.asDiagonal() * sides;
-    factor_->solve(sides, execution.progress);
-    products_ = sides.transpose() * sides;
-    const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
+    coordinates_ = scales_.asDiagonal() * terms;
+    factor_->solve(coordinates_, execution.progress);
+    const Eigen::Matrix3d inner = coordinates_.transpose() * coordinates_;
     coordinates_log_determinant_ =
         elementary::log(std::max(inner.determinant() / moments.determinant(), 1e-300));
+}
+
+void Spline::solve(const Execution& execution) {
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    Eigen::MatrixXd right(n, 1);
+    for (Eigen::Index i = 0; i < n; ++i)
+        right(i, 0) = scales_(i) * known_[i].right;
+    factor_->solve(right, execution.progress);
+    Eigen::MatrixXd sides(n, 4);
+    sides << right, coordinates_;
+    products_ = sides.transpose() * sides;
+    const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
     const Eigen::Vector3d tilt = inner.ldlt().solve(products_.block<3, 1>(1, 0));
     tilt_ = {tilt(0), tilt(1), tilt(2)};
-    Eigen::MatrixXd forces = sides.col(0) - sides.rightCols<3>() * tilt;
+    Eigen::MatrixXd forces = right - coordinates_ * tilt;
     factor_->solve_transposed(forces, execution.progress);
     forces_.resize(known_.size());
     for (Eigen::Index i = 0; i < n; ++i)
@@ -72,12 +93,16 @@ std::optional<double> Spline::log_likelihood() const {
         if (factor_->left_out(i)) return std::nullopt;
         scales += elementary::log(scales_(i));
     }
+    const auto free = static_cast<double>(n - 3);
+    if (!(scale() > 0)) return std::nullopt;
+    return -0.5 * (free * elementary::log(scale()) + factor_->log_determinant() - 2 * scales +
+                   coordinates_log_determinant_);
+}
+
+double Spline::scale() const {
     const Eigen::Vector3d tilt(tilt_[0], tilt_[1], tilt_[2]);
     const double misfit = products_(0, 0) - products_.block<1, 3>(0, 1).dot(tilt);
-    const auto free = static_cast<double>(n - 3);
-    if (!(misfit > 0) || !(free > 0)) return std::nullopt;
-    return -0.5 * (free * elementary::log(misfit / free) + factor_->log_determinant() - 2 * scales +
-                   coordinates_log_determinant_);
+    return known_.size() > 3 ? misfit / static_cast<double>(known_.size() - 3) : 0;
 }
 
 bool Spline::left_out(std::size_t functional) const {
@@ -86,18 +111,23 @@ bool Spline::left_out(std::size_t functional) const {
 
 /// Atoms at one place become one.
 void Spline::collect_centers() {
+    value_centers_.clear();
+    slope_centers_.clear();
+    measured_.clear();
     std::map<Vec3, double> values;
     std::map<Vec3, Vec3> slopes;
     for (std::size_t i = 0; i < known_.size(); ++i) {
-        for (const ValueAtom& atom : known_[i].values)
+        for (const ValueAtom& atom : known_[i].values) {
             values[atom.at] += forces_[i] * atom.weight;
+            if (atom.measured) measured_[atom.at] += forces_[i] * atom.weight;
+        }
         for (const SlopeAtom& atom : known_[i].slopes) {
             Vec3& sum = slopes[atom.at];
             sum = moved(sum, forces_[i], atom.along);
         }
     }
     for (const auto& [at, weight] : values)
-        value_centers_.push_back({at, weight});
+        value_centers_.push_back({at, weight, false});
     for (const auto& [at, along] : slopes)
         slope_centers_.push_back({at, along});
 }
@@ -162,10 +192,18 @@ Vec3 Spline::gradient(const Vec3& at) const {
     return out;
 }
 
+/// By how much what was measured differs from the function.
+double Spline::error_at(const Vec3& at) const {
+    const auto found = measured_.find(mapped(map_, at));
+    return found == measured_.end() ? 0 : errors_.value * found->second;
+}
+
 double Spline::of(const Functional& functional) const {
     double sum = 0;
-    for (const ValueAtom& atom : functional.values)
+    for (const ValueAtom& atom : functional.values) {
         sum += atom.weight * value(atom.at);
+        if (atom.measured) sum += atom.weight * error_at(atom.at);
+    }
     for (const SlopeAtom& atom : functional.slopes)
         sum += dot(gradient(atom.at), atom.along);
     return sum;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,15 +13,25 @@
 
 namespace realmodel::fields {
 
+/// Variances of errors of measurement, in units of the kernel; 0: data are met.
+struct Errors {
+    double value = 0, slope = 0;
+};
+
 /// The function in space that meets functionals and whose third derivatives are least, integrated
 /// over all of space: sum w_i L_i r^3 + b . x (Duchon 1977; with derivatives as data: Wahba 1990,
 /// "Spline models for observational data", sections 1.3 and 2.4). Space is mapped first, which
-/// makes it smoother along some directions.
+/// makes it smoother along some directions. Where
+/// data have errors it passes near them, as likely as the errors are.
 class Spline {
 public:
     /// What is known, in the coordinates before the map; the least coordinates that
     /// determine a tilt are among it.
-    Spline(std::span<const Functional> known, const Map3& map, const Execution& execution);
+    Spline(std::span<const Functional> known, const Map3& map, const Errors& errors,
+           const Execution& execution);
+
+    /// The same data with other right sides.
+    void set_right(std::span<const Functional> known);
 
     /// The logarithm of the restricted likelihood of what is known, if the function is a random one
     /// with the kernel as generalized covariance, less a constant (Patterson and Thompson 1971;
@@ -34,23 +45,31 @@ public:
 
     double value(const Vec3& at) const;
     Vec3 gradient(const Vec3& at) const;
+    /// With the errors of measured values.
     double of(const Functional& functional) const;
+    /// The variance of the random function per unit of the kernel, as the data have it.
+    double scale() const;
 
     /// The same as value() of each, faster.
     void values_at(std::span<const Vec3> positions, std::span<double> values) const;
 
 private:
     void factor(const Execution& execution);
+    void solve(const Execution& execution);
     void collect_centers();
+    double error_at(const Vec3& at) const;
 
     Map3 map_;
+    Errors errors_;
     std::vector<Functional> known_;  // mapped
     Eigen::VectorXd scales_;         // of the rows, so that the diagonal is 1
     std::optional<interpolation::TiledCholesky> factor_;
-    Eigen::Matrix4d products_;  // of the right side and the coordinates, by the inverse
+    Eigen::MatrixXd coordinates_;  // of the rows, times L^-1
+    Eigen::Matrix4d products_;     // of the right side and the coordinates, by the inverse
     double coordinates_log_determinant_ = 0;
     std::vector<double> forces_;
     Vec3 tilt_{};
+    std::map<Vec3, double> measured_;  // weights of measured values
     std::vector<ValueAtom> value_centers_;
     std::vector<SlopeAtom> slope_centers_;
 };

@@ -23,6 +23,11 @@ constexpr double kBuilt = 0.4;  // of the time: until the stacks are built; then
                      {static_cast<std::int64_t>(part)});
 }
 
+/// The rock masses of a part, between its first solids where it has some.
+const std::vector<PartStack>& rocks_of(const PartOfSpace& part) {
+    return part.between.empty() ? part.rocks : part.between[0].rocks;
+}
+
 void check_stack(const StructuredInput& input, std::size_t part, const PartStack& rock) {
     const strata::StackInput& stack = rock.stack;
     if (rock.surfaces.size() != stack.surfaces.size())
@@ -37,13 +42,31 @@ void check_stack(const StructuredInput& input, std::size_t part, const PartStack
         refuse_part(part, "fills: of each surface before the last emptying");
     for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
         const PartSurface& surface = rock.surfaces[k];
-        if (surface.number < kBase || surface.number >= input.surfaces)
+        if (surface.number < kCutFace || surface.number >= input.surfaces)
             refuse_part(part, "a surface has a number that the model has not");
         if (surface.block < -1 || (surface.block >= 0 && index(surface.block) >= input.blocks))
             refuse_part(part, "a block has a number that the model has not");
         if (!surface.triangles.empty() &&
             surface.triangles.size() != stack.surfaces[k].triangle_count())
             refuse_part(part, "numbers for each triangle of a surface are needed");
+    }
+}
+
+void check_solids(const StructuredInput& input, std::size_t p) {
+    const PartOfSpace& part = input.parts[p];
+    if (part.solids.empty() != part.between.empty() ||
+        (!part.solids.empty() && !part.rocks.empty()))
+        refuse_part(p, "solids have the rock masses between them, and only these");
+    for (const LevelSolid& solid : part.solids) {
+        if (solid.surface < 0 || solid.surface >= input.surfaces)
+            refuse_part(p, "a solid has the number of a surface that the model has not");
+    }
+    for (const LevelPart& between : part.between) {
+        if (between.sides.size() != part.solids.size()) refuse_part(p, "sides: one for each solid");
+        if (between.rocks.size() != part.between[0].rocks.size())
+            refuse_part(p, "between solids there are not as many rock masses as elsewhere");
+        for (const PartStack& rock : between.rocks)
+            check_stack(input, p, rock);
     }
 }
 
@@ -57,10 +80,11 @@ void check_input(const StructuredInput& input) {
     for (std::size_t p = 0; p < input.parts.size(); ++p) {
         const PartOfSpace& part = input.parts[p];
         if (part.sides.size() != structures) refuse_part(p, "sides: one for each structure");
-        if (part.rocks.size() != input.parts[0].rocks.size())
+        if (part.solids.empty() && part.rocks.size() != rocks_of(input.parts[0]).size())
             refuse_part(p, "it has not as many rock masses as the others");
         for (const PartStack& rock : part.rocks)
             check_stack(input, p, rock);
+        check_solids(input, p);
     }
 }
 
@@ -71,9 +95,9 @@ struct StacksHere {
     std::vector<std::int64_t> rocks;
     std::vector<PartSurface> surfaces;
 
-    explicit StacksHere(const PartOfSpace& part) {
-        for (std::size_t r = 0; r < part.rocks.size(); ++r) {
-            const PartStack& rock = part.rocks[r];
+    explicit StacksHere(const std::vector<PartStack>& all) {
+        for (std::size_t r = 0; r < all.size(); ++r) {
+            const PartStack& rock = all[r];
             if (rock.surfaces.empty()) continue;
             stacks.push_back(rock.stack);
             rocks.push_back(static_cast<std::int64_t>(r));
@@ -155,9 +179,9 @@ CellComplex as_in_whole(CellComplex built, const StacksHere& here, CellKind cell
     return built;
 }
 
-CellComplex model_of_part(const StructuredInput& input, const PartOfSpace& part,
-                          const Execution& execution) {
-    const StacksHere here(part);
+CellComplex model_of_stacks(const StructuredInput& input, const PartOfSpace& part,
+                            const std::vector<PartStack>& rocks, const Execution& execution) {
+    const StacksHere here(rocks);
     if (here.stacks.empty()) return {};
     const CellKind built_as = here.is_any_emptied() ? CellKind::kColumns : input.cells;
     const bool may_leave_out = built_as == CellKind::kColumns && part.wanted;
@@ -183,14 +207,17 @@ struct PartModels {
     std::vector<std::int32_t> parts;
     std::vector<Warning> warnings;
 
-    PartModels(const StructuredInput& input, const std::vector<CellComplex>& built) {
+    /// @param sides_of  of the number of each complex the sides of its part
+    template <class SidesOf>
+    PartModels(const StructuredInput& input, const std::vector<CellComplex>& built,
+               const SidesOf& sides_of) {
         for (std::size_t p = 0; p < built.size(); ++p) {
             if (built[p].cell_block.empty()) continue;
             ComplexView model = built[p];
             model.blocks = input.blocks;
             model.surfaces = input.surfaces;
             model.block_volume = {};
-            models.push_back({model, input.parts[p].sides});
+            models.push_back({model, sides_of(p)});
             parts.push_back(static_cast<std::int32_t>(p));
             for (const Warning& warning : built[p].warnings) {
                 const auto is_same = [&](const Warning& w) { return are_same(w, warning); };
@@ -199,6 +226,48 @@ struct PartModels {
         }
     }
 };
+
+/// Joins what is between the solids of a part. These are bodies that act by no rule of their own: a
+/// face is left where the blocks on both sides differ.
+CellComplex join_between(const StructuredInput& input, const PartOfSpace& part,
+                         const std::vector<CellComplex>& built, const Execution& execution) {
+    PartModels models(input, built, [&](std::size_t p) { return part.between[p].sides; });
+    if (models.models.empty()) return {};
+    std::vector<Structure> solids;
+    for (const LevelSolid& solid : part.solids)
+        solids.push_back({solid.boundary, true});
+    const std::vector<std::uint8_t> acts(solids.size() * input.blocks, 0);
+    const double largest = input.piece ? input.piece->largest : 0;
+    CellComplex joined;
+    try {
+        joined = join_models(models.models, solids, acts, execution, {}, largest).complex;
+    } catch (InputError& error) {
+        if (error.surface >= 0) error.surface = part.solids[index(error.surface)].surface;
+        throw;
+    }
+    for (std::int32_t& surface : joined.face_surface) {
+        if (surface >= input.surfaces)
+            surface = part.solids[index(surface - input.surfaces)].surface;
+    }
+    joined.warnings = std::move(models.warnings);
+    return joined;
+}
+
+CellComplex model_of_part(const StructuredInput& input, const PartOfSpace& part,
+                          const Execution& execution) {
+    if (part.solids.empty()) return model_of_stacks(input, part, part.rocks, execution);
+    constexpr double kStacks = 0.2;  // of the time
+    std::vector<CellComplex> built;
+    for (const LevelPart& between : part.between) {
+        Progress own(execution.progress, kStacks / static_cast<double>(part.between.size()));
+        built.push_back(model_of_stacks(input, part, between.rocks, {execution.threads, &own}));
+        own.report(1.0, nullptr);
+    }
+    Progress joining(execution.progress, 1 - kStacks);
+    CellComplex joined = join_between(input, part, built, {execution.threads, &joining});
+    joining.report(1.0, nullptr);
+    return joined;
+}
 
 Joined join_parts(const StructuredInput& input, const PartModels& parts,
                   const Execution& execution) {
@@ -239,7 +308,8 @@ Joined build_parts(const StructuredInput& input, const Execution& execution) {
     give_back_memory();
     begin_phase(execution.progress, kBuilt, 1, "joining the compartments");
     Progress joining(execution.progress, 1 - kBuilt);
-    Joined joined = join_parts(input, PartModels(input, built), {execution.threads, &joining});
+    const PartModels models(input, built, [&](std::size_t p) { return input.parts[p].sides; });
+    Joined joined = join_parts(input, models, {execution.threads, &joining});
     joining.report(1.0, nullptr);
     return joined;
 }

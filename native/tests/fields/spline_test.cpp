@@ -51,7 +51,7 @@ Vec3 plane_slope(const Vec3&) {
 TEST(Spline, MeetsValuesAndSlopes) {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     for (const Map3& map : {kIdentity, kStretched}) {
-        const Spline spline(known, map, {});
+        const Spline spline(known, map, {}, {});
         for (const Functional& f : known)
             EXPECT_NEAR(spline.of(f), f.right, 1e-9);
         EXPECT_TRUE(spline.log_likelihood().has_value());
@@ -60,7 +60,7 @@ TEST(Spline, MeetsValuesAndSlopes) {
 
 TEST(Spline, APlaneComesOutAsItIs) {
     const std::vector<Functional> known = known_of(plane, plane_slope);
-    const Spline spline(known, kStretched, {});
+    const Spline spline(known, kStretched, {}, {});
     for (std::size_t n = 0; n < known.size(); ++n)
         EXPECT_NEAR(spline.force(n), 0, 1e-9);
     const Vec3 gradient = spline.gradient({5, -3, 2});
@@ -70,7 +70,7 @@ TEST(Spline, APlaneComesOutAsItIs) {
 }
 
 TEST(Spline, GradientsAreThoseOfTheValues) {
-    const Spline spline(known_of(wave, wave_slope), kStretched, {});
+    const Spline spline(known_of(wave, wave_slope), kStretched, {}, {});
     const Vec3 at{0.31, -0.22, 0.47};
     const Vec3 gradient = spline.gradient(at);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -82,7 +82,7 @@ TEST(Spline, GradientsAreThoseOfTheValues) {
 }
 
 TEST(Spline, ManyValuesAtOnceAreThoseOfEach) {
-    const Spline spline(known_of(wave, wave_slope), kStretched, {});
+    const Spline spline(known_of(wave, wave_slope), kStretched, {}, {});
     std::vector<Vec3> at;
     for (int n = 0; n < 150; ++n)
         at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
@@ -96,7 +96,7 @@ TEST(Spline, WhatFollowsFromOthersIsLeftOut) {
     std::vector<Functional> known = known_of(wave, wave_slope);
     const std::size_t count = known.size();
     known.push_back(known[1]);
-    const Spline spline(known, kIdentity, {});
+    const Spline spline(known, kIdentity, {}, {});
     EXPECT_TRUE(spline.left_out(count));
     EXPECT_FALSE(spline.left_out(1));
     EXPECT_NEAR(spline.of(known[1]), known[1].right, 1e-9);
@@ -111,7 +111,7 @@ double likelihood_by_contrasts(const std::vector<Functional>& known, const Map3&
     for (Eigen::Index i = 0; i < n; ++i) {
         const Functional a = known[i].mapped_by(map);
         for (Eigen::Index j = 0; j < n; ++j)
-            kernel(i, j) = a.with(known[j].mapped_by(map));
+            kernel(i, j) = a.with(known[j].mapped_by(map), 0);
         const Vec3 of = a.of_coordinates();
         terms.row(i) << of[0], of[1], of[2];
         right(i) = a.right;
@@ -134,7 +134,8 @@ TEST(Spline, TheLikelihoodIsThatOfContrasts) {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     for (const Map3& map : {kIdentity, kStretched}) {
         const double expected = likelihood_by_contrasts(known, map);
-        EXPECT_NEAR(*Spline(known, map, {}).log_likelihood(), expected, 1e-6 * std::abs(expected));
+        EXPECT_NEAR(*Spline(known, map, {}, {}).log_likelihood(), expected,
+                    1e-6 * std::abs(expected));
     }
 }
 
@@ -153,7 +154,9 @@ TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
     for (int n = 0; n < 20; ++n)
         normals.push_back(unit(wave_slope({0.1 * n, 0, 0})));
     for (const int threads : {1, 4}) {
-        const Anisotropy found = likely_anisotropy(known, normals, {threads, nullptr});
+        const Likely likely = most_likely(known, normals, {threads, nullptr});
+        EXPECT_EQ(likely.errors.value, 0);
+        const Anisotropy& found = likely.anisotropy;
         EXPECT_NEAR(std::abs(found.axes[0][1]), 1, 1e-9);
         EXPECT_LE(found.ratios[0], 0.1);
         // and upwards, along which the wave is only moved

@@ -120,6 +120,89 @@ TEST(BuildParts, AreTheStacksJoined) {
     }
 }
 
+/// The boundary of a box.
+OwnedSurface box(const std::array<double, 3>& low, const std::array<double, 3>& high) {
+    OwnedSurface s;
+    for (std::size_t v = 0; v < 8; ++v)
+        s.vertex((v & 1) != 0 ? high[0] : low[0], (v & 2) != 0 ? high[1] : low[1],
+                 (v & 4) != 0 ? high[2] : low[2]);
+    for (const auto& [a, b, c, d] : std::vector<std::array<std::int32_t, 4>>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        s.triangle(a, b, c);
+        s.triangle(a, c, d);
+    }
+    return s;
+}
+
+/// One part of space with two solids, one in the other: a plunging edge of two level sets. In the
+/// inner one is block 1, in the outer one block 2, and outside of both block 3; above z = 2 there
+/// is block 4 everywhere.
+struct Folded {
+    explicit Folded(CellKind cells) {
+        input.surfaces = 5;
+        input.blocks = 5;
+        input.cells = cells;
+        for (const double z : {0.0, 2.0, 3.0})
+            sheets.push_back(level(z));
+        PartOfSpace part;
+        for (std::size_t s = 0; s < 2; ++s)
+            part.solids.push_back({solids[s].view(), static_cast<std::int32_t>(s + 1)});
+        for (std::int32_t m = 0; m < 3; ++m) {
+            PartStack stack;
+            for (const OwnedSurface& sheet : sheets)
+                stack.stack.surfaces.push_back(sheet.view());
+            stack.surfaces = {{kBase, -1}, {3, m + 1}, {4, 4}};
+            const Sides sides{static_cast<std::int8_t>(m == 0 ? -1 : 1),
+                              static_cast<std::int8_t>(m < 2 ? -1 : 1)};
+            part.between.push_back({sides, {stack}});
+        }
+        input.parts.push_back(std::move(part));
+    }
+    std::vector<OwnedSurface> solids{box({1.5, -2, -2}, {2.5, 9, 1}),
+                                     box({0.5, -3, -3}, {3, 10, 4})};
+    std::vector<OwnedSurface> sheets;
+    StructuredInput input;
+};
+
+TEST(BuildParts, SolidsEndCellsWhereBlocksDiffer) {
+    for (const CellKind cells : {CellKind::kColumns, CellKind::kBlocks}) {
+        Folded own(cells);
+        const Joined all = built(own.input);
+        const std::vector<double> volumes{0, 4, 10 * 2 - 4, 32 - 20, 16};
+        for (std::size_t block = 1; block < 5; ++block)
+            EXPECT_NEAR(all.complex.volumes[block], volumes[block], 1e-12);
+        std::set<std::int32_t> named;
+        for (std::size_t f = 0; f < all.complex.face_surface.size(); ++f) {
+            const auto& cells_of_face = all.complex.face_cells[f];
+            named.insert(all.complex.face_surface[f]);
+            if (all.complex.face_surface[f] != 1 && all.complex.face_surface[f] != 2) continue;
+            ASSERT_GE(cells_of_face[1], 0);
+            EXPECT_NE(all.complex.cell_block[static_cast<std::size_t>(cells_of_face[0])],
+                      all.complex.cell_block[static_cast<std::size_t>(cells_of_face[1])]);
+        }
+        EXPECT_EQ(named, (std::set<std::int32_t>{kBase, kWall, 1, 2, 3, 4}));
+        if (cells == CellKind::kBlocks) {  // outside of both there is rock on two sides
+            EXPECT_EQ(all.complex.cell_block.size(), 5U);
+        }
+    }
+}
+
+TEST(BuildParts, SolidsThatDoNotFitAreRefused) {
+    Folded without(CellKind::kColumns);
+    without.input.parts[0].between[1].sides.pop_back();
+    EXPECT_EQ(refused(without.input).kind, "bad_part");
+    Folded both(CellKind::kColumns);
+    both.input.parts[0].rocks = both.input.parts[0].between[0].rocks;
+    EXPECT_EQ(refused(both.input).kind, "bad_part");
+    Folded unknown(CellKind::kColumns);
+    unknown.input.parts[0].solids[0].surface = 5;
+    EXPECT_EQ(refused(unknown.input).kind, "bad_part");
+    Folded open(CellKind::kColumns);
+    open.solids[0].triangles.resize(open.solids[0].triangles.size() - 3);
+    open.input.parts[0].solids[0].boundary = open.solids[0].view();
+    EXPECT_EQ(refused(open.input).kind, "not_closed");
+}
+
 TEST(BuildParts, WhereARockMassIsNotThereNothingIs) {
     Faulted own({inclined(1, 0), inclined(3, 0)}, {{0, 1}, {0, 1}, {0, 1}}, {{}, {}, {}});
     const auto parts = parts_of({{{0, 0, 0}, {4, 4, 1}}}, own.input.structures, {1, nullptr});
@@ -266,7 +349,7 @@ TEST(BuildParts, PartsThatDoNotFitTheRestAreRefused) {
         {1, [](Faulted& own) { own.input.parts[1].rocks.emplace_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces.pop_back(); }},
         {0, [](Faulted& own) { own.stack(0).surfaces[1].number = 3; }},
-        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -3; }},
+        {0, [](Faulted& own) { own.stack(0).surfaces[1].number = -4; }},
         {1, [](Faulted& own) { own.stack(1).surfaces[1].block = 3; }},
         {1, [](Faulted& own) { own.stack(1).surfaces[1].block = -2; }},
         {1, [&](Faulted& own) { own.stack(1).surfaces[1].triangles = numbers; }},

@@ -46,6 +46,7 @@ from . import (
 )
 
 _field = None  # see show_field_with
+_STRETCHED = (TAG, settings.DATA, settings.IMAGE)  # on objects that are shown with vertical exaggeration
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
 
@@ -115,7 +116,7 @@ def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
     if _field is not None:
         _field.follow_exaggeration(scene)
-    items = [item for item in scene.objects if TAG in item or settings.DATA in item]
+    items = [item for item in scene.objects if any(key in item for key in _STRETCHED)]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
     residuals.follow_exaggeration(scene)
 

@@ -23,6 +23,7 @@ from .labels import cell_compartments, warnings_where_rock_is
 from .model_data import ModelData, SomeModel
 from .stack_refusals import refused_stack
 
+CUT = -3  # in face_surface: rock that reaches above all that was given
 _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
 
@@ -61,7 +62,7 @@ def build_stage(
 
 def intersect(work: Work, inputs: list[RockInput], cells: str, structures: Structures) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
-    if structures.is_divided:
+    if structures.is_divided or any(entry.fields for entry in inputs):
         return build_joined(work, inputs, structures, cells)
     rocks = [entry.native() for entry in inputs]
     refused = refused_as(lambda error: refused_stack(error, inputs))
@@ -181,6 +182,13 @@ def _warnings(
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         warnings.append(BuildWarning(text, kind, rock, named, items))
     warnings += warnings_where_rock_is(inputs, built, structures)
+    is_cut_off = bool((built.complex.face_surface == CUT).any())
+    for entry in (entry for entry in inputs if is_cut_off and entry.fields):
+        tops = [own for own in entry.fields if own.numbers.stop == len(entry.surfaces)] or entry.fields
+        what = (
+            f"the rock of series '{tops[-1].name}' is cut off at elevation {tops[-1].top:g}: nothing ends it"
+        )
+        warnings.append(BuildWarning(f"{what} above; add a younger surface", "cut_off", entry.rock.name))
     for number, entry in enumerate(inputs):
         if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
             text = "a single surface does not bound a block"

@@ -3,19 +3,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..base.errors import BuildFailed, InputRefused
 from ..base.sheet import Sheet
 from ..base.work import Work, refused_as
+from ..fields import ScalarField, level_solids
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
+    FLOOR,
+    LID,
     NOTHING,
     Stack,
+    between_levels,
     distinct_plans,
     inside_body,
     plain_stack,
@@ -45,7 +50,9 @@ def build_joined(
         few, part = structures.only(there)
         built = build_joined(work, inputs, few, cells)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
-    reach = reach or Reach(work, structures)
+    if reach is None and structures.is_divided:
+        reach = Reach(work, structures)
+    solids = SolidsOfFields(work, inputs)
     divides = blocks_divided(inputs, structures)
     surfaces = _first_surfaces(inputs)[-1]
     piece = None if structures.continued is None else (structures.continued, structures.largest)
@@ -53,7 +60,10 @@ def build_joined(
     with work.phase(0.0, 1.0, "intersecting and cutting", has_steps=True), refused as native:
         joined = work.native(
             native.build_parts,
-            [_part(work, inputs, structures, reach, part, cells) for part in range(len(structures.sides))],
+            [
+                _part(work, inputs, structures, reach, part, cells, solids)
+                for part in range(len(structures.sides))
+            ],
             (surfaces, structures.native()),
             divides,
             cells,
@@ -114,41 +124,126 @@ def _first_surfaces(inputs: list[RockInput]) -> list[int]:
     return np.cumsum([0, *(len(entry.surfaces) for entry in inputs)]).tolist()
 
 
+@dataclass(frozen=True)
+class PartPlace:
+    """A part of space, by its number; between levels, of each rock mass the level sets, by their numbers, and
+    whether it is beneath them."""
+
+    structures: Structures
+    part: int
+    beneath: tuple[Mapping[int, bool], ...]
+
+
 def _part(
-    work: Work, inputs: list[RockInput], structures: Structures, reach: Reach, part: int, cells: str
+    work: Work,
+    inputs: list[RockInput],
+    structures: Structures,
+    reach: Reach | None,
+    part: int,
+    cells: str,
+    solids: SolidsOfFields,
 ) -> tuple:
     """One part of space, with all rock masses as they are there, as native build_parts takes it."""
     work.check()
-    first = _first_surfaces(inputs)
-    stacks = [
-        _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
+    sides = structures.sides[part].tolist()
+    places = [
+        PartPlace(structures, part, tuple(beneath)) for beneath in itertools.product(*map(_levels, inputs))
     ]
+    stacks = [_stacks_at(inputs, place) for place in places]
+    wanted, around = None, None
+    if reach is not None:
+        stacks, wanted, around = _in_reach(reach, stacks, part, cells)
+    first = _first_surfaces(inputs)
+    rocks = [
+        [
+            _rock_stack(entry, stack, entry.region or around, begin, beneath)
+            for entry, stack, begin, beneath in zip(inputs, own, first[:-1], place.beneath, strict=True)
+        ]
+        for own, place in zip(stacks, places, strict=True)
+    ]
+    if len(places) == 1:
+        return sides, rocks[0], wanted, None
+    compartments = [compartment_of(structures, entry, part) for entry in inputs]
+    within = [place_sides(place) for place in places]
+    return sides, [], wanted, (solids.of(compartments), list(zip(within, rocks, strict=True)))
+
+
+def _levels(entry: RockInput) -> list[dict[int, bool]]:
+    """Of the places between the level sets of a rock mass: of each level set, by its number, whether the
+    place is beneath it."""
+    of_fields = [
+        [{number: number >= lowest for number in own.numbers} for lowest in (*own.numbers, own.numbers.stop)]
+        for own in entry.fields
+    ]
+    return [dict(itertools.chain(*(each.items() for each in row))) for row in itertools.product(*of_fields)]
+
+
+def place_sides(place: PartPlace) -> list[int]:
+    """1 outside of each solid, -1 inside, as SolidsOfFields.of has them."""
+    return [-1 if inside else 1 for beneath in place.beneath for inside in beneath.values()]
+
+
+class SolidsOfFields:
+    """The closed boundaries of where the fields of series are at most a level."""
+
+    def __init__(self, work: Work, inputs: list[RockInput]):
+        self._inputs = inputs
+        self._solids: dict[ScalarField, list[Sheet]] = {}
+        for entry in inputs:
+            for own in entry.fields:
+                for field in own.distinct():
+                    self._solids[field] = level_solids(work, field)
+
+    def of(self, compartments: list[int]) -> list[tuple]:
+        """Those in the compartments of each rock mass, as native build_parts takes them."""
+        found = []
+        firsts = _first_surfaces(self._inputs)[:-1]
+        for entry, compartment, first in zip(self._inputs, compartments, firsts, strict=True):
+            for own in entry.fields:
+                solids = self._solids[own.fields[compartment]]
+                found += [(*solids[n - own.first].arrays, first + n) for n in own.numbers]
+        return found
+
+
+def _stacks_at(inputs: list[RockInput], place: PartPlace) -> list[Stack]:
+    """The stacks of all rock masses in one place."""
+    first = _first_surfaces(inputs)
+    return [_stack(inputs, place, number, first[number], first[-1]) for number in range(len(inputs))]
+
+
+def _in_reach(reach: Reach, stacks: list[list[Stack]], part: int, cells: str) -> tuple:
+    """Stacks where a part may be, what space of it is wanted, and the region around that if it has one."""
+    structures = reach.structures
     space = reach.cells_of(part)
     columns = np.logical_or.reduce(space, axis=2)
     if structures.continued is not None and columns.any():
         # around a tile: sheets that ended here would be divided by lines that depend on what is far away
         columns = np.ones_like(columns)
-    kept = {sheet: reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
-    stacks = [stack.without([not kept[sheet].any() for sheet in stack.sheets]) for stack in stacks]
+    kept = {sheet: reach.over(columns, sheet) for own in stacks for stack in own for sheet in stack.sheets}
+    stacks = [
+        [stack.without([not kept[sheet].any() for sheet in stack.sheets]) for stack in own] for own in stacks
+    ]
     around = None
-    is_there, has_void = any(stack.sheets for stack in stacks), any(stack.emptied for stack in stacks)
+    each = list(itertools.chain(*stacks))
+    is_there, has_void = any(stack.sheets for stack in each), any(stack.emptied for stack in each)
     if cells == "blocks" and is_there and not has_void:
         # blocks end at one border: those that each sheet ends at by itself leave many small ones between
         around = reach.around(columns)
-    rocks = [
-        _rock_stack(entry, stack.some(kept), entry.region or around, begin)
-        for entry, stack, begin in zip(inputs, stacks, first[:-1], strict=True)
-    ]
     is_bounded = cells == "columns" and not space.all()
     wanted = (reach.low, reach.step, space.astype(np.uint8)) if is_bounded else None
-    return structures.sides[part].tolist(), rocks, wanted
+    return [[stack.some(kept) for stack in own] for own in stacks], wanted, around
 
 
-def _rock_stack(entry: RockInput, stack: Stack, region: Sheet | None, first: int) -> tuple:
+def _rock_stack(
+    entry: RockInput, stack: Stack, region: Sheet | None, first: int, beneath: Mapping[int, bool]
+) -> tuple:
     """One rock mass in one part of space as native build_parts takes it. first: the number of its first
-    surface."""
-    # what a surface that only fills a body, or lies below everything, bounds is a wall
-    numbers = [first + own if own >= 0 else FILLER if own == DEEP else own for own in stack.surfaces]
+    surface. beneath: as PartPlace has it."""
+    # what a surface that only fills a body, or lies below everything, bounds is a wall; a level set is a
+    # level here, above all rock or at the base
+    named = {DEEP: FILLER} | {own: LID if below else FLOOR for own, below in beneath.items()}
+    own_numbers = [named.get(own, own) for own in stack.surfaces]
+    numbers = [first + own if own >= 0 else own for own in own_numbers]
     surfaces = [
         (number, block, sheet.numbers)
         for number, block, sheet in zip(numbers, stack.blocks, stack.sheets, strict=True)
@@ -161,14 +256,16 @@ def _rock_stack(entry: RockInput, stack: Stack, region: Sheet | None, first: int
     return given, surfaces, list(stack.emptied), fills
 
 
-def _stack(
-    inputs: list[RockInput], structures: Structures, part: int, number: int, first: int, surfaces: int
-) -> Stack:
-    """The stack of one rock mass in one part. surfaces: of all rock masses."""
-    entry = inputs[number]
+def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, surfaces: int) -> Stack:
+    """The stack of one rock mass in one place. surfaces: of all rock masses."""
+    structures, part, entry = place.structures, place.part, inputs[number]
     sheets = entry.divided().of_compartment(compartment_of(structures, entry, part))
     rules = [surface.rule for surface in entry.rock.surfaces]
     stack = plain_stack(sheets, rules, entry.rock.base_elevation, first)
+    if entry.fields:
+        top = max(own.top for own in entry.fields)
+        stack = between_levels(stack, place.beneath[number], top, entry.planar_mesh())
+        sheets = [sheet for sheet, of in zip(stack.sheets, stack.surfaces, strict=True) if of >= 0]
     count = len(structures.faults)
     inside = sorted(
         (times[number], body)

@@ -77,6 +77,21 @@ class ModelData:
                 advice="build it from its project and save it again",
             )
 
+    @property
+    def is_stack(self) -> bool:
+        """Whether it is made of sheets alone: no faults, no bodies, no level sets of fields."""
+        return not self.structures.is_divided and not any(entry.fields for entry in self.rock_inputs)
+
+    @property
+    def surface_is_level_set(self) -> np.ndarray:
+        """(S,) bool: the surfaces that are level sets of the field of a series."""
+        found = [
+            entry.field_of(number) is not None
+            for entry in self.rock_inputs
+            for number in range(len(entry.surfaces))
+        ]
+        return np.array(found + [False] * (len(self.surface_names) - len(found)), bool)
+
     def native(self) -> dict[str, Any]:
         """The cells as functions of the native module take them."""
         return self.complex.native(len(self.blocks))

@@ -16,6 +16,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NamedArrays, StoredClasses, fits, hints_of
+from ..fields import Anisotropy, Lattice, ScalarField, SolvedField
 from ..heights import Interpolation
 from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
@@ -29,6 +30,7 @@ from ..settings.variogram import Structure, Variogram
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import RockStructure
+from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import FaultShape, RockFaults
 from ..surfaces.surface_arrays import SurfaceArrays
 from .blocks import blocks_of_arrays
@@ -37,6 +39,7 @@ from .model_data import ModelData
 RECORDED: tuple[type, ...] = (
     *(RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body, Sheet),
     *(BuildWarning, InputRefused, Project, Library, Property, Interpolation, Variogram, Structure),
+    *(SeriesField, Lattice, ScalarField, SolvedField, Anisotropy),
     *(MapLayer, MeshFile, PointFile, DipFile, Dips, SpaceDips, Series),
     *(Observations, Bounds, LeftOut),
 )

@@ -14,6 +14,7 @@ from ..cells.assembly import assemble, intersect
 from ..heights.draws import Draw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
+from ..project.series import refuse_fields
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces
 from ..surfaces.rock_input import RockInput
@@ -37,6 +38,7 @@ class Realizer:
 
     def __post_init__(self):
         self.model.require_project("an ensemble")
+        refuse_fields([entry.rock for entry in self.model.rock_inputs], "an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
             places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]

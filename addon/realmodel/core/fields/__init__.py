@@ -6,6 +6,18 @@ tetrahedron of the lattice, and the level of each surface.
 """
 
 from .lattice import Lattice, ScalarField
+from .level_sets import are_on, level_solids, with_contacts, within_lattice
 from .solve import Anisotropy, FieldData, SolvedField, solve_field
 
-__all__ = ["Anisotropy", "FieldData", "Lattice", "ScalarField", "SolvedField", "solve_field"]
+__all__ = [
+    "Anisotropy",
+    "FieldData",
+    "Lattice",
+    "ScalarField",
+    "SolvedField",
+    "are_on",
+    "level_solids",
+    "solve_field",
+    "with_contacts",
+    "within_lattice",
+]

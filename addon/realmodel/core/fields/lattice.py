@@ -7,9 +7,11 @@ Each cell is divided into six tetrahedra that share its main diagonal, from its 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+
+from ..base.work import native_module
 
 # The corners of a cell, as their steps along x, y and z, of each of its tetrahedra: those of one walk along
 # the three axes from the lowest corner to the highest. Positive volumes.
@@ -96,14 +98,31 @@ class Lattice:
 class ScalarField:
     """A function f in space, linear on each tetrahedron of a lattice. It rises from older to younger.
 
-    values: (nodes,) float64. levels: (surfaces,) float64, rising: f on each surface, oldest first.
+    values: (nodes,) float64. levels: (surfaces,) float64, rising: f on each surface, oldest first. points:
+    (P, 3) float64, corners of tetrahedra beside the nodes: each divides those that it lies in. point_values:
+    (P,) float64, f there.
     """
 
     lattice: Lattice
     values: np.ndarray
     levels: np.ndarray
+    points: np.ndarray = field(default_factory=lambda: np.empty((0, 3)), kw_only=True)
+    point_values: np.ndarray = field(default_factory=lambda: np.empty(0), kw_only=True)
+
+    def native(self) -> tuple:
+        """The arguments of the native module: lattice, values, and the points with theirs."""
+        lattice = self.lattice
+        return (
+            (lattice.origin, lattice.spacing, lattice.counts),
+            self.values,
+            (self.points, self.point_values),
+        )
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """(P,) f at points (P, 3); NaN outside the lattice."""
+        if len(self.points):
+            lattice, values, own = self.native()
+            positions = np.ascontiguousarray(points, np.float64)
+            return native_module().field_at(lattice, values, own, positions)
         nodes, weights = self.lattice.located(points)
         return (self.values[nodes] * weights).sum(axis=1)

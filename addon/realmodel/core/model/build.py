@@ -97,7 +97,7 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
 def _phase_ends(project: Project) -> dict[str, float]:
     """The progress at the end of each phase: fixed shares of the phases that this project has."""
     has_files = bool(project.input_files())
-    interpolates = bool(project.faults) or any(rock.interpolates for rock in project.rocks)
+    interpolates = bool(project.faults) or any(rock.interpolates or rock.series for rock in project.rocks)
     shares = _SHARES | {
         "read": _SHARES["read"] * has_files,
         "mesh": _SHARES["mesh"] * interpolates,

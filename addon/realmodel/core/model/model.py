@@ -14,6 +14,7 @@ from ..cells.model_data import ModelData
 from ..exporters import save_model
 from ..exporters.report import Report, model_report
 from ..exporters.surfaces import save_surfaces
+from ..fields import ScalarField
 from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
@@ -21,6 +22,7 @@ from ..results.contours import contours
 from ..results.erosion import Erosion, eroded
 from ..results.geological_map import geological_map
 from ..results.model_boreholes import borehole
+from ..results.model_fields import field_of
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
@@ -76,6 +78,14 @@ class Model(ModelData):
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
         save_surfaces(self, path)
+
+    def field(self, series: str, compartment: str | None = None) -> ScalarField:
+        """The field of a series: its lattice, the values of the nodes, and the level of each surface.
+
+        compartment: a name of compartment_names, where faults divide the series; None: there is one field.
+        Raises UsageError for a series that has none, and where it has several fields and none is named.
+        """
+        return field_of(self, series, compartment)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no

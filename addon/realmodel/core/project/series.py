@@ -97,6 +97,14 @@ def _check_field(rock, series: Series, refuse: Refuse) -> None:
         if value is None:
             what = f"its field has no end: {rock.item} has no {key}"
             raise refuse(what, "name", f"give the rock mass a {key}")
+    of_blocks = {
+        "observations": rock.observations is not None,
+        "map": rock.map is not None,
+        "intervals": rock.boreholes is not None and rock.boreholes.intervals is not None,
+    }
+    for key in (key for key, is_given in of_blocks.items() if is_given):
+        what = f"'{key}' of {rock.item} do not bind the surfaces of a field yet"
+        raise refuse(what, "name", "leave them out, or give contacts as points or picks")
 
 
 def check_level_set(rock, surface, refuse: Refuse) -> None:
@@ -121,3 +129,13 @@ def check_names_series(rock, surface, refuse: Refuse) -> None:
     if surface.series is not None and surface.series not in names:
         advice = f"it has {', '.join(names)}" if names else "add [[rock.series]]"
         raise refuse(f"{rock.item} has no series '{surface.series}'", "series", advice)
+
+
+def refuse_fields(rocks, what: str) -> None:
+    """Refuses rock masses (Rock) with fields where `what` cannot be made of them yet. Raises InputRefused."""
+    for rock in rocks:
+        for series in rock.series:
+            if series.kind == FIELD:
+                item = f"{rock.item}, {series.item}"
+                advice = "use sheets instead of the series, or leave it out"
+                raise series.refused(f"{what} cannot have series of fields yet", "name", advice, item)

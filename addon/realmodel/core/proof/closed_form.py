@@ -15,6 +15,7 @@ import numpy as np
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..settings.rules import RULES
+from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import RockFaults, sides_of
 from ..surfaces.wrong_sides import heights_at
 
@@ -42,7 +43,8 @@ class BodyOfRock:
 class ClosedForm:
     """One rock mass. rules: of its surfaces, oldest first. compartments: (C, F) int8 rows of sides; sheets:
     of each compartment one triangulation for each surface. blocks: the number of the block beneath each
-    surface (AIR: none). region: triangles in plan that bound it, or None."""
+    surface (AIR: none). region: triangles in plan that bound it, or None. fields: of surfaces that are level
+    sets."""
 
     rules: Sequence[str]
     faults: RockFaults
@@ -52,6 +54,7 @@ class ClosedForm:
     base_elevation: float | None = None
     bodies: Sequence[BodyOfRock] = ()
     region: Sheet | None = None
+    fields: Sequence[SeriesField] = ()
 
     def compartments_of(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point (N, 3) lies in; -1 for none."""
@@ -85,7 +88,11 @@ class ClosedForm:
         return self._heights(work, len(self.rules) - 1, points, self.compartments_of(work, points))
 
     def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
-        """(N,) heights of a surface at points in the compartments `where`."""
+        """(N,) heights of a surface at points in the compartments `where`. That of a level set is where it
+        would be if f rose by 1 along z: above a point where f is less than its level."""
+        for own in self.fields:
+            if surface in own.numbers:
+                return points[:, 2] - own.excess(surface, points, where)
         found = np.full(len(points), np.nan)
         of_sheet: dict[Sheet, list[int]] = {}
         for compartment, sheets in enumerate(self.sheets):
@@ -126,6 +133,7 @@ def closed_forms(model) -> list[ClosedForm]:
                 entry.rock.base_elevation,
                 bodies,
                 entry.region,
+                entry.fields,
             )
         )
     return found

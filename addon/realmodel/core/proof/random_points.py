@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compares random points of a finished model with structures with the closed form."""
+"""Compares random points of a finished model that is no stack of sheets with the closed form."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _SHOWN = 5  # offenders of each test
 
 
 def check_points(work: Work, model, arrays: dict, places: int, seed: int) -> list[dict]:
-    """The tests "places" and "surfaces" of a model with structures, as the native part gives those of others:
-    about so many points spread in the model, beside its faces, and beside faults and bodies. arrays: of the
-    model, as native tests take it."""
+    """The tests "places" and "surfaces" of a model with structures or level sets, as the native part gives
+    those of others: about so many points spread in the model, beside its faces, and beside faults and bodies.
+    arrays: of the model, as native tests take it."""
     random = np.random.default_rng(seed)
     began = time.perf_counter()
     points = _points(model, places, random)
@@ -98,10 +98,11 @@ def _check_faces(work: Work, model, places: int, random) -> dict:
     points = np.add.reduceat(model.vertices[corners], offsets[:-1]) / np.diff(offsets)[:, None]
     away = np.full(len(faces), np.inf)
     allowed = _rounding(model) * (1 + _steepness(model))
+    is_sheet = _are_sheets(model)
     for number in np.unique(model.face_surface[faces]):
         own = np.flatnonzero(model.face_surface[faces] == number)
         vertices, triangles = model.surface(number)
-        if model.surface_kind[number] == 0:
+        if is_sheet[number]:
             for sheet in model.sheet_triangles(number):
                 z = heights_at(work, Sheet(vertices, sheet), points[own, :2])
                 off = np.abs(z - points[own, 2])
@@ -140,10 +141,15 @@ def _rounding(model) -> float:
     return _ROUNDING * float(np.spacing(max(np.abs(model.vertices).max(), model.structures.largest)))
 
 
+def _are_sheets(model) -> np.ndarray:
+    """(S,) bool: the surfaces with one height at each position."""
+    return (model.surface_kind == 0) & ~model.surface_is_level_set
+
+
 def _steepness(model) -> float:
     """The steepest slope of a sheet: heights are off by so much more than plan coordinates."""
     steepest = 0.0
-    for number in np.flatnonzero(model.surface_kind == 0):
+    for number in np.flatnonzero(_are_sheets(model)):
         vertices, triangles = model.surface(number)
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)

@@ -212,7 +212,7 @@ def validate(
             found = work.native(native.check_topology, arrays)
         if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
-                if model.structures.is_divided:
+                if not model.is_stack:
                     found += check_points(work, model, arrays, int(places), int(seed))
                 else:
                     found += work.native(
@@ -279,7 +279,8 @@ def _bases(model) -> np.ndarray:
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
     found = []
     for block in model.blocks:
-        rocks = [block.rock] if block.surface == oldest[block.rock] else []
+        folded = bool(model.rock_inputs) and bool(model.rock_inputs[block.rock].fields)
+        rocks = [block.rock] if folded or block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
             if not model.structures.times:
                 return np.empty(0)
@@ -302,7 +303,7 @@ def _block_of_surface(model) -> np.ndarray:
 def _test(entry: dict, model) -> ValidationTest:
     """A test from the dictionary of the native module, in which -1 means no number."""
     number, says = _SAYS[entry["name"]]
-    if model.structures.is_divided:
+    if not model.is_stack:
         says = _SAYS_OF_STRUCTURES.get(entry["name"], says)
     if model.cell_kind == "blocks":
         says = _SAYS_OF_BLOCKS.get(entry["name"], says)

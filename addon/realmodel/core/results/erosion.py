@@ -139,7 +139,7 @@ def _stage_volumes(work: Work, model, m: int, until: tuple[int, int] | None = No
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
     structures = model.structures
-    bodies = _with_bodies(structures, until or (m + 1, 0)) if structures.is_divided else None
+    bodies = _with_bodies(structures, until or (m + 1, 0)) if not model.is_stack else None
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)

@@ -187,6 +187,8 @@ def _without_columns(model) -> str | None:
         return "a cut model"
     if model.structures.bodies:
         return "a model with bodies"
+    if model.surface_is_level_set.any():
+        return "a model with a series of level sets"
     for fault in model.structures.faults:
         vertices, triangles = fault.triangulation()
         corners = vertices[triangles]

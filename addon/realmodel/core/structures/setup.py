@@ -22,6 +22,7 @@ from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each
+from .fields import make_fields, place_level_sets
 from .gaps import close_gaps, tops_of_faults
 from .observed_places import apply_in_compartments
 from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
@@ -31,15 +32,13 @@ from .sheets.sheets import make_sheets, warn_of_doubts
 
 _DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
+_SHEETS = 0.5  # of the progress of surfaces: until only fields are left
 _CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
 
 
 def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tuple[list[RockInput], Project]:
     """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
     surfaces are read. Raises InputRefused."""
-    for rock in project.rocks:
-        for series in rock.series:
-            raise series.refused("series cannot be built yet", item=f"{rock.item}, {series.item}")
     inputs = read_rocks(work, project, reader)
     faults, bodies, warnings = read_structures(work, project, inputs)
     if warnings:
@@ -71,6 +70,19 @@ def make_surfaces(
     keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
+    place_level_sets(inputs)
+    has_fields = any(rock.series for rock in project.rocks)
+    with work.part(0.0, _SHEETS if has_fields else 1.0):
+        structures = _make_sheets(work, project, inputs, stage, keep, flat, joins)
+    with work.part(_SHEETS if has_fields else 1.0, 1.0):
+        make_fields(work, inputs, stage)
+    return structures
+
+
+def _make_sheets(
+    work: Work, project: Project, inputs: list[RockInput], stage, keep, flat, joins
+) -> Structures:
+    """As make_surfaces, without the level sets of fields."""
     if project.faults or project.bodies:
         return make_structures(work, project, inputs, stage, joins, keep)
     for entry in work.share_out(inputs):

@@ -17,6 +17,7 @@ from ..project.project import Rock
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
 from .rock_structure import RockStructure
+from .series_field import SeriesField
 from .sides import RockFaults
 
 
@@ -32,6 +33,8 @@ class RockInput:
     all its sheets. overlapping: by number, the error of a surface whose triangles overlap in a sheet
     because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
+    fields: of series whose surfaces are level sets; such a surface is a level set, in each compartment of its
+    field.
     """
 
     rock: Rock
@@ -46,6 +49,7 @@ class RockInput:
     draws: list[Draw] | None = field(default=None, metadata=NOT_STORED)
     left_out: list[LeftOut] = field(default_factory=list)
     used: np.ndarray | None = None
+    fields: list[SeriesField] = field(default_factory=list)
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
@@ -69,6 +73,10 @@ class RockInput:
         if self.structure is None:
             return RockStructure(RockFaults([], [], []), np.zeros((1, 0), np.int8), [""], [self.surfaces])
         return self.structure
+
+    def field_of(self, surface: int) -> SeriesField | None:
+        """The field that a surface is a level set of; None for a sheet."""
+        return next((each for each in self.fields if surface in each.numbers), None)
 
     def native(self) -> tuple:
         """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
@@ -97,7 +105,7 @@ class RockInput:
                     triangles=triangles,
                 )
         return RockInput(
-            replace(self.rock, surfaces=surfaces),
+            replace(self.rock.stage(m), surfaces=surfaces),
             self.surfaces[: m + 1],
             self.region,
             self.interpolations[: m + 1],
@@ -108,6 +116,7 @@ class RockInput:
             self.overlapping,
             left_out=self.left_out,
             used=self.used,
+            fields=[kept for each in self.fields if (kept := each.stage(m)) is not None],
         )
 
 

@@ -17,7 +17,7 @@ namespace realmodel::structures {
 
 /// What a surface of a stack in one part of space is in the whole model.
 struct PartSurface {
-    std::int32_t number;  ///< its own; kWall or kBase: there is no such surface in the whole
+    std::int32_t number;  ///< its own; kWall, kBase or kCutFace: none of the whole's
     std::int32_t block;   ///< that of the block beneath it; -1: nothing is there
     /// Of each of its triangles the number in the surface of the whole, which errors and warnings
     /// name; none at all: they are all there.
@@ -30,13 +30,30 @@ struct PartStack {
     std::vector<PartSurface> surfaces;  ///< one for each of the stack
 };
 
+/// A closed surface that divides one part of space, such as the boundary of where the field of a
+/// series is at most the level of a surface.
+struct LevelSolid {
+    TriangleView boundary;
+    std::int32_t surface;  ///< what faces on it are in the whole model
+};
+
+/// The rock masses as they are between the solids of a part.
+struct LevelPart {
+    Sides sides;                   ///< of the solids: 1 outside, -1 inside, 0 on either side
+    std::vector<PartStack> rocks;  ///< one for each rock mass
+};
+
 /// One of the parts that structures leave. What its stacks build may reach beyond it: the
 /// structures cut it.
 struct PartOfSpace {
     Sides sides;                   ///< as parts_of has them
-    std::vector<PartStack> rocks;  ///< one for each rock mass
+    std::vector<PartStack> rocks;  ///< one for each rock mass; with solids none
     /// Of columns: those that lie nowhere in it need not be made.
     std::optional<strata::WantedSpace> wanted = {};
+    /// Solids that divide it, and what is between them. A solid ends cells only where the blocks on
+    /// its two sides differ.
+    std::vector<LevelSolid> solids = {};
+    std::vector<LevelPart> between = {};
 };
 
 /// A piece of a whole model, with structures continued as in the whole.
@@ -58,7 +75,8 @@ struct StructuredInput {
 };
 
 /// Builds the stacks of all parts, several at once, cuts them by the structures and joins them:
-/// join_models of their models. Stacks with `emptied` are built as columns, whatever cells are
+/// join_models of their models. Where a part has solids, the stacks between them are joined so
+/// before. Stacks with `emptied` are built as columns, whatever cells are
 /// wanted. The warnings are those of all parts, each once.
 /// @return cell_part  of each cell the part
 /// @throws InputError  as build_rock_masses does, `surface` and the items that are triangles as

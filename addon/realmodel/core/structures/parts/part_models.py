@@ -13,7 +13,8 @@ from ...settings.rules import RULES
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
-DEEP = -3  # below everything, under a body where no base elevation is
+LID = -3  # a level above all rock, in the place of a level set: it cuts off what reaches up there
+DEEP = -4  # below everything, under a body where no base elevation is
 _DEPOSITS = "conformable"
 
 
@@ -60,6 +61,28 @@ def plain_stack(sheets: list[Sheet], rules: list[str], base: float | None, first
     if base is None:
         blocks[0] = NOTHING
     return Stack(list(sheets), list(rules), base, blocks, numbers)
+
+
+def between_levels(stack: Stack, beneath: Mapping[int, bool], top: float, plan: Sheet) -> Stack:
+    """The stack between level sets of fields. beneath: of each surface that is one, by its number, whether it
+    is beneath the surface here: then that is as a level at `top`, above all rock, else as the base. plan: a
+    triangulation of the region."""
+    base = stack.base_elevation
+    assert base is not None  # fields have one
+    levels = {True: level(plan, top), False: level(plan, base)}
+    sheets = [
+        levels[beneath[number]] if number in beneath else sheet
+        for sheet, number in zip(stack.sheets, stack.surfaces, strict=True)
+    ]
+    if all(beneath.values()):
+        return replace(stack, sheets=sheets)
+    return Stack(  # the base is beneath a surface at the same height
+        [levels[False], *sheets],
+        [_DEPOSITS, *stack.rules],
+        None,
+        [NOTHING, *stack.blocks],
+        [FLOOR, *stack.surfaces],
+    )
 
 
 def inside_body(

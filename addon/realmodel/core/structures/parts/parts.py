@@ -227,7 +227,12 @@ def add_compartments(structures: Structures, inputs: list[RockInput]) -> None:
     for number, entry in enumerate(inputs):
         faults = structures.of_rock(number)
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)
-        sheets: list[list[Sheet | None]] = [[None] * len(entry.surfaces) for _ in rows]
+        # level sets have a place (place_level_sets) until their fields are made
+        placed = [
+            shape if surface.is_level_set else None
+            for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True)
+        ]
+        sheets: list[list[Sheet | None]] = [list(placed) for _ in rows]
         entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
 
 

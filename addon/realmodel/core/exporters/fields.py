@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The fields of series as an unstructured grid of VTK (.vtu)."""
+
+from __future__ import annotations
+
+from typing import BinaryIO
+
+import numpy as np
+
+from ..base.errors import UsageError
+from ..fields import ScalarField
+from .encodings.vtk_xml import write_grid
+
+_TETRAHEDRON = 10  # VTK's number
+
+
+def write_fields(model, file: BinaryIO) -> None:
+    """Writes the tetrahedra of the lattices of all fields of a model, with the point array `field`, f at the
+    nodes, and the cell arrays `series`, the number of the series in the model, and `compartment`, the number
+    of the first compartment of its rock mass that has this field. Raises UsageError where there is none."""
+    fields: list[tuple[ScalarField, int, int]] = []
+    number = 0
+    for entry in model.rock_inputs:
+        for own in entry.fields:
+            fields += [(field, number, compartments[0]) for field, compartments in own.distinct().items()]
+            number += 1
+    if not fields:
+        raise UsageError("the model has no field: none of its series is of the kind 'field'")
+    tetrahedra = [field.lattice.tetrahedra().astype("<i8") for field, _, _ in fields]
+    begin = np.cumsum([0, *(field.lattice.nodes for field, _, _ in fields)])
+    counts = [len(each) for each in tetrahedra]
+    corners = np.concatenate([each + first for each, first in zip(tetrahedra, begin[:-1], strict=True)])
+    write_grid(
+        file,
+        [
+            ("Points", "Points", np.concatenate([field.lattice.positions() for field, _, _ in fields])),
+            ("Cells", "connectivity", corners.ravel()),
+            ("Cells", "offsets", 4 * np.arange(1, len(corners) + 1, dtype="<i8")),
+            ("Cells", "types", np.full(len(corners), _TETRAHEDRON, np.uint8)),
+            ("PointData", "field", np.concatenate([field.values for field, _, _ in fields]).astype("<f8")),
+            ("CellData", "series", np.repeat(np.array([each[1] for each in fields], "<i4"), counts)),
+            ("CellData", "compartment", np.repeat(np.array([each[2] for each in fields], "<i4"), counts)),
+        ],
+    )

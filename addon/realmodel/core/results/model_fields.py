@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The fields of the series of a model."""
+
+from __future__ import annotations
+
+from ..base.errors import UsageError
+from ..fields import ScalarField
+
+
+def field_of(model, series: str, compartment: str | None) -> ScalarField:
+    """Model.field."""
+    found = {own.name: (entry, own) for entry in model.rock_inputs for own in entry.fields}
+    if series not in found:
+        there = f"there are {', '.join(found)}" if found else "the model has none"
+        raise UsageError(f"no series '{series}' with a field: {there}")
+    entry, own = found[series]
+    fields = own.distinct()
+    if compartment is None and len(fields) == 1:
+        return own.fields[0]
+    names = [name or entry.rock.name for name in entry.divided().names]
+    if len(model.rock_inputs) > 1:
+        names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
+    if compartment not in names:
+        what = f"series '{series}' has a field in each of several compartments"
+        raise UsageError(f"{what}: name one of {', '.join(names)}")
+    return own.fields[names.index(compartment)]

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The field of a series in each compartment of a rock mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..fields import ScalarField
+
+
+@dataclass(eq=False)
+class SeriesField:
+    """name: of the series. first: the number of its oldest surface in the rock mass. count: of its surfaces,
+    which have the first levels of the fields. fields: one for each compartment, the same object where
+    compartments share it. top: an elevation above all rock, below which the lattice reaches."""
+
+    name: str
+    first: int
+    count: int
+    fields: list[ScalarField]
+    top: float
+
+    @property
+    def numbers(self) -> range:
+        """The numbers of its surfaces in the rock mass."""
+        return range(self.first, self.first + self.count)
+
+    def level(self, compartment: int, surface: int) -> float:
+        """The level of a surface, by its number in the rock mass."""
+        return float(self.fields[compartment].levels[surface - self.first])
+
+    def stage(self, m: int) -> SeriesField | None:
+        """With the surfaces up to m of the rock mass; None where there are none."""
+        count = min(self.count, m + 1 - self.first)
+        return replace(self, count=count) if count > 0 else None
+
+    def distinct(self) -> dict[ScalarField, list[int]]:
+        """The different fields, with the compartments of each."""
+        found: dict[ScalarField, list[int]] = {}
+        for compartment, field in enumerate(self.fields):
+            found.setdefault(field, []).append(compartment)
+        return found
+
+    def excess(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
+        """(N,) how much f is above the level of a surface at points (N, 3) in the compartments `where`; NaN
+        outside the lattice, or where the compartment is below 0; infinite above all rock."""
+        found = np.full(len(points), np.nan)
+        for field, compartments in self.distinct().items():
+            here = np.flatnonzero(np.isin(where, compartments))
+            if len(here):
+                found[here] = field.at(points[here]) - field.levels[surface - self.first]
+        found[points[:, 2] > self.top] = np.inf
+        return found

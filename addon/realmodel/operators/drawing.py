@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drawing in the viewport: contacts of surfaces and sticks of faults on a section plane or an image; and
+images in their place."""
+
+import re
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+
+from ..bl import drawn_data, placed_images, settings, viewports
+from ..bl.display import exaggeration_changed, visible
+from ..core import InputRefused
+from .in_viewport import InViewport
+from .reporting import (
+    Reporting,
+    a_fault,
+    a_surface,
+    chosen_path,
+    file_filter,
+    object_mode,
+    require_file,
+)
+
+_IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp")
+
+
+class _Drawing(InViewport):
+    """Draws a line on a plane."""
+
+    bl_options = {"UNDO"}  # no panel of the last operation: what was drawn is no setting
+    keys = "Click or draw on the plane"
+
+    use_object: BoolProperty(
+        name="From Active Object",
+        description="Take the lines of the active curve or mesh in place of drawing them",
+        options={"SKIP_SAVE"},
+    )
+
+    _plane = None
+    _places = ()
+
+    def begin(self, context):
+        self._plane, self._places = drawn_data.plane(context), []
+
+    def invoke(self, context, event):
+        return self.execute(context) if self.use_object else super().invoke(context, event)
+
+    def clicked(self, context, area, at, _is_held):
+        place = drawn_data.on_plane(context.scene, viewports.ray(area, at), self._plane)
+        if place is None:
+            return "The plane is seen from its edge: turn the view"
+        self._places.append(place)
+        return None
+
+    def remove_last(self):
+        del self._places[-1:]
+
+    def marks(self, context):
+        return drawn_data.in_world(context.scene, self._places).tolist()
+
+    def drawn(self, context):
+        """The lines (N, 3) that were drawn, or those of the active object. Raises InputRefused."""
+        if not self.use_object:
+            if not len(self._places):
+                raise InputRefused("nothing was drawn", advice="click on the plane, or give use_object")
+            return [np.array(self._places)]
+        item = context.active_object
+        if item is None or not settings.is_region_object(None, item):
+            raise InputRefused("the active object has no lines", advice="make a curve or a mesh active")
+        return drawn_data.lines_of(context.scene, item, context.evaluated_depsgraph_get())
+
+
+class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
+    """Draw contacts of the active surface: click places, or draw a line with the button held, on the section
+    plane, or on a placed image that is the active object. The points are added to those of the surface"""
+
+    bl_label = "Draw Contacts"
+    needs = (a_surface, object_mode)
+
+    def act(self, context):
+        row = settings.active_surface(context.scene)
+        points = np.concatenate(self.drawn(context))
+        drawn_data.add_contacts(context.scene, row, points)
+        self.report({"INFO"}, f"Added {len(points)} points to {row.name}")
+
+
+class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
+    """Draw a stick of the active fault, as Draw Contacts does: the surface of the fault is fitted through its
+    sticks"""
+
+    bl_label = "Draw Stick"
+    needs = (a_fault, object_mode)
+
+    def act(self, context):
+        row = settings.active_structure(context.scene)
+        lines = self.drawn(context)
+        for line in lines:
+            drawn_data.add_stick(context.scene, row, line)
+        self.report({"INFO"}, f"Added {len(lines)} stick{'s' * (len(lines) > 1)} to {row.name}")
+
+
+def _pixel(name):
+    return FloatVectorProperty(
+        name=name,
+        description="Pixel of the image that this point is at, from the lower left corner; 0, 0: the lower "
+        "left corner of the image for the first point, the upper right one for the second",
+        size=2,
+        min=0.0,
+        subtype="XYZ",
+    )
+
+
+def _numbers(text, count, what):
+    """Numbers of a text field. Raises InputRefused."""
+    words = [word for word in re.split(r"[,;\s]+", text.strip()) if word]
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        wanted, advice = (
+            ("a number", "such as 350") if count == 1 else ("two numbers", "such as 3500, 5400.5")
+        )
+        raise InputRefused(f"{what} must be {wanted}, not '{text}'", advice=advice)
+    return tuple(numbers)
+
+
+class REALMODEL_OT_image_place(Reporting, bpy.types.Operator, ImportHelper):
+    """Place an image by the coordinates of two of its points: a scanned section upright along a line, a map
+    at a height. It is stored in the .blend, and can be drawn on while it is the active object"""
+
+    bl_label = "Place Image"
+    needs = (object_mode,)
+
+    filepath: StringProperty(name="File", description="The image", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    filter_glob: file_filter(*_IMAGES)
+    kind: EnumProperty(
+        name="Kind",
+        description="What the image shows",
+        items=(
+            (
+                "SECTION",
+                "Section",
+                "A vertical section; it stands along the line through both points",
+            ),
+            ("MAP", "Map", "A map: the two points are in plan"),
+        ),
+    )
+    first: StringProperty(name="First Point", description="x and y of the first point, model coordinates")
+    second: StringProperty(name="Second Point", description="x and y of the second point, model coordinates")
+    heights: StringProperty(
+        name="Heights",
+        description="Of a section the elevations of the first and of the second point; of a map the one at "
+        "which it lies",
+    )
+    first_pixel: _pixel("First Pixel")
+    second_pixel: _pixel("Second Pixel")
+
+    def act(self, context):
+        path = chosen_path(self, "the image")
+        require_file(path)
+        is_section = self.kind == "SECTION"
+        heights = _numbers(self.heights, 2 if is_section else 1, "heights")
+        placing = placed_images.Placing(
+            (tuple(self.first_pixel), tuple(self.second_pixel)),
+            _numbers(self.first, 2, "the first point"),
+            _numbers(self.second, 2, "the second point"),
+            heights if is_section else heights * 2,
+            is_section,
+        )
+        item = placed_images.place(context.scene, path, placing)
+        visible.select_alone(context, item)
+        exaggeration_changed(context.scene)
+        self.report({"INFO"}, f"Placed {item.name}")
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        for name in ("kind", "first", "second", "heights", "first_pixel", "second_pixel"):
+            layout.prop(self, name)

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Level sets of a scalar field on a regular lattice (docs/dev/series.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/array.hpp"
+#include "realmodel/base/execution.hpp"
+
+namespace realmodel::fields {
+
+/// A function in space that is linear on tetrahedra: six in each cell of a regular lattice, around
+/// the diagonal from its lowest corner to its highest (H. Freudenthal 1942; H. W. Kuhn 1960), and
+/// what points with values of their own divide these into.
+struct LatticeField {
+    std::array<double, 3> origin, spacing;
+    std::array<std::int32_t, 3> counts;  ///< of nodes along x, y, z; two at least
+    /// One for each node: node (i, j, k) has the number i + nx (j + ny k).
+    std::span<const double> values;
+    std::span<const double> points;        ///< 3 P coordinates within the lattice
+    std::span<const double> point_values;  ///< one for each
+};
+
+/// The boundary of where the function is at most a level, closed around the lattice: triangles
+/// counter-clockwise seen from where it is greater.
+struct LevelSet {
+    Array<std::array<double, 3>> vertices;
+    std::vector<std::array<std::int32_t, 3>> triangles;
+};
+
+/// One for each level. They are closed in a layer of cells around the lattice: in the lattice
+/// itself they are the level sets. No two of them cross. A point whose value is a level is a vertex
+/// of that level set. The order of vertices and triangles does not depend on the number of threads.
+/// @param levels  ascending
+/// @throws InputError  kinds bad_lattice (the text says what), not_finite; outside (items: the
+///         point), two_values (items: two points in one position with different values); Cancelled
+std::vector<LevelSet> level_sets(const LatticeField& field, std::span<const double> levels,
+                                 const Execution& execution);
+
+/// The values of nodes with those that are as near to a level as makes no difference moved onto it,
+/// so that no level set has a vertex beside a node.
+/// @throws InputError  kinds bad_lattice, not_finite
+std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const double> levels);
+
+/// The function at positions (3 N coordinates); NaN outside the lattice.
+/// @throws InputError  as level_sets does
+std::vector<double> field_at(const LatticeField& field, std::span<const double> positions,
+                             const Execution& execution);
+
+}  // namespace realmodel::fields

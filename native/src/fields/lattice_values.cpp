@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/lattice_values.hpp"
+
+#include <algorithm>
+
+#include "base/parallel.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+constexpr std::size_t kLarge = 200000;  // nodes
+constexpr int kLeastCount = 8;          // along an axis that is halved
+
+using Counts = std::array<int, 3>;
+
+std::size_t nodes_of(const Counts& counts) {
+    return static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
+           static_cast<std::size_t>(counts[2]);
+}
+
+/// Cubic interpolation at half of a step beyond sample i of n, at `step` from one to the next.
+double halfway(const double* samples, std::ptrdiff_t step, int i, int n) {
+    if (i == 0) {
+        return (5 * samples[0] + 15 * samples[step] - 5 * samples[2 * step] + samples[3 * step]) /
+               16;
+    }
+    const double* const at = samples + i * step;
+    if (i == n - 2) return (5 * at[step] + 15 * at[0] - 5 * at[-step] + at[-2 * step]) / 16;
+    return (9 * (at[0] + at[step]) - (at[-step] + at[2 * step])) / 16;
+}
+
+/// Twice as dense along an axis: n samples become `count`, which is 2 n - 1, or less by one.
+std::vector<double> refined(const std::vector<double>& from, Counts& counts, std::size_t axis,
+                            int count, const Execution& execution) {
+    std::size_t step = 1;
+    for (std::size_t k = 0; k < axis; ++k)
+        step *= static_cast<std::size_t>(counts[k]);
+    const int n = counts[axis];
+    const std::size_t run = step * static_cast<std::size_t>(n);
+    const std::size_t to_run = step * static_cast<std::size_t>(count);
+    counts[axis] = count;
+    std::vector<double> to(nodes_of(counts));
+    // Lines along the axis: `step` of them begin in each run.
+    parallel_ranges(
+        from.size() / static_cast<std::size_t>(n), 1024, execution,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t line = begin; line < end; ++line) {
+                const double* const samples = &from[line / step * run + line % step];
+                double* const out = &to[line / step * to_run + line % step];
+                for (int i = 0; i < count; ++i) {
+                    out[static_cast<std::size_t>(i) * step] =
+                        i % 2 == 0 ? samples[static_cast<std::size_t>(i / 2) * step]
+                                   : halfway(samples, static_cast<std::ptrdiff_t>(step), i / 2, n);
+                }
+            }
+        },
+        0.1);
+    return to;
+}
+
+}  // namespace
+
+std::vector<double> lattice_values(
+    const Lattice& lattice,
+    const std::function<void(std::span<const Vec3>, std::span<double>)>& values_at,
+    const Execution& execution) {
+    Lattice sampled = lattice;
+    if (lattice.nodes() > kLarge) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (lattice.counts[axis] < kLeastCount) continue;
+            sampled.spacing[axis] *= 2;
+            sampled.counts[axis] = lattice.counts[axis] / 2 + 1;
+        }
+    }
+    std::vector<double> values(sampled.nodes());
+    parallel_ranges(
+        values.size(), 512, execution,
+        [&](std::size_t from, std::size_t to) {
+            std::vector<Vec3> at(to - from);
+            const auto nx = static_cast<std::size_t>(sampled.counts[0]);
+            const auto ny = static_cast<std::size_t>(sampled.counts[1]);
+            for (std::size_t n = from; n < to; ++n) {
+                at[n - from] =
+                    sampled.position(static_cast<int>(n % nx), static_cast<int>(n / nx % ny),
+                                     static_cast<int>(n / nx / ny));
+            }
+            values_at(at, std::span<double>(values.data() + from, to - from));
+        },
+        0.9);
+    Counts counts = sampled.counts;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (counts[axis] != lattice.counts[axis])
+            values = refined(values, counts, axis, lattice.counts[axis], execution);
+    }
+    return values;
+}
+
+}  // namespace realmodel::fields

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/vectors.hpp"
+#include "realmodel/base/execution.hpp"
+#include "realmodel/fields/lattice.hpp"
+
+namespace realmodel::fields {
+
+/// The values of a smooth function at the nodes of a lattice. On a large lattice it is evaluated at
+/// every other node along each axis; between these by cubic polynomials, whose error is of a higher
+/// order in the spacing than that of functions linear on tetrahedra.
+/// @param values_at  gives the values at positions
+std::vector<double> lattice_values(
+    const Lattice& lattice,
+    const std::function<void(std::span<const Vec3>, std::span<double>)>& values_at,
+    const Execution& execution);
+
+}  // namespace realmodel::fields

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/fields/level_sets.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
+#include "fields/refined_lattice.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+/// A vertex of a level set: where it passes between two corners, the lesser first, or twice the
+/// corner that it passes through.
+using Crossing = std::array<std::int64_t, 2>;
+using CrossingTriangle = std::array<Crossing, 3>;
+
+/// The corners of a tetrahedron in the order in which those of a mask come first, turned as before.
+std::array<std::uint8_t, 4> sorted_corners(std::size_t mask) {
+    std::array<std::uint8_t, 4> order{};
+    std::size_t count = 0;
+    for (const bool first : {true, false}) {
+        for (std::uint8_t i = 0; i < 4; ++i) {
+            if (((mask >> i & 1) != 0) == first) order[count++] = i;
+        }
+    }
+    bool is_odd = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = i + 1; j < 4; ++j)
+            is_odd ^= order[i] > order[j];
+    }
+    // two that are on one side
+    const std::size_t swapped = std::popcount(mask) < 2 ? 2 : 0;
+    if (is_odd) std::swap(order[swapped], order[swapped + 1]);
+    return order;
+}
+
+/// The level sets of some cells, by levels.
+class CellLevelSets {
+public:
+    CellLevelSets(const RefinedLattice& lattice, std::span<const double> levels)
+        : lattice_(lattice), levels_(levels), triangles_(levels.size()) {
+        for (std::size_t mask = 0; mask < 16; ++mask)
+            orders_[mask] = sorted_corners(mask);
+    }
+
+    void add_cell(const CellIndex& cell) {
+        if (const auto* tetrahedra = lattice_.divided(cell)) {
+            for (const Tetrahedron& tetrahedron : *tetrahedra)
+                add(tetrahedron);
+            return;
+        }
+        const auto corners = lattice_.corners(cell);
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const std::int64_t corner : corners) {
+            low = std::min(low, lattice_.value(corner));
+            high = std::max(high, lattice_.value(corner));
+        }
+        if (first_level(low) == first_level(high)) return;
+        for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
+            add(RefinedLattice::tetrahedron(corners, number));
+    }
+
+    std::vector<std::vector<CrossingTriangle>>& triangles() { return triangles_; }
+
+private:
+    /// The first level that is at least some value.
+    std::size_t first_level(double value) const {
+        return static_cast<std::size_t>(std::ranges::lower_bound(levels_, value) - levels_.begin());
+    }
+
+    void add(const Tetrahedron& tetrahedron) {
+        std::array<double, 4> values{};
+        for (std::size_t i = 0; i < 4; ++i)
+            values[i] = lattice_.value(tetrahedron[i]);
+        const auto [low, high] = std::ranges::minmax(values);
+        // inside is where a value is at most the level
+        for (std::size_t level = first_level(low); level < first_level(high); ++level)
+            add(tetrahedron, values, level);
+    }
+
+    void add(const Tetrahedron& tetrahedron, const std::array<double, 4>& values,
+             std::size_t level) {
+        const double at = levels_[level];
+        std::size_t mask = 0, inside = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (values[i] > at) continue;
+            mask |= std::size_t{1} << i;
+            ++inside;
+        }
+        const auto& order = orders_[mask];
+        const auto between = [&](std::size_t in, std::size_t out) -> Crossing {
+            const std::int64_t own = tetrahedron[order[in]];
+            if (values[order[in]] == at) return {own, own};
+            return unordered(own, tetrahedron[order[out]]);
+        };
+        const auto triangle = [&](const Crossing& a, const Crossing& b, const Crossing& c) {
+            if (a != b && b != c && c != a) triangles_[level].push_back({a, b, c});
+        };
+        if (inside == 1) {
+            triangle(between(0, 1), between(0, 2), between(0, 3));
+        } else if (inside == 2) {
+            const std::array loop{between(0, 2), between(0, 3), between(1, 3), between(1, 2)};
+            triangle(loop[0], loop[1], loop[2]);
+            triangle(loop[0], loop[2], loop[3]);
+        } else {
+            triangle(between(0, 3), between(1, 3), between(2, 3));
+        }
+    }
+
+    const RefinedLattice& lattice_;
+    std::span<const double> levels_;
+    std::array<std::array<std::uint8_t, 4>, 16> orders_{};
+    std::vector<std::vector<CrossingTriangle>> triangles_;
+};
+
+/// Where a level set passes between two corners.
+Position position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
+    const Position a = lattice.position(crossing[0]);
+    if (crossing[0] == crossing[1]) return a;
+    const Position b = lattice.position(crossing[1]);
+    const double from = lattice.value(crossing[0]), to = lattice.value(crossing[1]);
+    const double share = (level - from) / (to - from);
+    Position p{};
+    for (std::size_t k = 0; k < 3; ++k)
+        p[k] = std::clamp(a[k] + share * (b[k] - a[k]), std::min(a[k], b[k]), std::max(a[k], b[k]));
+    return p;
+}
+
+/// Takes away equal triangles that face each other: between them a level set touches itself.
+void cancel_equal(std::vector<std::array<std::int32_t, 3>>& triangles) {
+    struct Turned {
+        std::array<std::int32_t, 3> corners;
+        int turn;
+        std::size_t number;
+    };
+    std::vector<Turned> sorted;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        auto corners = triangles[t];
+        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        const int turn = corners[1] < corners[2] ? 1 : -1;
+        if (turn < 0) std::swap(corners[1], corners[2]);
+        sorted.push_back({corners, turn, t});
+    }
+    std::ranges::sort(sorted, {}, [](const Turned& t) { return std::pair(t.corners, t.number); });
+    std::vector<std::uint8_t> is_gone(triangles.size(), 0);
+    for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
+        if (sorted[i].corners != sorted[i + 1].corners || sorted[i].turn == sorted[i + 1].turn)
+            continue;
+        is_gone[sorted[i].number] = is_gone[sorted[i + 1].number] = 1;
+        ++i;
+    }
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (is_gone[t] == 0) triangles[kept++] = triangles[t];
+    }
+    triangles.resize(kept);
+}
+
+LevelSet numbered(const RefinedLattice& lattice, double level,
+                  const std::vector<CrossingTriangle>& triangles, const Execution& execution) {
+    std::vector<Crossing> crossings;
+    crossings.reserve(3 * triangles.size());
+    for (const CrossingTriangle& triangle : triangles)
+        crossings.insert(crossings.end(), triangle.begin(), triangle.end());
+    parallel_sort(crossings, std::less<>(), execution);
+    crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
+    checked_number(crossings.size(), "vertices of a level set");
+    LevelSet found;
+    found.vertices.resize(crossings.size());
+    parallel_ranges(crossings.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            found.vertices[v] = position_of(lattice, crossings[v], level);
+    });
+    found.triangles.resize(triangles.size());
+    parallel_ranges(triangles.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            for (std::size_t i = 0; i < 3; ++i)
+                found.triangles[t][i] = static_cast<std::int32_t>(
+                    std::ranges::lower_bound(crossings, triangles[t][i]) - crossings.begin());
+        }
+    });
+    cancel_equal(found.triangles);
+    return found;
+}
+
+}  // namespace
+
+std::vector<LevelSet> level_sets(const LatticeField& field, std::span<const double> levels,
+                                 const Execution& execution) {
+    const RefinedLattice lattice(field, levels);
+    const auto slabs = static_cast<std::size_t>(lattice.cells(2));
+    std::vector<std::vector<std::vector<CrossingTriangle>>> of_slabs(slabs);
+    parallel_chunks(slabs, execution, [&](std::size_t slab) {
+        CellLevelSets sets(lattice, levels);
+        for (std::int32_t j = -1; j < lattice.cells(1) - 1; ++j) {
+            for (std::int32_t i = -1; i < lattice.cells(0) - 1; ++i)
+                sets.add_cell({i, j, static_cast<std::int32_t>(slab) - 1});
+        }
+        of_slabs[slab] = std::move(sets.triangles());
+    });
+    std::vector<LevelSet> found;
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        std::vector<CrossingTriangle> triangles;
+        for (const auto& slab : of_slabs)
+            triangles.insert(triangles.end(), slab[level].begin(), slab[level].end());
+        found.push_back(numbered(lattice, levels[level], triangles, execution));
+    }
+    return found;
+}
+
+std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const double> levels) {
+    constexpr double kNear = 1e-7;  // of the largest difference to a neighbor
+    const RefinedLattice lattice(field, levels);
+    std::vector<double> moved(field.values.begin(), field.values.end());
+    std::size_t number = 0;
+    for (std::int32_t k = 0; k < field.counts[2]; ++k) {
+        for (std::int32_t j = 0; j < field.counts[1]; ++j) {
+            for (std::int32_t i = 0; i < field.counts[0]; ++i, ++number) {
+                const double own = field.values[number];
+                double differs = 0;
+                for (const CellIndex& step : {CellIndex{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+                    for (const std::int32_t way : {-1, 1}) {
+                        const CellIndex at{i + way * step[0], j + way * step[1], k + way * step[2]};
+                        bool is_node = true;
+                        for (std::size_t axis = 0; axis < 3; ++axis)
+                            is_node &= at[axis] >= 0 && at[axis] < field.counts[axis];
+                        if (is_node)
+                            differs =
+                                std::max(differs, std::abs(lattice.value(lattice.node(at)) - own));
+                    }
+                }
+                const auto above = std::ranges::lower_bound(levels, own);
+                for (const auto& near : {above, above - (above != levels.begin())}) {
+                    if (near != levels.end() && std::abs(*near - own) <= kNear * differs)
+                        moved[number] = *near;
+                }
+            }
+        }
+    }
+    return moved;
+}
+
+std::vector<double> field_at(const LatticeField& field, std::span<const double> positions,
+                             const Execution& execution) {
+    const RefinedLattice lattice(field, {});
+    std::vector<double> found(positions.size() / 3);
+    parallel_ranges(found.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            found[i] = lattice.at({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+    });
+    return found;
+}
+
+}  // namespace realmodel::fields

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/refined_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "exact/space_predicates.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+constexpr std::int32_t kMostNodes = 1 << 20;  // along an axis: numbers of edges fit in 64 bits
+
+[[noreturn]] void refuse_lattice(const char* what) {
+    throw InputError("bad_lattice", what);
+}
+
+void check_finite(std::span<const double> numbers, const char* what, std::size_t apart) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (!std::isfinite(numbers[i]))
+            throw InputError("not_finite", std::string(what) + " are not finite", -1,
+                             {static_cast<std::int64_t>(i / apart)});
+    }
+}
+
+void check_field(const LatticeField& field, std::span<const double> levels) {
+    double nodes = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double last = field.origin[axis] + field.spacing[axis] * field.counts[axis];
+        if (field.counts[axis] < 2 || field.counts[axis] > kMostNodes)
+            refuse_lattice("a lattice needs 2 to 1048576 nodes along each axis");
+        if (!(field.spacing[axis] > 0) || !std::isfinite(field.origin[axis]) ||
+            !std::isfinite(last))
+            refuse_lattice("a lattice needs finite coordinates, and spacings above 0");
+        nodes *= field.counts[axis];
+    }
+    if (static_cast<double>(field.values.size()) != nodes)
+        refuse_lattice("values: one for each node");
+    if (field.points.size() != 3 * field.point_values.size())
+        refuse_lattice("points: a position and a value for each");
+    check_finite(field.values, "values", 1);
+    check_finite(field.points, "points", 3);
+    check_finite(field.point_values, "values of points", 1);
+    check_finite(levels, "levels", 1);
+    if (!std::ranges::is_sorted(levels)) refuse_lattice("levels: ascending");
+}
+
+/// How far p is from the plane of three corners, by the sign of the tetrahedron's volume.
+double volume(const Position& a, const Position& b, const Position& c, const Position& d) {
+    std::array<Position, 3> v{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        v[0][k] = b[k] - a[k];
+        v[1][k] = c[k] - a[k];
+        v[2][k] = d[k] - a[k];
+    }
+    return v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) -
+           v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
+           v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+}
+
+}  // namespace
+
+RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double> levels)
+    : origin_(field.origin), spacing_(field.spacing), counts_(field.counts) {
+    check_field(field, levels);
+    stride_ = {1, counts_[0] + 2, (counts_[0] + 2L) * (counts_[1] + 2L)};
+    nodes_ = stride_[2] * (counts_[2] + 2);
+    add_layer(field, levels);
+    for (std::size_t p = 0; p < field.point_values.size(); ++p) {
+        points_.push_back({field.points[3 * p], field.points[3 * p + 1], field.points[3 * p + 2]});
+        point_values_.push_back(field.point_values[p]);
+        add_point(p, points_.back());
+    }
+}
+
+void RefinedLattice::add_layer(const LatticeField& field, std::span<const double> levels) {
+    double low = field.values[0], high = low;
+    for (const auto& numbers : {field.values, field.point_values, levels}) {
+        for (const double number : numbers) {
+            low = std::min(low, number);
+            high = std::max(high, number);
+        }
+    }
+    const double beyond = high + std::max(high - low, 1.0);
+    values_.assign(static_cast<std::size_t>(nodes_), beyond);
+    auto from = field.values.begin();
+    for (std::int32_t k = 0; k < counts_[2]; ++k) {
+        for (std::int32_t j = 0; j < counts_[1]; ++j) {
+            std::copy_n(from, counts_[0], values_.begin() + node({0, j, k}));
+            from += counts_[0];
+        }
+    }
+}
+
+Position RefinedLattice::position(std::int64_t corner) const {
+    if (corner >= nodes_) return points_[static_cast<std::size_t>(corner - nodes_)];
+    const auto x = static_cast<std::int32_t>(corner % stride_[1]);
+    const auto y = static_cast<std::int32_t>(corner % stride_[2] / stride_[1]);
+    const auto z = static_cast<std::int32_t>(corner / stride_[2]);
+    return {coordinate(0, x - 1), coordinate(1, y - 1), coordinate(2, z - 1)};
+}
+
+std::array<std::int64_t, 8> RefinedLattice::corners(const CellIndex& cell) const {
+    std::array<std::int64_t, 8> found{};
+    for (std::size_t c = 0; c < 8; ++c)
+        found[c] = node(cell) + static_cast<std::int64_t>(c & 1) +
+                   stride_[1] * static_cast<std::int64_t>(c >> 1 & 1) +
+                   stride_[2] * static_cast<std::int64_t>(c >> 2);
+    return found;
+}
+
+Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corners,
+                                        std::size_t number) {
+    Tetrahedron found{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& step = kTetrahedraOfCell[number][i];
+        found[i] = corners[static_cast<std::size_t>(step[0] + 2 * step[1] + 4 * step[2])];
+    }
+    return found;
+}
+
+std::vector<CellIndex> RefinedLattice::cells_at(const Position& p) const {
+    std::array<std::vector<std::int32_t>, 3> along;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto last = counts_[axis] - 2;
+        if (!(p[axis] >= coordinate(axis, 0) && p[axis] <= coordinate(axis, last + 1))) return {};
+        // rounding may be off by one
+        const auto near = static_cast<std::int32_t>((p[axis] - origin_[axis]) / spacing_[axis]);
+        for (std::int32_t i = std::max(near - 2, 0); i <= std::min(near + 2, last); ++i) {
+            if (p[axis] >= coordinate(axis, i) && p[axis] <= coordinate(axis, i + 1))
+                along[axis].push_back(i);
+        }
+    }
+    std::vector<CellIndex> found;
+    for (const std::int32_t k : along[2]) {
+        for (const std::int32_t j : along[1]) {
+            for (const std::int32_t i : along[0])
+                found.push_back({i, j, k});
+        }
+    }
+    return found;
+}
+
+std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
+    const auto [place, is_new] = divided_.try_emplace(node(cell));
+    if (is_new) {
+        const auto all = corners(cell);
+        for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
+            place->second.push_back(tetrahedron(all, number));
+    }
+    return place->second;
+}
+
+exact::SpacePointId RefinedLattice::exact(std::int64_t corner) {
+    return exact_.add(position(corner));
+}
+
+/// The corners of the vertex, edge, face or tetrahedron in which p lies; nothing if it is outside.
+std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedron& tetrahedron,
+                                                                 exact::SpacePointId p) {
+    std::array<exact::SpacePointId, 4> own;
+    for (std::size_t i = 0; i < 4; ++i)
+        own[i] = exact(tetrahedron[i]);
+    // the side of the volume of the tetrahedron itself, however orient3d counts
+    const int inside = orient3d(exact_, own[0], own[1], own[2], own[3]);
+    std::vector<std::int64_t> found;
+    for (std::size_t i = 0; i < 4; ++i) {
+        auto with = own;
+        with[i] = p;
+        const int side = orient3d(exact_, with[0], with[1], with[2], with[3]) * inside;
+        if (side < 0) return std::nullopt;
+        if (side > 0) found.push_back(tetrahedron[i]);
+    }
+    return found;
+}
+
+void RefinedLattice::add_point(std::size_t point, const Position& p) {
+    const auto cells = cells_at(p);
+    if (cells.empty())
+        throw InputError("outside", "a point is outside of the lattice", -1,
+                         {static_cast<std::int64_t>(point)}, p);
+    const exact::SpacePointId at = exact_.add(p);
+    std::optional<std::vector<std::int64_t>> simplex;
+    for (const CellIndex& cell : cells) {
+        for (const Tetrahedron& tetrahedron : make_divided(cell)) {
+            simplex = carrier(tetrahedron, at);
+            if (simplex) break;
+        }
+        if (simplex) break;
+    }
+    if (!simplex) refuse_lattice("its coordinates are too coarse for its spacing");
+    if (simplex->size() == 1) {
+        const std::int64_t corner = simplex->front();
+        const auto known = corner < nodes_ ? point_at_node_.find(corner) : point_at_node_.end();
+        const bool is_known = corner >= nodes_ || known != point_at_node_.end();
+        const double value = point_values_[point];
+        if (is_known && this->value(corner) != value) {
+            const auto other =
+                corner >= nodes_ ? corner - nodes_ : static_cast<std::int64_t>(known->second);
+            throw InputError("two_values", "two points in one position have different values", -1,
+                             {other, static_cast<std::int64_t>(point)}, p);
+        }
+        if (corner < nodes_) {
+            values_[static_cast<std::size_t>(corner)] = value;
+            point_at_node_.emplace(corner, point);
+        }
+        return;
+    }
+    const std::int64_t own = nodes_ + static_cast<std::int64_t>(point);
+    for (const CellIndex& cell : cells) {
+        std::vector<Tetrahedron> divided;
+        for (const Tetrahedron& tetrahedron : make_divided(cell)) {
+            const auto place = [&](std::int64_t corner) {
+                return std::ranges::find(tetrahedron, corner) - tetrahedron.begin();
+            };
+            const bool has_all = std::ranges::all_of(
+                *simplex, [&](std::int64_t corner) { return place(corner) < 4; });
+            if (!has_all) {
+                divided.push_back(tetrahedron);
+                continue;
+            }
+            for (const std::int64_t corner : *simplex) {
+                divided.push_back(tetrahedron);
+                divided.back()[static_cast<std::size_t>(place(corner))] = own;
+            }
+        }
+        make_divided(cell) = std::move(divided);
+    }
+}
+
+/// By the tetrahedron that p is in but for rounding. Of those that are flat but for rounding their
+/// neighbors have the same values.
+double RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
+                                     const Position& p) const {
+    const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
+    double best = -HUGE_VAL, found = 0;
+    for (const Tetrahedron& tetrahedron : tetrahedra) {
+        std::array<Position, 4> at{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            at[i] = position(tetrahedron[i]);
+            if (at[i] == p) return value(tetrahedron[i]);
+        }
+        const double whole = volume(at[0], at[1], at[2], at[3]);
+        if (whole < least_whole) continue;
+        double least = HUGE_VAL, sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            auto with = at;
+            with[i] = p;
+            const double weight = volume(with[0], with[1], with[2], with[3]) / whole;
+            least = std::min(least, weight);
+            sum += weight * value(tetrahedron[i]);
+        }
+        if (least > best) {
+            best = least;
+            found = sum;
+        }
+    }
+    return found;
+}
+
+double RefinedLattice::at(const Position& p) const {
+    const auto cells = cells_at(p);
+    if (cells.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const CellIndex& cell = cells.front();
+    if (const auto* tetrahedra = divided(cell)) return in_tetrahedra(*tetrahedra, p);
+    // from the lowest corner to the highest, the axis with the largest share first
+    std::array<double, 3> shares{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        shares[axis] =
+            std::clamp((p[axis] - coordinate(axis, cell[axis])) / spacing_[axis], 0.0, 1.0);
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::ranges::stable_sort(axes, std::greater<>(),
+                             [&](std::size_t axis) { return shares[axis]; });
+    std::int64_t corner = node(cell);
+    double sum = value(corner) * (1 - shares[axes[0]]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        corner += stride_[axes[i]];
+        sum += value(corner) * (shares[axes[i]] - (i < 2 ? shares[axes[i + 1]] : 0));
+    }
+    return sum;
+}
+
+}  // namespace realmodel::fields

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "exact/space_points.hpp"
+#include "realmodel/fields/level_sets.hpp"
+
+namespace realmodel::fields {
+
+using Position = std::array<double, 3>;
+/// The corners of a tetrahedron, of positive volume.
+using Tetrahedron = std::array<std::int64_t, 4>;
+/// The lowest corner of a cell, by its steps along x, y, z from the lattice's first node.
+using CellIndex = std::array<std::int32_t, 3>;
+
+/// The corners of a cell's tetrahedra by their steps from its lowest corner.
+inline constexpr std::array<std::array<CellIndex, 4>, 6> kTetrahedraOfCell{{
+    {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}},
+    {{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {1, 1, 1}}},
+    {{{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}}},
+    {{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 1, 1}}},
+    {{{0, 0, 0}, {0, 1, 1}, {0, 0, 1}, {1, 1, 1}}},
+    {{{0, 0, 0}, {1, 0, 1}, {1, 0, 0}, {1, 1, 1}}},
+}};
+
+/// The tetrahedra of a field, with a layer of cells around its lattice, beyond which it is greater
+/// than any level and any value in the lattice. Corners are the nodes of lattice and layer, then
+/// the points. A point in a tetrahedron, in a face or on an edge divides all tetrahedra that have
+/// these in common; one in a node gives it its value.
+class RefinedLattice {
+public:
+    /// @throws InputError  as level_sets does
+    RefinedLattice(const LatticeField& field, std::span<const double> levels);
+
+    /// How many cells there are along an axis, those of the layer, too.
+    std::int32_t cells(std::size_t axis) const { return counts_[axis] + 1; }
+    std::int64_t node(const CellIndex& at) const {
+        return (at[0] + 1) + stride_[1] * (at[1] + 1) + stride_[2] * (at[2] + 1);
+    }
+    double value(std::int64_t corner) const {
+        return corner < nodes_ ? values_[static_cast<std::size_t>(corner)]
+                               : point_values_[static_cast<std::size_t>(corner - nodes_)];
+    }
+    Position position(std::int64_t corner) const;
+    /// The tetrahedra of a cell that points divide, nullptr for any other cell.
+    const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
+        const auto found = divided_.find(node(cell));
+        return found == divided_.end() ? nullptr : &found->second;
+    }
+    static Tetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners, std::size_t number);
+    /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.
+    std::array<std::int64_t, 8> corners(const CellIndex& cell) const;
+    /// The function at a position of the lattice; NaN outside.
+    double at(const Position& p) const;
+
+private:
+    double coordinate(std::size_t axis, std::int32_t step) const {
+        return origin_[axis] + spacing_[axis] * step;
+    }
+    void add_layer(const LatticeField& field, std::span<const double> levels);
+    void add_point(std::size_t point, const Position& p);
+    /// The cells of the lattice whose boxes contain a position, -1 none.
+    std::vector<CellIndex> cells_at(const Position& p) const;
+    std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
+    std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
+                                                     exact::SpacePointId p);
+    exact::SpacePointId exact(std::int64_t corner);
+    double in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Position& p) const;
+
+    std::array<double, 3> origin_, spacing_;
+    std::array<std::int32_t, 3> counts_;
+    std::array<std::int64_t, 3> stride_;
+    std::int64_t nodes_;  ///< of lattice and layer
+    std::vector<double> values_;
+    std::vector<Position> points_;
+    std::vector<double> point_values_;
+    std::map<std::int64_t, std::size_t> point_at_node_;
+    std::map<std::int64_t, std::vector<Tetrahedron>> divided_;  ///< by the cell's lowest corner
+    exact::SpacePoints exact_;
+};
+
+}  // namespace realmodel::fields

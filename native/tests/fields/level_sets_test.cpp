@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/fields/level_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <random>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::fields {
+namespace {
+
+using Point = std::array<double, 3>;
+
+/// A lattice with the values of a function at its nodes, and points with values of their own.
+struct Sampled {
+    std::vector<double> values, points, point_values;
+    LatticeField field{};
+
+    Sampled(const std::array<std::int32_t, 3>& counts, const Point& spacing,
+            const std::function<double(const Point&)>& f) {
+        field.origin = {-1, 2, 0.5};
+        field.spacing = spacing;
+        field.counts = counts;
+        for (std::int32_t k = 0; k < counts[2]; ++k) {
+            for (std::int32_t j = 0; j < counts[1]; ++j) {
+                for (std::int32_t i = 0; i < counts[0]; ++i)
+                    values.push_back(f(node({i, j, k})));
+            }
+        }
+    }
+    Point node(const std::array<std::int32_t, 3>& at) const {
+        Point p{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            p[axis] = field.origin[axis] + field.spacing[axis] * at[axis];
+        return p;
+    }
+    void add(const Point& p, double value) {
+        points.insert(points.end(), p.begin(), p.end());
+        point_values.push_back(value);
+    }
+    const LatticeField& view() {
+        field.values = values;
+        field.points = points;
+        field.point_values = point_values;
+        return field;
+    }
+    std::vector<LevelSet> at(const std::vector<double>& levels, int threads = 1) {
+        return level_sets(view(), levels, {threads, nullptr});
+    }
+};
+
+double volume(const LevelSet& set) {
+    double sum = 0;
+    for (const auto& t : set.triangles) {
+        std::array<Point, 3> p{};
+        for (std::size_t i = 0; i < 3; ++i)
+            p[i] = set.vertices[static_cast<std::size_t>(t[i])];
+        sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+               p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+               p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+    }
+    return sum / 6;
+}
+
+/// Each edge as often in one direction as in the other.
+void expect_closed(const LevelSet& set) {
+    std::map<std::pair<std::int32_t, std::int32_t>, int> sums;
+    for (const auto& t : set.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto a = t[i], b = t[(i + 1) % 3];
+            ASSERT_NE(a, b);
+            sums[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    }
+    EXPECT_TRUE(std::ranges::all_of(sums, [](const auto& sum) { return sum.second == 0; }));
+}
+
+double radius(const Point& p) {
+    return std::hypot(p[0] - 1.1, p[1] - 4.2, p[2] - 2.3);
+}
+
+TEST(LevelSetsTest, BallsHaveTheVolumesThatTheyMust) {
+    Sampled ball({41, 41, 41}, {0.1, 0.1, 0.1}, radius);
+    for (const auto& [level, set] : {std::pair(1.0, 0), {1.5, 1}}) {
+        const auto sets = ball.at({1.0, 1.5});
+        const LevelSet& own = sets[static_cast<std::size_t>(set)];
+        expect_closed(own);
+        const double exact = 4.0 / 3 * M_PI * std::pow(level, 3);
+        EXPECT_NEAR(volume(own), exact, 0.01 * exact);
+    }
+}
+
+TEST(LevelSetsTest, APlaneIsClosedAroundTheLattice) {
+    Sampled slope({5, 6, 7}, {1, 0.5, 0.7}, [](const Point& p) { return p[2] + 0.1 * p[0]; });
+    const auto sets = slope.at({2.0});
+    expect_closed(sets[0]);
+    EXPECT_GT(volume(sets[0]), 4 * 2.5 * 1.5);  // all that is below in the lattice, and more
+    for (const Point& p : sets[0].vertices) {
+        const bool is_within = p[0] > -1 && p[0] < 3 && p[1] > 2 && p[1] < 4.5 && p[2] > 0.5;
+        if (is_within) {
+            EXPECT_NEAR(p[2] + 0.1 * p[0], 2.0, 1e-12);
+        }
+    }
+}
+
+TEST(LevelSetsTest, ALevelThroughNodesHasNoTriangleTwiceAndNoneWithoutCorners) {
+    // all nodes of a layer lie on the level, and so do whole tetrahedra of the next one
+    Sampled flat({4, 4, 5}, {1, 1, 1}, [](const Point& p) { return std::max(p[2], 2.5); });
+    flat.values[0] = 2.5;
+    const auto sets = flat.at({2.5});
+    expect_closed(sets[0]);
+    auto sorted = sets[0].triangles;
+    for (auto& t : sorted)
+        std::ranges::sort(t);
+    std::ranges::sort(sorted);
+    EXPECT_TRUE(std::ranges::adjacent_find(sorted) == sorted.end());
+}
+
+TEST(LevelSetsTest, ATouchingPairOfTrianglesCancels) {
+    // three nodes of one face are on the level, all others above: there is nothing inside
+    Sampled touched({3, 3, 3}, {1, 1, 1}, [](const Point&) { return 1.0; });
+    touched.values[0] = touched.values[1] = touched.values[4] = 0.0;
+    EXPECT_TRUE(touched.at({0.0})[0].triangles.empty());
+}
+
+/// Points within cells, on faces, on edges and in nodes become vertices.
+TEST(LevelSetsTest, PointsAreVerticesWhereverTheyLie) {
+    // z of a point decides which level it is on
+    const auto f = [](const Point& p) { return 2 * p[0] - 0.5 * p[1] + 0.75 * p[2]; };
+    Sampled field({12, 12, 12}, {0.37, 0.37, 0.37}, f);
+    std::mt19937_64 generator(5);
+    std::uniform_real_distribution<double> random(0.2, 3.8);
+    for (std::size_t i = 0; i < 600; ++i) {
+        Point p{-1 + random(generator), 2 + random(generator), 0.5};
+        const auto node = field.node({static_cast<std::int32_t>(i % 10), 3, 4});
+        if (i % 5 == 1) p[0] = node[0];             // in a face of cells
+        if (i % 5 == 2) p = {node[0], node[1], 0};  // on an edge
+        const double level = i % 2 == 0 ? 1.2 : 1.6;
+        p[2] = (level - 2 * p[0] + 0.5 * p[1]) / 0.75;
+        if (p[2] < 0.6 || p[2] > 4.5) continue;
+        bool is_new = true;
+        for (std::size_t j = 0; j + 2 < field.points.size(); j += 3)
+            is_new &= Point{field.points[j], field.points[j + 1], field.points[j + 2]} != p;
+        if (is_new) field.add(p, level);
+    }
+    const Point node = field.node({3, 3, 4});
+    field.add(node, f(node));
+    field.values[3 + 12 * (3 + 12 * 4)] = 9;  // what the point in it says counts
+    ASSERT_GT(field.point_values.size(), 50U);
+    const std::vector<double> levels{1.2, 1.6};
+    const auto sets = field.at(levels);
+    for (std::size_t level = 0; level < 2; ++level) {
+        expect_closed(sets[level]);
+        for (std::size_t i = 0; i < field.point_values.size(); ++i) {
+            if (field.point_values[i] != levels[level]) continue;
+            const Point p{field.points[3 * i], field.points[3 * i + 1], field.points[3 * i + 2]};
+            EXPECT_NE(std::ranges::find(sets[level].vertices, p), sets[level].vertices.end());
+        }
+    }
+    const auto values = field_at(field.view(), field.points, {1, nullptr});
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_NEAR(values[i], field.point_values[i], 1e-12);
+    const double inside = volume(sets[0]), outside = volume(sets[1]);
+    EXPECT_LT(inside, outside);
+}
+
+TEST(LevelSetsTest, TheFieldIsLinearOnTetrahedra) {
+    const auto f = [](const Point& p) { return 2 * p[0] - 0.5 * p[1] + 0.25 * p[2]; };
+    Sampled field({4, 5, 6}, {0.7, 0.3, 0.9}, f);
+    std::mt19937_64 generator(6);
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < 100; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::uniform_real_distribution<double> random(
+                field.field.origin[axis],
+                field.field.origin[axis] +
+                    field.field.spacing[axis] * (field.field.counts[axis] - 1));
+            positions.push_back(random(generator));
+        }
+        if (i % 3 == 0) {
+            const std::size_t own = positions.size() - 3;
+            const Point p{positions[own], positions[own + 1], positions[own + 2]};
+            field.add(p, f(p));
+        }
+    }
+    const auto found = field_at(field.view(), positions, {2, nullptr});
+    for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], f({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}),
+                    1e-12);
+    EXPECT_TRUE(std::isnan(field_at(field.view(), std::vector<double>{9, 9, 9}, {})[0]));
+}
+
+TEST(LevelSetsTest, NodesBesideALevelAreMovedOntoIt) {
+    Sampled field({3, 3, 3}, {1, 1, 1}, [](const Point& p) { return p[2]; });
+    field.values[13] += 1e-9;
+    const auto moved = moved_onto_levels(field.view(), std::vector<double>{1.5});
+    EXPECT_EQ(moved[13], 1.5);
+    EXPECT_EQ(moved[4], field.values[4]);
+    expect_closed(field.at({1.5})[0]);
+}
+
+TEST(LevelSetsTest, TheSameForAnyNumberOfThreads) {
+    Sampled ball({21, 22, 23}, {0.2, 0.2, 0.2}, radius);
+    const auto one = ball.at({0.9, 1.3}, 1), three = ball.at({0.9, 1.3}, 3);
+    for (std::size_t level = 0; level < 2; ++level) {
+        EXPECT_EQ(one[level].triangles, three[level].triangles);
+        EXPECT_TRUE(std::ranges::equal(one[level].vertices, three[level].vertices));
+    }
+}
+
+void expect_refused(Sampled& field, const std::vector<double>& levels, const std::string& kind) {
+    try {
+        field.at(levels);
+        ADD_FAILURE() << "not refused: " << kind;
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, kind);
+    }
+}
+
+TEST(LevelSetsTest, WhatMakesNoFieldIsRefused) {
+    const auto f = [](const Point& p) { return p[2]; };
+    Sampled outside({3, 3, 3}, {1, 1, 1}, f);
+    outside.add({9, 3, 1}, 1);
+    expect_refused(outside, {1}, "outside");
+    Sampled twice({3, 3, 3}, {1, 1, 1}, f);
+    twice.add({0.3, 3.3, 1.1}, 1);
+    twice.add({0.3, 3.3, 1.1}, 1);
+    EXPECT_EQ(twice.at({1}).size(), 1U);
+    twice.add({0.3, 3.3, 1.1}, 2);
+    expect_refused(twice, {1, 2}, "two_values");
+    Sampled at_node({3, 3, 3}, {1, 1, 1}, f);
+    at_node.add({0, 3, 1.5}, 1);
+    at_node.add({0, 3, 1.5}, 2);
+    expect_refused(at_node, {1, 2}, "two_values");
+    Sampled unknown({3, 3, 3}, {1, 1, 1}, f);
+    unknown.values[3] = NAN;
+    expect_refused(unknown, {1}, "not_finite");
+    Sampled flat({1, 3, 3}, {1, 1, 1}, f);
+    expect_refused(flat, {1}, "bad_lattice");
+    Sampled down({3, 3, 3}, {1, 1, 1}, f);
+    expect_refused(down, {2, 1}, "bad_lattice");
+}
+
+}  // namespace
+}  // namespace realmodel::fields
