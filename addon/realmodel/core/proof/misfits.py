@@ -52,7 +52,8 @@ def misfits(
 ) -> list[Misfit]:
     """The data that a built model does not have as they say: points and contacts off their surfaces, bounds
     that are not kept, intervals and places in another block, dips, and observations that are left out, but
-    not those that are switched off. In this order, the largest of each kind first.
+    not those that are switched off. In this order, the largest of each kind first. Of surfaces that are level
+    sets of a field, blocks and what is left out are listed alone.
 
     tolerance: model units, from which on something counts; None: a billionth of the range of heights of the
     data. dip_tolerance: degrees between a dip and its surface. Raises InputRefused for a model of a file
@@ -69,6 +70,8 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
         near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry.rock)
         sources = _sources(entry.rock)
         for at, surface in enumerate(entry.rock.surfaces):
+            if surface.is_level_set:  # it has no one height over a place
+                continue
             which = first + at, at, number
             found += _points(model, which, sources, near)
             found += _bounds(model, which, near)
