@@ -10,8 +10,7 @@ import numpy as np
 from ..core import InputRefused, Project, Rock, Surface
 from ..core.readers import UnitNames, is_mesh_file
 from ..core.readers.maps.unit_polygons import read_unit_polygons
-from ..core.surfaces.draped_map import DrapedMap, draped_map
-from ..core.surfaces.map_data import map_on_ground, read_map, with_ground
+from ..core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
 from . import caches, data_objects, project_settings, settings, stored_arrays, viewports
 
 _known = caches.new(most=8)  # by text
