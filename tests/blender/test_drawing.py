@@ -222,9 +222,12 @@ class States(PanelCase):
 
     def field_data(self):
         """A surface with dips, of a rock mass with observations and dips."""
-        dips = "x,y,dip,strike"
-        tables = {"seen": "x,y,z,block\n1,2,3,Sand\n", "dips": f"{dips}\n1,2,5,0\n"}
-        for name, text in (tables | {"named": f"{dips},block\n1,2,5,0,Sand\n"}).items():
+        tables = (
+            ("seen", "x,y,z,block\n1,2,3,Sand\n"),
+            ("dips", "x,y,dip,strike\n1,2,5,0\n"),
+            ("dips_of_rock", "x,y,z,dip,strike,block\n1,2,3,5,0,Sand\n"),
+        )
+        for name, text in tables:
             path = self.folder / f"{name}.csv"
             path.write_text(text)
             ops.boreholes_read(filepath=str(path))

@@ -15,6 +15,7 @@ from .cells.blocks import Block, BlockBoundary
 from .exporters.meshes import save_mesh
 from .exporters.report import Report
 from .fields import Lattice, ScalarField
+from .filling import Strata, fill_with_strata
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -107,6 +108,7 @@ __all__ = [
     "Series",
     "SimulationMesh",
     "SpaceDips",
+    "Strata",
     "Structure",
     "SubBlock",
     "SubSurface",
@@ -123,6 +125,7 @@ __all__ = [
     "cross_validate",
     "estimate",
     "estimate_mesh",
+    "fill_with_strata",
     "interpolate",
     "intersect",
     "load_library",

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Strata in any solid: a sculpted cliff, a boulder, a scan, or a terrain down to a base.
+
+Comes in: a triangulated mesh, and `Strata`, which say how beds lie. Goes out: the bed of any point (`Beds`),
+and a `Model` whose blocks are the beds and together are the mesh.
+"""
+
+from .beds import Beds, lay_beds
+from .fill import fill_with_strata
+from .palettes import PALETTES
+from .solid import closed_mesh
+from .strata import Strata
+
+__all__ = ["PALETTES", "Beds", "Strata", "closed_mesh", "fill_with_strata", "lay_beds"]

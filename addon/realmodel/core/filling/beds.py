@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Beds laid through a box: the bed of any point, in closed form.
+
+All tilted beds have the shape of one datum: a plane, with folds along straight axes, broken by vertical
+faults. So the bed of a point follows from its height above the datum alone. Folds are polylines across their
+axis, of _NODES to a wavelength: the datum has no curves, and the sheets of `sheets.py` are exactly what the
+formulas here say.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.algebra import dot
+from ..base.elementary import cos, exp, sin
+from ..base.errors import InputRefused
+from .strata import Strata
+
+_NODES = 32  # of a fold's polyline to a wavelength
+_MOST_NODES = 2048
+_UNEVEN = 1.2  # beds are at most exp(1.2) times as thick as the mean before that is made even
+
+
+@dataclass(frozen=True, eq=False)
+class Beds:
+    """Beds through a box, the oldest number 0.
+
+    low, high: (3,) corners of the box. slope: (2,) of the datum's plane, which is at 0 in the middle of the
+    box. fold: a direction in plan (2,), and of the polyline the distances along it (N,) and the heights (N,).
+    fault: a direction in plan (2,), the distances of the faults along it (F,) and the shifts of the strips
+    between them (F + 1,). levels: (L,) heights above the datum between the tilted beds. floor: the elevation
+    of the unconformity, infinite where there is none. covers: (U,) elevations between the beds above it.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    slope: np.ndarray
+    fold: tuple[np.ndarray, np.ndarray, np.ndarray]
+    fault: tuple[np.ndarray, np.ndarray, np.ndarray]
+    levels: np.ndarray
+    floor: float
+    covers: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """How many beds there are."""
+        return len(self.levels) + 1 + (len(self.covers) + 1 if math.isfinite(self.floor) else 0)
+
+    @property
+    def middle(self) -> np.ndarray:
+        """(2,) the middle of the box in plan; distances are from there."""
+        return 0.5 * (self.low + self.high)[:2]
+
+    def strips(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) the strip between faults in which each place in plan (N, 2) lies."""
+        along, positions, _ = self.fault
+        return np.searchsorted(positions, dot(plan - self.middle, along))
+
+    def datum(self, plan: np.ndarray, strips: np.ndarray) -> np.ndarray:
+        """(N,) the elevation of the datum at places in plan (N, 2), in strips between faults (N,)."""
+        away = plan - self.middle
+        along, distances, heights = self.fold
+        return dot(away, self.slope) + np.interp(dot(away, along), distances, heights) + self.fault[2][strips]
+
+    def numbers(self, points: np.ndarray) -> np.ndarray:
+        """(N,) int32: the bed that each of the points (N, 3) lies in."""
+        plan, z = points[:, :2], points[:, 2]
+        found = np.searchsorted(self.levels, z - self.datum(plan, self.strips(plan)))
+        if math.isfinite(self.floor):
+            above = len(self.levels) + 1 + np.searchsorted(self.covers, z)
+            found = np.where(z > self.floor, above, found)
+        return found.astype(np.int32)
+
+
+def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
+    """Lays beds through the box of vertices (V, 3). Raises InputRefused where folds are too narrow for it."""
+    random = np.random.default_rng(strata.seed)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
+    corners -= 0.5 * (low + high)[:2]
+    thicknesses = exp(strata.variation * _UNEVEN * (2.0 * random.random(strata.beds) - 1.0))
+    phase, fault_random = random.random(), random.random((2, strata.faults))
+    slant = cos(math.radians(strata.dip))
+    steepness = -sin(math.radians(strata.dip)) / slant
+    empty = np.empty(0)
+    has_cover = strata.unconformity > 0
+    laid = Beds(
+        low,
+        high,
+        steepness * _towards(strata.dip_direction),
+        _fold(strata, corners, phase, slant),
+        _faults(strata, corners, fault_random),
+        empty,
+        float(low[2] + strata.unconformity * (high[2] - low[2])) if has_cover else math.inf,
+        empty,
+    )
+    return _divided(strata, laid, vertices, thicknesses)
+
+
+def _divided(strata: Strata, laid: Beds, vertices: np.ndarray, thicknesses: np.ndarray) -> Beds:
+    """The beds with the boundaries between them. thicknesses: (N,) in any unit."""
+    plan, z = vertices[:, :2], vertices[:, 2]
+    above = np.minimum(z, laid.floor) - laid.datum(plan, laid.strips(plan))
+    upper = 0
+    if math.isfinite(laid.floor):
+        upper = min(max(round(strata.beds * (1.0 - strata.unconformity)), 1), strata.beds - 1)
+    tilted, level = thicknesses[: strata.beds - upper], thicknesses[strata.beds - upper :]
+    slant = cos(math.radians(strata.dip))
+    begin, extent = float(above.min()), float(np.ptp(above))
+    if strata.thickness:
+        total = strata.thickness * len(tilted) / slant
+        begin, extent = begin + 0.5 * (extent - total), total
+    levels = begin + extent * _shares(tilted)
+    covers = np.empty(0)
+    if upper:
+        extent = strata.thickness * upper if strata.thickness else float(laid.high[2]) - laid.floor
+        covers = laid.floor + extent * _shares(level)
+    return Beds(laid.low, laid.high, laid.slope, laid.fold, laid.fault, levels, laid.floor, covers)
+
+
+def _shares(thicknesses: np.ndarray) -> np.ndarray:
+    """(N - 1,) where the boundaries between beds are, from 0 to 1."""
+    ends = np.cumsum(thicknesses)
+    return ends[:-1] / ends[-1]
+
+
+def _towards(azimuth: float) -> np.ndarray:
+    """(2,) the direction of an azimuth; exact where it is one of the four of the compass."""
+    quarters, rest = divmod(azimuth, 90.0)
+    east, north = (0.0, 1.0) if not rest else (sin(math.radians(rest)), cos(math.radians(rest)))
+    for _ in range(int(quarters) % 4):
+        east, north = north, -east
+    return np.array([east, north])
+
+
+def _fold(strata: Strata, corners: np.ndarray, phase: float, slant: float):
+    across = _towards(strata.fold_axis + 90.0)
+    if not strata.is_folded:
+        return across, np.zeros(1), np.zeros(1)
+    reach = dot(corners, across)
+    step = strata.fold_wavelength / _NODES
+    offset = phase * _NODES
+    first = math.floor(reach.min() / step - offset) - 1
+    last = math.ceil(reach.max() / step - offset) + 1
+    if last - first > _MOST_NODES:
+        raise InputRefused(
+            f"folds {strata.fold_wavelength:g} long are too narrow for a solid {np.ptp(reach):g} wide",
+            advice=f"choose a wavelength of {np.ptp(reach) * _NODES / (_MOST_NODES - 4):.3g} or more",
+        )
+    nodes = np.arange(first, last + 1)
+    heights = strata.fold_amplitude / slant * sin((nodes % _NODES) * (2.0 * math.pi / _NODES))
+    return across, (nodes + offset) * step, heights
+
+
+def _faults(strata: Strata, corners: np.ndarray, random: np.ndarray):
+    """Faults at about equal distances, each down to one side or the other."""
+    across = _towards(strata.fault_strike + 90.0)
+    reach = dot(corners, across)
+    share = (np.arange(strata.faults) + 0.5 + 0.6 * (random[0] - 0.5)) / max(strata.faults, 1)
+    steps = np.where(random[1] < 0.5, -strata.throw, strata.throw)
+    return across, reach.min() + np.ptp(reach) * share, np.append(0.0, np.cumsum(steps))

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exact fill: the stack of the beds, cut by the solid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.work import Cancel, Progress, Work, run
+from ..model.build import build
+from ..model.cutting import cut_by_surface
+from ..model.model import Model
+from ..project.project import Project, Rock
+from ..settings.method_options import check_threads
+from .beds import lay_beds
+from .palettes import rocks_of_beds
+from .sheets import sheets_of
+from .solid import closed_mesh, solid_within
+from .strata import Strata
+
+_SOLID, _STACK = 0.3, 0.35  # the progress at the end of these steps
+
+
+def fill_with_strata(
+    vertices,
+    triangles,
+    strata: Strata,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Model:
+    """Fills a closed mesh with strata, or an open one of one height everywhere down to a base.
+
+    vertices (V, 3), triangles (T, 3). Returns a model whose blocks are the beds, oldest first, `Bed 1` and so
+    on: closed, with common faces, and together the mesh. Vertices of the mesh stay as they are. Beds that are
+    nowhere in the mesh are blocks without cells.
+
+    Raises InputRefused with a place for a mesh that is open otherwise, UsageError, Cancelled, BuildFailed.
+
+    >>> corners = [(x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 3)]
+    >>> sides = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    >>> sides += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    >>> model = fill_with_strata(corners, sides, Strata(beds=3, variation=0))
+    >>> [(block.name, round(block.volume, 9)) for block in model.blocks]
+    [('Bed 1', 16.0), ('Bed 2', 16.0), ('Bed 3', 16.0)]
+    """
+    threads = check_threads(threads)
+    mesh = closed_mesh(vertices, triangles, strata.base)
+    return run(lambda work: fill_within(work, mesh, strata), progress, cancel, threads=threads)
+
+
+def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata) -> Model:
+    """`fill_with_strata` of a closed mesh, as a job."""
+    beds = lay_beds(strata, mesh[0])
+    solid = solid_within(work, mesh, _SOLID)
+    library, rocks = rocks_of_beds(beds.count, strata.palette, np.random.default_rng(strata.seed))
+    surfaces = sheets_of(beds, rocks)
+    project = Project("strata", [Rock("strata", surfaces)], library=library)
+    with work.part(_SOLID, _STACK):
+        stack = build(project, cells="blocks")
+    with work.part(_STACK, 1.0):
+        return cut_by_surface(stack, *solid).inside
