@@ -53,6 +53,20 @@ class RealModelView(bpy.types.PropertyGroup):
     plane_x: _plane_field("East (x)", 0)
     plane_y: _plane_field("North (y)", 1)
     plane_z: _plane_field("Height (z)", 2)
+    section_holes: StringProperty(
+        name="Holes",
+        description="Names of the boreholes that a section goes through, in order, with commas between them",
+        options=set(),
+    )
+    section_beyond: FloatProperty(
+        name="Beyond",
+        description="How far a section through boreholes goes on at both ends, of its length",
+        default=5.0,
+        min=0.0,
+        soft_max=100.0,
+        subtype="PERCENTAGE",
+        options=set(),
+    )
     use_section: BoolProperty(
         name="Show Cut",
         description="Show the model cut along the section plane, with filled cut faces",

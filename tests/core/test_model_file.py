@@ -25,6 +25,7 @@ from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.exporters import FORMATS
 from realmodel.core.exporters.npz import write_arrays
 from realmodel.core.exporters.report import model_report
+from realmodel.core.results.hole_lines import hole_places
 from realmodel.core.results.residuals import residuals
 from structure_cases import plane_fault
 
@@ -114,6 +115,11 @@ def left_out_holes(model):
         return str(refusal)
 
 
+def fence_through_holes(model, _):
+    names = list(hole_places(model.project))
+    return model.fence_through_holes(names) if len(names) > 1 else None
+
+
 # What is made of a model by each of its methods; properties are compared as they are.
 MADE = {
     "block_boundary": lambda m, _: [m.block_boundary(block) for block in range(len(m.blocks))],
@@ -129,6 +135,7 @@ MADE = {
     "face_corners": lambda m, _: m.face_corners(np.arange(20), np.arange(20) % 2 == 0),
     "field": lambda m, _: [m.field(own.name) for entry in m.rock_inputs for own in entry.fields],
     "fence": lambda m, _: m.fence(m.vertices[:, :2].mean(axis=0) + np.array([[-20, 0], [20, 5]])),
+    "fence_through_holes": fence_through_holes,
     "geological_map": lambda m, _: m.geological_map(),
     "native": lambda m, _: m.native(),
     "of": lambda m, _: Model.of(m),

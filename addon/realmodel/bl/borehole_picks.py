@@ -41,15 +41,22 @@ def remove_at(row, places):
 def paths(row):
     """The line of each hole of a rock mass: its collar, if that is known, and its picks or, where it has
     intervals, all of these."""
+    return list(named_paths(row).values())
+
+
+def named_paths(row):
+    """{hole: its line}, as of `paths`."""
     logs, _ = observed_blocks.shown(row)
     picked = of_rock(row)
-    found = []
+    found = {}
     for hole in dict.fromkeys((*picked, *logs)):
         collar, picks = picked.get(hole, (None, []))
         places = logs[hole].places.tolist() if hole in logs else [place for _, place in picks]
         given = [*([] if collar is None else [collar]), *places]
-        found.append([place for n, place in enumerate(given) if n == 0 or place != given[n - 1]])
-    return [line for line in found if line]
+        line = [place for n, place in enumerate(given) if n == 0 or place != given[n - 1]]
+        if line:
+            found[hole] = line
+    return found
 
 
 def of_rock(row):

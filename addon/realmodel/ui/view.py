@@ -140,6 +140,12 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         layout.operator("realmodel.image_place", text="Place Image...", icon="IMAGE_DATA")
         if plane is not None:
             _section_buttons(layout, "section", "PLANE", "Save Section...")
+        if any(rock.hole_picks or rock.observations for rock in group.rocks):
+            row = layout.row(align=True)
+            row.prop(view, "section_holes")
+            row.operator("realmodel.pick_holes", text="", icon="EYEDROPPER")
+            layout.prop(view, "section_beyond")
+            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
 

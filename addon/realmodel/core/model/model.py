@@ -174,6 +174,7 @@ class Model(ModelData):
     cut_by_block = cutting.cut_by_block
     section = cutting.section
     fence = cutting.fence
+    fence_through_holes = cutting.fence_through_holes
     borehole = borehole
     planned_hole = planned_hole
     observed = observed
