@@ -69,6 +69,13 @@ def _whole(text: str) -> int:
     return int(text)
 
 
+def _groups(text: str) -> int:
+    number = _whole(text)
+    if number < 2:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of groups from 2")
+    return number
+
+
 class Option(NamedTuple):
     """An option of the command line.
 
@@ -278,6 +285,13 @@ OPTIONS = (
         "eroded",
         "",
         "add the volume that each surface removed and each body took of each block to table and report",
+    ),
+    Option(
+        "cross-validate",
+        "N",
+        "leave the boreholes out in N groups, and print what models without them have where they are; "
+        "--report lists each hole",
+        _groups,
     ),
     Option("check-model", "", "prove the model before anything is written, and print the proof"),
     Option("quiet", "", "print nothing but errors"),
