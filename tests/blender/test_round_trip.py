@@ -144,6 +144,17 @@ points = "plain.csv"
 name = "by points"
 region = "POLYGON ((400 0, 500 0, 500 80, 400 80, 400 0))"
 edge_length = "auto"
+base_elevation = -50
+
+[[rock.series]]
+name = "folded"
+dips = "in_space.csv"
+resolution = 7.5
+
+[[rock.surface]]
+name = "bed"
+series = "folded"
+points = "plain.csv"
 
 [[rock.surface]]
 name = "mesh"
@@ -244,6 +255,9 @@ def write_files(folder: Path):
     log = "".join(f"B{n},{top},{bottom},{block}\n" for n in (1, 2, 3) for top, bottom, block in LOG)
     (folder / "log.csv").write_text("BHID,from,to,block\n" + log)
     (folder / "dips.csv").write_text("x,y,dip,strike\n20,20,10,0\n70,20.5,20.25,100\n")
+    (folder / "in_space.csv").write_text(
+        "x,y,z,dip,strike,polarity\n420,20,9,80,0,1\n470,20.5,2,20.25,100,-1\n"
+    )
     (folder / "seen.csv").write_text("x,y,z,block\n20,60,55,in holes only\n60,60,2,B\n")
     (folder / "river.geojson").write_text('{"type": "LineString", "coordinates": [[90, 5], [95, 60]]}')
     squares = ",".join(
@@ -302,6 +316,7 @@ def _rock(rock):
         "size": [{**entry, "at": _plain(entry["at"])} for entry in rock.size],
         "constraints": [line.tolist() for line in rock.constraints],
         "surfaces": [_surface(surface) for surface in rock.surfaces],
+        "series": [_series(series) for series in rock.series],
         "observations": rock.observed
         and [array.tolist() for array in (rock.observed.places, rock.observed.blocks, rock.observed.holes)],
         **{
@@ -309,6 +324,12 @@ def _rock(rock):
             for key in ("name", "edge_length", "triangles", "mesher", "base_elevation")
         },
     }
+
+
+def _series(series):
+    dips = series.space_dips()
+    arrays = dips and [dips.positions.tolist(), dips.normals.tolist()]
+    return [series.name, series.kind, series.resolution, arrays]
 
 
 def _surface(surface):
@@ -322,7 +343,7 @@ def _surface(surface):
         "method": surface.method_options() if surface.interpolated else None,
         **{
             key: getattr(surface, key)
-            for key in ("name", "rule", "property", "block", "minimum_thickness", "correlation")
+            for key in ("name", "series", "rule", "property", "block", "minimum_thickness", "correlation")
         },
     }
 
