@@ -55,6 +55,7 @@ variogram = { nugget = 0.25, structures = [{ model = "spherical", range = 33.3, 
   { model = "gaussian", range = 90, sill = 2, anisotropy = { ratio = 1.7, azimuth = 35 } }] }
 anisotropy = { ratio = 2.5, azimuth = 30 }
 extrapolate = "nearest"
+left_out = [[13.5, 29, 6], [1e3, -7.25, 0.1]]
 property = 4
 block = "Bottom"
 
@@ -339,6 +340,7 @@ def _surface(surface):
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
         "contacts": surface.contact_array().tolist(),
+        "left_out": None if surface.left_out is None else [tuple(place) for place in surface.left_out],
         "dips": surface.dips and [surface.dips.positions.tolist(), surface.dips.gradients.tolist()],
         "method": surface.method_options() if surface.interpolated else None,
         **{

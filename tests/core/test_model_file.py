@@ -25,8 +25,8 @@ from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.exporters import FORMATS
 from realmodel.core.exporters.npz import write_arrays
 from realmodel.core.exporters.report import model_report
-from realmodel.core.results.hole_lines import hole_places
 from realmodel.core.results.residuals import residuals
+from realmodel.core.results.section_holes import hole_places
 from structure_cases import plane_fault
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -140,6 +140,7 @@ MADE = {
     "native": lambda m, _: m.native(),
     "of": lambda m, _: Model.of(m),
     "observed": lambda m, _: m.observed(),
+    "misfits": lambda m, _: m.misfits(),
     "require_project": lambda m, _: m.require_project("nothing"),
     "save": saved,
     "save_surfaces": saved_surfaces,

@@ -185,6 +185,14 @@ OPTIONS = (
         needs=("section", "fence"),
     ),
     Option(
+        "hole-width",
+        "W",
+        "draw the boreholes of the project within this distance on drawings by --section and --fence",
+        _length,
+        0.0,
+        needs=("section", "fence"),
+    ),
+    Option(
         "cut",
         "CUTTER=BELOW,ABOVE",
         "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK, "

@@ -225,10 +225,18 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         max=MOST_EXAGGERATION,
         soft_max=20.0,
     )
+    hole_width: FloatProperty(
+        name="Holes Within",
+        description="Draw the boreholes within this distance of the section; 0: none",
+        min=0.0,
+        subtype="DISTANCE",
+    )
 
     def invoke(self, context, event):
         if not self.properties.is_property_set("exaggeration"):
             self.exaggeration = exaggeration.factor(context.scene)
+        if not self.properties.is_property_set("hole_width"):
+            self.hole_width = context.scene.realmodel.view.hole_width
         return super().invoke(context, event)
 
     def draw(self, context):
@@ -236,7 +244,8 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.layout.prop(self, name)
         if self.along == "PLANE":
             _draw_plane(self, context)
-        self.layout.prop(self, "exaggeration")
+        for name in ("exaggeration", "hole_width"):
+            self.layout.prop(self, name)
 
     def write(self, context, path):
         if self.along == "PLANE":
@@ -251,7 +260,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
                 raise InputRefused(reason)
             item = context.active_object
             found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
-        found.save(path, self.exaggeration)
+        found.save(path, self.exaggeration, self.hole_width)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

@@ -57,7 +57,7 @@ def _draw_adding(layout):
     line = layout.column(align=True)
     line.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
     line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
-    line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
+    line.operator("realmodel.boreholes_read", text="Import Field Data...", icon="EMPTY_SINGLE_ARROW")
 
 
 def _draw_removable(layout, text, operator):

@@ -87,6 +87,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         map=None,
         names={},
         hole_picks=picks.holes or rock.hole_picks,
+        hole_ends=picks.ends or rock.hole_ends,
     )
     return FieldData(
         read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import Bounds, LeftOut, Observations
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations
 from .columns import in_wrong_order
 from .succession import Succession
 
@@ -71,7 +71,13 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     situation = situation or Situation()
     blocks = BlockNumbers(rock, situation.bodies).of(observations.blocks)
     left_out = _Listed(observations)
-    left_out.add(blocks < 0, "no_surface", "no block, surface or body of the rock mass has this name")
+    left_out.add(~observations.in_use, SWITCHED_OFF, "it is switched off")
+    left_out.add(
+        observations.in_use & (blocks < 0),
+        "no_surface",
+        "no block, surface or body of the rock mass has this name",
+    )
+    blocks = np.where(observations.in_use, blocks, -1)
     used = blocks >= 0
     if situation.parted is not None:
         used &= ~situation.parted
