@@ -267,3 +267,11 @@ def test_two_rock_masses_side_by_side(monkeypatch, has_folds):
     rock_of = np.array([block.rock for block in model.blocks])
     both = (shared >= 0).all(axis=1)
     assert (rock_of[shared[both][:, 0]] != rock_of[shared[both][:, 1]]).any()
+
+
+def test_an_automatic_resolution_gives_some_ten_thousand_nodes(monkeypatch):
+    given_field(monkeypatch, dome, LEVELS[dome])
+    project = folded_project(dome, LEVELS[dome])
+    project.rocks[0].series[0].resolution = "auto"
+    model = build(project)
+    assert 40_000 < model.field("folded").lattice.nodes < 80_000
