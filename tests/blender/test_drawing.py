@@ -237,7 +237,13 @@ class States(PanelCase):
         activity = bpy.context.window_manager.realmodel
         self.field_data()
         drawn |= self.draw().operators
+        ops.datum_pick(location=(1, 2, 3))
+        drawn |= self.draw().operators
+        ops.datum_switch()
+        drawn |= self.draw().operators
         ops.open_sample(sample="gravel_plain")
+        self.model.view.show_misfits = True
+        self.model.active_misfit = 0
         activity.running = True
         drawn |= self.draw().operators
         activity.running = False

@@ -7,7 +7,7 @@ import io
 import numpy as np
 
 from ..core.base.algebra import norm
-from ..core.results.hole_lines import line_through
+from ..core.results.section_holes import line_through
 from . import borehole_picks
 
 

@@ -18,8 +18,8 @@ from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
-from ..results.hole_lines import hole_places, line_through
 from ..results.section_faults import traces_on_fence, traces_on_plane
+from ..results.section_holes import hole_lines, hole_places, line_through
 from ..settings.method_options import check_threads
 from .section import Fence, Section
 
@@ -210,6 +210,7 @@ def section(
             **_section_arrays(model, found),
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
@@ -261,6 +262,7 @@ def fence(
             polyline=polyline,
             panel=np.concatenate(numbers),
             faults=traces_on_fence(model, polyline),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
