@@ -143,7 +143,8 @@ def source_text(hole: str, depth: float, place) -> str:
 class LeftOut:
     """An observation that is not used. kind: a word of KINDS, or SWITCHED_OFF. text: what and why. block: its
     name. hole: its name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model
-    units, None where it is not known."""
+    units, None where it is not known. contradicts: what the others say that it contradicts, which are used;
+    each with its hole and depth, or its place."""
 
     kind: str
     text: str
@@ -151,6 +152,7 @@ class LeftOut:
     hole: str = ""
     depth: float | None = None
     place: tuple[float, ...] | None = None
+    contradicts: tuple[str, ...] = ()
 
 
 def unknown_block(
@@ -174,6 +176,7 @@ SWITCHED_OFF = "switched_off"  # by the user: no warning
 KINDS = {
     **IN_TABLES,
     "wrong_order": "observations have an older block above a younger one, or a block twice, and are not used",
+    "contradiction": "observations contradict others, of which as few as possible are left out",
     "in_body": "observations contradict a body, and are not used",
     "no_surface": "observations are of blocks that cannot be there, and are not used",
 }

@@ -190,9 +190,11 @@ def _of_used(
     for number in range(len(rock.surfaces)):
         on = np.sort(first_rows[meets[:, number]])
         contacts.append(places[on])
+        lower, upper = (np.flatnonzero(said[:, number] & ~meets[place, number]) for said in (above, below))
+        crossed = _crossed(places, column, lower, upper, on)
         kept = [
-            _tightest(places, column, np.flatnonzero(said[:, number] & ~meets[place, number]), on, sign)
-            for said, sign in ((above, 1.0), (below, -1.0))
+            np.union1d(_tightest(places, column, rows, on, sign), rows[crossed[column[rows]]])
+            for rows, sign in ((lower, 1.0), (upper, -1.0))
         ]
         rows = used[np.concatenate(kept)]
         bounds.append(
@@ -236,6 +238,20 @@ def _statements(
                 fills = situation.inside[used, body] & (blocks[used] > dug) & (blocks[used] < count)
                 below[fills, : dug + 1] = False
     return above, below
+
+
+def _crossed(
+    places: np.ndarray, column: np.ndarray, lower: np.ndarray, upper: np.ndarray, contacts: np.ndarray
+) -> np.ndarray:
+    """(K,) bool: the columns in which bounds contradict one another or a contact: there all count, as the
+    fewest are to be left out. lower, upper, contacts: rows."""
+    count = int(column.max(initial=-1)) + 1
+    low, high = np.full(count, -np.inf), np.full(count, np.inf)
+    for rows in (lower, contacts):
+        np.maximum.at(low, column[rows], places[rows, 2])
+    for rows in (upper, contacts):
+        np.minimum.at(high, column[rows], places[rows, 2])
+    return low > high
 
 
 def _tightest(
