@@ -13,10 +13,10 @@ class REALMODEL_UL_misfits(OfRows, bpy.types.UIList):
     """Data that the model does not have as they say."""
 
     def draw_row(self, _context, row, item):
-        split = row.split(factor=0.42)
+        split = row.split(factor=0.4)
         depth = f" {item.depth}" if item.depth else ""
         split.label(text=f"{item.source}{depth}")
-        rest = split.split(factor=0.68)
+        rest = split.split(factor=0.58)
         rest.label(text=item.name)
         right_label(rest, item.by or "left out")
 

@@ -43,7 +43,7 @@ def fill(scene):
             row = group.misfits.add()
             row.kind, row.rock, row.name = each.kind, each.rock, each.name
             row.source = _source(scene, each)
-            row.depth = "" if each.depth is None else f"{each.depth:.6g}"
+            row.depth = "" if each.depth is None else f"{round(each.depth, 2):g}"
             row.says, row.has = each.says, each.has
             row.by = "" if each.by is None else f"{each.by:.3g}{'°' if each.kind == 'dip' else ''}"
             row.place = "" if each.place is None else json.dumps(list(each.place))

@@ -172,6 +172,7 @@ def _maps(scene):
 def _misfits(scene):
     found = misfits.shown(scene)
     places = np.array([each.place for each in found if each.place is not None][:_MOST]).reshape(-1, 3)
+    places = np.unique(places, axis=0)  # several may speak of one place
     red = colors.plain_material(*_RED)
     _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
     ends = [end for each in found if each.end is not None for end in (each.place, each.end)]
