@@ -23,12 +23,13 @@ class FillPreview:
         self._copy = bpy.data.objects.new(_NAME, bpy.data.meshes.new(_NAME)).name
         copy = bpy.data.objects[self._copy]
         placing.stand_at(copy, item)
-        item.users_collection[0].objects.link(copy)
+        bpy.context.scene.collection.objects.link(copy)
         for name, color in next(iter(PALETTES.values())):
             made = materials.new_material(f"{_NAME} {name}", materials.NO_PROPERTY, color)
             del made[materials.KEY]
             copy.data.materials.append(made)
         item.hide_set(True)
+        bpy.context.view_layer.objects.active = copy  # a hidden object is not: the dialog would not end
 
     def show(self, strata, depth):
         """Colors the faces by their beds; depth: as of FilledShape.closed. Raises InputRefused."""
@@ -62,4 +63,5 @@ class FillPreview:
         if item is not None and item.name in bpy.context.view_layer.objects:
             item.hide_set(False)
             item.select_set(self._was_selected)
+            bpy.context.view_layer.objects.active = item
         viewports.redraw()

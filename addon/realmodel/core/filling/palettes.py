@@ -48,11 +48,12 @@ PALETTES: dict[str, tuple[tuple[str, str], ...]] = {
 
 
 def rocks_of_beds(count: int, palette: str, seed: int) -> tuple[Library, list[int]]:
-    """The library of a palette, and the number in it of each bed's rock: no two neighbors are alike."""
+    """The library of a palette, and the number in it of each bed's rock: unlike those of the two beds
+    beneath."""
     entries = PALETTES[palette]
     library = Library([Property(n, name, color=color) for n, (name, color) in enumerate(entries, 1)])
     numbers: list[int] = []
     for chance in np.random.default_rng(seed).random(count).tolist():
-        free = [n for n in range(1, len(entries) + 1) if not numbers or n != numbers[-1]]
+        free = [n for n in range(1, len(entries) + 1) if n not in numbers[-2:]]
         numbers.append(free[int(chance * len(free))])
     return library, numbers
