@@ -28,11 +28,12 @@ def register():
         )
     from . import handlers, operators, preferences, props, ui
     from .bl import display
+    from .bl.field import shown
     from .bl.overlay import viewport
 
     done = []
     try:
-        for part in (preferences, props, operators, ui, display, viewport.handler, handlers):
+        for part in (preferences, props, operators, ui, display, shown, viewport.handler, handlers):
             part.register()
             done.append(part)
     except BaseException:
@@ -59,9 +60,10 @@ def unregister():
     _at_exit(False)
     from . import handlers, operators, preferences, props, ui
     from .bl import display
+    from .bl.field import shown
     from .bl.overlay import viewport
 
-    for part in (handlers, viewport.handler, display, ui, operators, props, preferences):
+    for part in (handlers, viewport.handler, shown, display, ui, operators, props, preferences):
         part.unregister()
 
 

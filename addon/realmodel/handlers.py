@@ -11,6 +11,7 @@ from bpy.app.handlers import persistent
 
 from .bl import caches, display, live, quality, region_size, settings, viewports
 from .bl.display import replacing
+from .bl.field import handle
 from .bl.overlay import rendered
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -83,6 +84,7 @@ def _undone(*_arguments):
 @persistent
 def _changed(scene, depsgraph):
     live.changed(scene, depsgraph)
+    handle.changed(scene, depsgraph)
     display.changed(scene, depsgraph)
 
 

@@ -134,6 +134,21 @@ class RealModelBlock(bpy.types.PropertyGroup):
     object: PointerProperty(type=bpy.types.Object)
 
 
+class RealModelMisfit(bpy.types.PropertyGroup):
+    """A row of the list of data that the model does not have as they say."""
+
+    kind: StringProperty(name="Kind")
+    rock: StringProperty(name="Rock Mass")
+    name: StringProperty(name="Of", description="The surface, or the block")
+    source: StringProperty(name="Source", description="The hole, or the file and the row")
+    hole: StringProperty(name="Hole")
+    depth: StringProperty(name="Depth", description="Along the hole")
+    says: StringProperty(name="Says", description="What the datum says")
+    has: StringProperty(name="Has", description="What the model has there, or why the datum is not used")
+    by: StringProperty(name="By", description="How much is between them")
+    place: StringProperty(options={"HIDDEN"})  # JSON: model coordinates
+
+
 class RealModelSettings(bpy.types.PropertyGroup):
     """`scene.realmodel`: a model and how it is shown."""
 
@@ -282,6 +297,15 @@ class RealModelSettings(bpy.types.PropertyGroup):
         options=set(),
     )
     results: CollectionProperty(type=RealModelBlock)
+    misfits: CollectionProperty(type=RealModelMisfit)
+    active_misfit: IntProperty(
+        name="Active Misfit",
+        description="Active row of the data that do not fit; choosing one turns the viewport there, and "
+        "picks its datum",
+        default=-1,
+        update=changes.misfit_chosen,
+        options=set(),
+    )
     active_result: IntProperty(
         name="Active Block",
         description="Active row of the results; choosing one selects the block in the viewport",

@@ -82,6 +82,9 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     region_stored: StringProperty(options={"HIDDEN"})
     region_stamp: StringProperty(options={"HIDDEN"})
     hole_picks: StringProperty(options={"HIDDEN"})  # JSON of the picks of boreholes
+    hole_ends: StringProperty(options={"HIDDEN"})  # JSON: where holes end
+    interval_values: StringProperty(options={"HIDDEN"})  # arrays of the columns of tables of intervals
+    map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
     dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
     series: StringProperty(options={"HIDDEN"})  # JSON of realmodel.core.Series

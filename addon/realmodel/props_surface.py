@@ -118,4 +118,5 @@ class RealModelSurface(
     structures: CollectionProperty(type=RealModelStructure)
     stored: StringProperty(options={"HIDDEN"})
     dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
+    left_out: StringProperty(options={"HIDDEN"})  # array of its points that are switched off
     other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file

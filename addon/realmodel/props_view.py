@@ -7,12 +7,15 @@ from bpy.props import (
     EnumProperty,
     FloatProperty,
     FloatVectorProperty,
+    IntProperty,
     PointerProperty,
     StringProperty,
 )
 
 from .bl import changes
 from .bl.display import cuts
+from .bl.field import boreholes
+from .core.proof.misfits import DIP_TOLERANCE
 
 
 def _plane_field(name, axis):
@@ -53,6 +56,20 @@ class RealModelView(bpy.types.PropertyGroup):
     plane_x: _plane_field("East (x)", 0)
     plane_y: _plane_field("North (y)", 1)
     plane_z: _plane_field("Height (z)", 2)
+    section_holes: StringProperty(
+        name="Holes",
+        description="Names of the boreholes that a section goes through, in order, with commas between them",
+        options=set(),
+    )
+    section_beyond: FloatProperty(
+        name="Beyond",
+        description="How far a section through boreholes goes on at both ends, of its length",
+        default=5.0,
+        min=0.0,
+        soft_max=100.0,
+        subtype="PERCENTAGE",
+        options=set(),
+    )
     use_section: BoolProperty(
         name="Show Cut",
         description="Show the model cut along the section plane, with filled cut faces",
@@ -89,8 +106,77 @@ class RealModelView(bpy.types.PropertyGroup):
         description="Show the boreholes as tubes, in the colors of the blocks of their intervals, or of the "
         "layer below each pick",
         options=set(),
-        update=changes.boreholes,
+        update=changes.field_data,
     )
+    boreholes_by: StringProperty(
+        name="Color By",
+        description="Column of the tables of intervals and assays that the tubes show; empty: the blocks",
+        search=lambda self, _context, _text: boreholes.columns(self.id_data),
+        options=set(),
+        update=changes.field_data,
+    )
+    show_hole_names: BoolProperty(
+        name="Hole Names",
+        description="Show the name of each borehole at its collar, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    hole_width: FloatProperty(
+        name="Holes Within",
+        description="Distance from the section plane within which boreholes are shown on the cut, and drawn "
+        "on sections; 0: on the cut all, in their places, and none in drawings",
+        min=0.0,
+        subtype="DISTANCE",
+        options=set(),
+        update=changes.field_data,
+    )
+    holes_on: StringProperty(options={"HIDDEN"})  # JSON of the cut that the boreholes are shown on
+    show_contacts: BoolProperty(
+        name="Contacts",
+        description="Show the points of the surfaces, the observed places, and the tops of logged intervals, "
+        "in the colors of the blocks; gray: switched off",
+        options=set(),
+        update=changes.field_data,
+    )
+    show_dips: BoolProperty(
+        name="Dips",
+        description="Show the dips as discs in the plane of the surface: the younger side has the color of "
+        "the surface and a short normal, the older one is black; gray: switched off",
+        options=set(),
+        update=changes.field_data,
+    )
+    show_map: BoolProperty(
+        name="Map",
+        description="Show the geological map on its ground, in the colors of the blocks",
+        options=set(),
+        update=changes.field_data,
+    )
+    show_misfits: BoolProperty(
+        name="Misfits",
+        description="List the data that the model does not have as they say, and show them in red",
+        options=set(),
+        update=changes.field_data,
+    )
+    misfit_tolerance: FloatProperty(
+        name="Tolerance",
+        description="Distance from which on a datum counts as a misfit; 0: all but rounding",
+        min=0.0,
+        subtype="DISTANCE",
+        options=set(),
+        update=changes.field_data,
+    )
+    dip_tolerance: FloatProperty(
+        name="Dip Tolerance",
+        description="Degrees between a dip and its surface from which on it counts as a misfit",
+        min=0.0,
+        max=90.0,
+        default=DIP_TOLERANCE,
+        precision=1,
+        options=set(),
+        update=changes.field_data,
+    )
+    misfit_count: IntProperty(options={"HIDDEN"})  # of all; the list may have fewer
+    datum: StringProperty(options={"HIDDEN"})  # JSON of the active datum, see bl/field/data.py
     show_residuals: BoolProperty(
         name="Residuals",
         description="Show the points of the surfaces, colored by point minus surface",

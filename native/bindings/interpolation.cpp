@@ -188,9 +188,11 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
 py::dict fit_variogram(const Array<double>& points,
                        const std::optional<std::pair<double, double>>& anisotropy,
                        const std::string& drift, int neighbours, bool are_apart,
+                       const std::optional<DipsTuple>& dips, bool has_bounds,
                        WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours, !anisotropy, are_apart};
+    const interpolation::FitOptions options{drift_of(drift), neighbours,    !anisotropy,
+                                            are_apart,       dips_of(dips), has_bounds};
     const interpolation::Anisotropy along =
         anisotropy ? interpolation::Anisotropy{anisotropy->first, anisotropy->second}
                    : interpolation::Anisotropy{};
@@ -295,6 +297,15 @@ void bind_interpolation(py::module_& module) {
 are_apart   no two points have one place, and all are finite: they stay where they are
 
 Raises InputError as krige does for points.)");
+    module.def(
+        "dip_baseline",
+        [](const py::dict& variogram, double spacing) {
+            return interpolation::dip_baseline(variogram_of(variogram), spacing);
+        },
+        arg("variogram"), arg("spacing"),
+        R"(The baseline of slopes with which they say most of heights under a variogram, as krige takes it.
+
+spacing     the mean spacing of points and dips together)");
     module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
                arg("execution") = py::none(),
                R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
@@ -313,12 +324,15 @@ step        between samples
 Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"),
                arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
-               arg("neighbours") = 32, arg("are_apart") = false, arg("execution") = py::none(),
+               arg("neighbours") = 32, arg("are_apart") = false, arg("dips") = py::none(),
+               arg("has_bounds") = false, arg("execution") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
 anisotropy  (ratio, azimuth), as a variogram has them; None: the best is found
 neighbours  with which points that are left out are predicted, at most 64
 are_apart   no two points have one place, and all are finite: of many only some are copied
+dips        as krige; the baseline is the mean spacing of points and dips
+has_bounds  bounds of heights are known, which hold beside the points
 
 Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as
 krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.

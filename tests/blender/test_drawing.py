@@ -221,8 +221,13 @@ class States(PanelCase):
                 self.draw()
 
     def field_data(self):
-        """A surface with dips, of a rock mass with observations."""
-        for name, text in (("seen", "x,y,z,block\n1,2,3,Sand\n"), ("dips", "x,y,dip,strike\n1,2,5,0\n")):
+        """A surface with dips, of a rock mass with observations and dips."""
+        tables = (
+            ("seen", "x,y,z,block\n1,2,3,Sand\n"),
+            ("dips", "x,y,dip,strike\n1,2,5,0\n"),
+            ("dips_of_rock", "x,y,z,dip,strike,block\n1,2,3,5,0,Sand\n"),
+        )
+        for name, text in tables:
             path = self.folder / f"{name}.csv"
             path.write_text(text)
             ops.boreholes_read(filepath=str(path))
@@ -232,7 +237,13 @@ class States(PanelCase):
         activity = bpy.context.window_manager.realmodel
         self.field_data()
         drawn |= self.draw().operators
+        ops.datum_pick(location=(1, 2, 3))
+        drawn |= self.draw().operators
+        ops.datum_switch()
+        drawn |= self.draw().operators
         ops.open_sample(sample="gravel_plain")
+        self.model.view.show_misfits = True
+        self.model.active_misfit = 0
         activity.running = True
         drawn |= self.draw().operators
         activity.running = False

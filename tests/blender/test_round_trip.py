@@ -55,6 +55,7 @@ variogram = { nugget = 0.25, structures = [{ model = "spherical", range = 33.3, 
   { model = "gaussian", range = 90, sill = 2, anisotropy = { ratio = 1.7, azimuth = 35 } }] }
 anisotropy = { ratio = 2.5, azimuth = 30 }
 extrapolate = "nearest"
+left_out = [[13.5, 29, 6], [1e3, -7.25, 0.1]]
 property = 4
 block = "Bottom"
 
@@ -144,6 +145,17 @@ points = "plain.csv"
 name = "by points"
 region = "POLYGON ((400 0, 500 0, 500 80, 400 80, 400 0))"
 edge_length = "auto"
+base_elevation = -50
+
+[[rock.series]]
+name = "folded"
+dips = "in_space.csv"
+resolution = 7.5
+
+[[rock.surface]]
+name = "bed"
+series = "folded"
+points = "plain.csv"
 
 [[rock.surface]]
 name = "mesh"
@@ -244,6 +256,9 @@ def write_files(folder: Path):
     log = "".join(f"B{n},{top},{bottom},{block}\n" for n in (1, 2, 3) for top, bottom, block in LOG)
     (folder / "log.csv").write_text("BHID,from,to,block\n" + log)
     (folder / "dips.csv").write_text("x,y,dip,strike\n20,20,10,0\n70,20.5,20.25,100\n")
+    (folder / "in_space.csv").write_text(
+        "x,y,z,dip,strike,polarity\n420,20,9,80,0,1\n470,20.5,2,20.25,100,-1\n"
+    )
     (folder / "seen.csv").write_text("x,y,z,block\n20,60,55,in holes only\n60,60,2,B\n")
     (folder / "river.geojson").write_text('{"type": "LineString", "coordinates": [[90, 5], [95, 60]]}')
     squares = ",".join(
@@ -302,6 +317,7 @@ def _rock(rock):
         "size": [{**entry, "at": _plain(entry["at"])} for entry in rock.size],
         "constraints": [line.tolist() for line in rock.constraints],
         "surfaces": [_surface(surface) for surface in rock.surfaces],
+        "series": [_series(series) for series in rock.series],
         "observations": rock.observed
         and [array.tolist() for array in (rock.observed.places, rock.observed.blocks, rock.observed.holes)],
         **{
@@ -311,6 +327,12 @@ def _rock(rock):
     }
 
 
+def _series(series):
+    dips = series.space_dips()
+    arrays = dips and [dips.positions.tolist(), dips.normals.tolist()]
+    return [series.name, series.kind, series.resolution, arrays]
+
+
 def _surface(surface):
     return {
         "shape": [
@@ -318,11 +340,12 @@ def _surface(surface):
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
         "contacts": surface.contact_array().tolist(),
+        "left_out": None if surface.left_out is None else [tuple(place) for place in surface.left_out],
         "dips": surface.dips and [surface.dips.positions.tolist(), surface.dips.gradients.tolist()],
         "method": surface.method_options() if surface.interpolated else None,
         **{
             key: getattr(surface, key)
-            for key in ("name", "rule", "property", "block", "minimum_thickness", "correlation")
+            for key in ("name", "series", "rule", "property", "block", "minimum_thickness", "correlation")
         },
     }
 

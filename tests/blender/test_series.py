@@ -5,11 +5,20 @@ import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.core import build, load_project
+from recording_layout import draw_tab
 
 PROJECT = SAMPLES / "recumbent_fold" / "project.toml"
 
 
 class Series(PanelCase):
+    def test_the_panel_says_what_it_is(self):
+        ops.open_project(filepath=str(PROJECT))
+        rock = self.model.rocks[0]
+        for number, surface in enumerate(rock.surfaces):
+            rock.active_surface = number
+            labels = " ".join(draw_tab(bpy.context).labels)
+            self.assertEqual("A level set of the field" in labels, surface.series == "folded beds")
+
     def test_a_fold_is_built_kept_and_saved(self):
         ops.open_project(filepath=str(PROJECT))
         ops.build()

@@ -205,6 +205,21 @@ def test_a_dip_against_its_neighbors_is_refused():
     np.testing.assert_array_equal(error.value.place, dips[wrong])
 
 
+def test_dips_on_the_limbs_of_tight_folds_are_not_refused():
+    """The nearest dips may all be on the next limb, which is turned over."""
+
+    def tight(points):
+        _, u, v = _turned(points)
+        return v - 160.0 * np.sin(u / 30.0)
+
+    data = _data(tight, dips=300)
+    apart = ((data.dips[:, None] - data.dips) ** 2).sum(axis=2)
+    near = np.argsort(apart, axis=1)[:, 1:4]
+    cosines = (data.normals[near] * data.normals[:, None]).sum(axis=2)
+    assert (cosines < -0.7).all(axis=1).any()
+    assert (np.diff(_solve(data).levels) > 0).all()
+
+
 def test_surfaces_in_the_wrong_order_are_refused():
     data = _data(overturned)
     exchanged = np.array([0, 2, 1, 3], np.int32)[data.contact_surfaces]

@@ -245,3 +245,33 @@ def test_rock_that_nothing_ends_is_cut_off_with_a_warning(monkeypatch):
     model = build(folded_project(), stage=2)
     assert any(warning.kind == "cut_off" for warning in model.warnings)
     assert (model.face_surface == -3).any()
+
+
+@pytest.mark.parametrize("has_folds", [(True, False), (True, True)])
+def test_two_rock_masses_side_by_side(monkeypatch, has_folds):
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    project = folded_project()
+    east = folded_project().rocks[0]
+    east.name = "east"
+    east.region = [[x + 10.0, y] for x, y in SQUARE]
+    east.surfaces[-1].vertices = east.surfaces[-1].vertices + np.array([9.0, 0.0, 0.4])
+    if has_folds[1]:
+        for number, surface in enumerate(east.surfaces[:3]):
+            surface.points = contacts(recumbent, 1.5, 2, number) + np.array([5.0, 0.0, 0.0])
+    else:
+        east.series, east.surfaces = [], east.surfaces[-1:]
+    project.rocks.append(east)
+    model = build(project)
+    assert model.validate().passed, model.validate().failure()
+    shared = model.complex.face_blocks[model.face_surface == -1]
+    rock_of = np.array([block.rock for block in model.blocks])
+    both = (shared >= 0).all(axis=1)
+    assert (rock_of[shared[both][:, 0]] != rock_of[shared[both][:, 1]]).any()
+
+
+def test_an_automatic_resolution_gives_some_ten_thousand_nodes(monkeypatch):
+    given_field(monkeypatch, dome, LEVELS[dome])
+    project = folded_project(dome, LEVELS[dome])
+    project.rocks[0].series[0].resolution = "auto"
+    model = build(project)
+    assert 40_000 < model.field("folded").lattice.nodes < 80_000

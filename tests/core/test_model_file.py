@@ -26,6 +26,7 @@ from realmodel.core.exporters import FORMATS
 from realmodel.core.exporters.npz import write_arrays
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.residuals import residuals
+from realmodel.core.results.section_holes import hole_places
 from structure_cases import plane_fault
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -106,6 +107,19 @@ def last_surface(model):
     return int(np.flatnonzero(model.surface_kind == 0)[-1])
 
 
+def left_out_holes(model):
+    """Of models with holes what others say of these, else why there is nothing."""
+    try:
+        return model.cross_validate_holes(2)
+    except InputRefused as refusal:
+        return str(refusal)
+
+
+def fence_through_holes(model, _):
+    names = list(hole_places(model.project))
+    return model.fence_through_holes(names) if len(names) > 1 else None
+
+
 # What is made of a model by each of its methods; properties are compared as they are.
 MADE = {
     "block_boundary": lambda m, _: [m.block_boundary(block) for block in range(len(m.blocks))],
@@ -113,6 +127,7 @@ MADE = {
     "planned_hole": lambda m, _: m.planned_hole(m.vertices.max(axis=0), 225.0, 45.0).rows(),
     "cleaned_cells": lambda m, _: m.cleaned_cells(side(m) / 1000),
     "contours": lambda m, _: m.contours(),
+    "cross_validate_holes": lambda m, _: left_out_holes(m),
     "cut_by_block": lambda m, _: m.cut_by_block(m, 0),
     "cut_by_plane": lambda m, _: m.cut_by_plane(m.vertices.mean(axis=0), (0.2, 1, 0.1)),
     "cut_by_surface": lambda m, _: m.cut_by_surface(*sloping(m)),
@@ -120,10 +135,12 @@ MADE = {
     "face_corners": lambda m, _: m.face_corners(np.arange(20), np.arange(20) % 2 == 0),
     "field": lambda m, _: [m.field(own.name) for entry in m.rock_inputs for own in entry.fields],
     "fence": lambda m, _: m.fence(m.vertices[:, :2].mean(axis=0) + np.array([[-20, 0], [20, 5]])),
+    "fence_through_holes": fence_through_holes,
     "geological_map": lambda m, _: m.geological_map(),
     "native": lambda m, _: m.native(),
     "of": lambda m, _: Model.of(m),
     "observed": lambda m, _: m.observed(),
+    "misfits": lambda m, _: m.misfits(),
     "require_project": lambda m, _: m.require_project("nothing"),
     "save": saved,
     "save_surfaces": saved_surfaces,

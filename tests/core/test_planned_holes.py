@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import grid_surface
+from folded_rocks import folded_project, given_field, recumbent
 from hypothesis import given
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build, load_project
@@ -163,7 +164,9 @@ def test_holes_of_a_faulted_model_are_in_its_compartments():
     depths = np.array([0.5 * (each.begin + each.end) for each in hole.intervals])
     wanted = blocks_at(model, hole.axis.places(depths)).tolist()
     assert [each.block for each in hole.intervals] == wanted
-    assert any(each.surface for each in hole.contacts)
+    names = {each.surface for each in hole.contacts}
+    assert names & {fault.name for fault in model.project.faults}
+    assert names & {surface.name for surface in model.project.rocks[0].surfaces}
 
 
 def test_a_model_without_its_project_has_no_ensemble(model, tmp_path):
@@ -171,3 +174,18 @@ def test_a_model_without_its_project_has_no_ensemble(model, tmp_path):
     found.model.lacks_project = tmp_path / "old.npz"
     with pytest.raises(InputRefused, match="without its project"):
         found.planned_hole((30, 30, 60))
+
+
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+def test_a_hole_through_a_recumbent_fold_meets_blocks_again(monkeypatch, cells):
+    given_field(monkeypatch, recumbent, (1.5, 2.5, 4.0))
+    model = build(folded_project(recumbent, (1.5, 2.5, 4.0)), cells=cells)
+    for azimuth, dip in ((0, 90), (30, 60)):
+        hole = model.planned_hole((4.5, 3.2, 11.0), azimuth, dip, 12.0)
+        blocks = [each.block for each in hole.intervals]
+        assert len(blocks) > len(set(blocks))
+        depths = np.array([0.5 * (each.begin + each.end) for each in hole.intervals])
+        assert blocks == blocks_at(model, hole.axis.places(depths)).tolist()
+        between = [each for each in hole.contacts if min(each.above, each.below) >= 0]
+        assert {each.surface for each in between} <= set(model.surface_names)
+        assert all(each.deviation is None for each in between)

@@ -5,13 +5,13 @@ is planned and its table is read."""
 import bpy
 import numpy as np
 from driver import hue_differs
-from realmodel.bl import data_objects, drawn_data, planned_holes
+from realmodel.bl import data_objects, drawn_data, planned_holes, section_holes, viewports
 from realmodel.bl.display import cuts
 from steps_1_panel import idle, model, volumes
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked
 from steps_5_structures import _object, _select, _show_alone
-from steps_8_wells import _sheet, empty_file
+from steps_8_wells import _sheet, _write_picks, empty_file
 
 
 def a_surface_to_draw(walk):
@@ -177,10 +177,53 @@ def a_hole_is_planned(walk):
                 bpy.utils.register_class(cls)
 
 
+def holes_are_picked(walk):
+    """Boreholes are clicked one after another; the section goes through them."""
+    yield from empty_file(walk)
+    _write_picks(walk.folder / "picks.csv")
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.boreholes_read(filepath=str(walk.folder / "picks.csv"))
+        bpy.ops.realmodel.region_around()
+    (walk.folder / "picks.csv").unlink()
+    for row in model().rocks[0].surfaces:
+        row.method = "plane"
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.build)
+    yield lambda: idle() and len(model().results) == 2
+    model().display = "LINES"
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view(direction="TOP")
+        bpy.context.space_data.region_3d.view_distance *= 1.6
+    yield walk.redrawn(3)
+    lines = section_holes.paths(bpy.context.scene)
+    names = ["B1", "B6", "B10"]
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.pick_holes)
+    for name in [*names, "B3"]:
+        walk.click(*walk.pixel_of(drawn_data.in_world(bpy.context.scene, lines[name][0])[0]))
+        yield walk.redrawn(2)
+    walk.key("BACK_SPACE")
+    yield walk.redrawn(2)
+    walk.shot("picking_holes")
+    walk.key("RET")
+    yield lambda: section_holes.chosen(bpy.context.scene) == names
+    model().display = "BLOCKS"
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.fence_holes()
+        bpy.ops.realmodel.hide_property(action="HIDE", property_id=model().results[0].property_id)
+        bpy.ops.realmodel.hide_property(action="HIDE", property_id=model().results[1].property_id)
+        walk.area.spaces.active.region_3d.view_rotation = viewports.view_rotation().to_quaternion()
+    yield walk.redrawn(4)
+    walk.shot("section_through_holes")
+    made = bpy.context.active_object
+    assert made.name.startswith("Holes") and len(made.data.polygons) > 3
+
+
 STEPS = (
     a_surface_to_draw,
     contacts_are_drawn,
     the_model_follows_a_stroke,
     a_scan_is_drawn_on,
     a_hole_is_planned,
+    holes_are_picked,
 )

@@ -27,12 +27,13 @@ Writer = Callable[[Path | str], Callable]
 @dataclass
 class SectionRequest:
     """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2).
-    exaggeration: of heights in drawings."""
+    exaggeration, hole_width: of drawings, as of Section.save."""
 
     option: str
     file: Path
     what: np.ndarray | Path
     exaggeration: float = 1.0
+    hole_width: float = 0.0
     kind = "section"
 
     @property
@@ -58,7 +59,7 @@ class SectionRequest:
         progress(1.0, f"cutting {self.file.name}")
         found = self.cut(model, threads)
         with outputs.file(self.file) as file:
-            section_writer(self.file, self.exaggeration)(found, file)
+            section_writer(self.file, self.exaggeration, self.hole_width)(found, file)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
 

@@ -69,6 +69,13 @@ def _whole(text: str) -> int:
     return int(text)
 
 
+def _groups(text: str) -> int:
+    number = _whole(text)
+    if number < 2:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of groups from 2")
+    return number
+
+
 class Option(NamedTuple):
     """An option of the command line.
 
@@ -178,6 +185,14 @@ OPTIONS = (
         needs=("section", "fence"),
     ),
     Option(
+        "hole-width",
+        "W",
+        "draw the boreholes of the project within this distance on drawings by --section and --fence",
+        _length,
+        0.0,
+        needs=("section", "fence"),
+    ),
+    Option(
         "cut",
         "CUTTER=BELOW,ABOVE",
         "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK, "
@@ -278,6 +293,13 @@ OPTIONS = (
         "eroded",
         "",
         "add the volume that each surface removed and each body took of each block to table and report",
+    ),
+    Option(
+        "cross-validate",
+        "N",
+        "leave the boreholes out in N groups, and print what models without them have where they are; "
+        "--report lists each hole",
+        _groups,
     ),
     Option("check-model", "", "prove the model before anything is written, and print the proof"),
     Option("quiet", "", "print nothing but errors"),

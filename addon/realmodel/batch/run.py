@@ -21,7 +21,7 @@ from ..core.base.atomic import Outputs, make_folder
 from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
 from ..core.exporters.fields import write_fields
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
-from ..core.exporters.report import model_report, write_report
+from ..core.exporters.report import hole_entries, model_report, write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.surfaces.prepare import with_arrays
@@ -29,7 +29,7 @@ from .cuts import CutRequest, borehole_request, cut_request, fence_request, sect
 from .interruption import Interruptible, ignore_interruption
 from .probabilities import ProbabilityRequests
 from .sources import Source
-from .table import ensemble_table, surface_table, tiles_table, volume_table
+from .table import ensemble_table, left_out_table, surface_table, tiles_table, volume_table
 from .terminal import TerminalProgress
 
 
@@ -65,6 +65,7 @@ def run(options: argparse.Namespace) -> None:
             model = source.model(options.cells, options.threads, progress, options.stage, options.memory)
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
+            holes = _left_out_holes(options, model, progress)
             mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
             cells = _cleaned_cells(options, model, progress)
             _export(options, model, outputs, progress, cells)
@@ -75,7 +76,8 @@ def run(options: argparse.Namespace) -> None:
                 _write_with_blender(options, project, model, outputs, progress)
             if options.report is not None:
                 with outputs.file(options.report) as file:
-                    write_report(model_report(model, options.stage, validation, erosion, mesh, cells), file)
+                    report = model_report(model, options.stage, validation, erosion, mesh, cells)
+                    write_report(report if holes is None else report | hole_entries(holes), file)
             if mesh is not None:
                 mesh_request.write(mesh, outputs, model.project.units, progress)
             lines = [request.run(model, outputs, options.threads, progress) for request in requests]
@@ -86,6 +88,8 @@ def run(options: argparse.Namespace) -> None:
     lines = [*proof, volume_table(model, erosion), *lines]
     if any(rock.observed is not None for rock in model.project.rocks):
         lines.append(f"observed: {model.observed().summary()}")
+    if holes is not None:
+        lines += [f"cross-validation: {holes.summary()}", left_out_table(holes)]
     if mesh is not None:
         lines.append(mesh_request.line(mesh))
     if cells is not None:
@@ -177,6 +181,16 @@ def _ensemble(options: argparse.Namespace, project, progress, probabilities: Pro
     _print(options, found.model.warnings, [ensemble_table(found)])
 
 
+def _left_out_holes(options: argparse.Namespace, model, progress):
+    if options.cross_validate is None:
+        return None
+    return model.cross_validate_holes(
+        options.cross_validate,
+        options.threads,
+        lambda _share, text: progress(1.0, f"without holes: {text}"),
+    )
+
+
 def _erosion(options: argparse.Namespace, model, progress):
     if not options.eroded:
         return None
@@ -211,8 +225,13 @@ def _validation(options: argparse.Namespace, model, progress):
 def _requests(options: argparse.Namespace) -> list:
     """Sections, fences, boreholes and cuts, in this order. Raises UsageError."""
     return [
-        *(section_request(text, options.exaggeration) for text in options.section),
-        *(fence_request(text, options.exaggeration) for text in options.fence),
+        *(
+            replace(request, hole_width=options.hole_width)
+            for request in (
+                *(section_request(text, options.exaggeration) for text in options.section),
+                *(fence_request(text, options.exaggeration) for text in options.fence),
+            )
+        ),
         *(borehole_request(text) for text in options.borehole),
         *(
             replace(

@@ -111,6 +111,24 @@ def ensemble_table(ensemble) -> str:
     return _table(headings, rows)
 
 
+_HEADINGS_OF_HOLES = ("hole", "rock", "length", "right", "contacts", "largest error")
+_MOST_HOLES = 20  # in the table; the report has all
+
+
+def left_out_table(found) -> str:
+    """A line for each hole that was left out, those with the smallest shares of their length in the right
+    block first."""
+    order = sorted(found.holes, key=lambda hole: 2.0 if hole.share is None else hole.share)
+    rows = []
+    for hole in order[:_MOST_HOLES]:
+        errors = hole.errors
+        worst = f"{errors[np.abs(errors).argmax()]:+.4g}" if len(errors) else ""
+        right = "" if hole.share is None else f"{100 * hole.share:.1f} %"
+        length = f"{hole.length:.6g}" if hole.length else ""
+        rows.append([hole.hole, hole.rock, length, right, f"{len(hole.contacts)}", worst])
+    return _table(_HEADINGS_OF_HOLES, rows)
+
+
 def tiles_table(model) -> str:
     """A line for each block of a model in tiles, youngest first, and the sum; then the tiles."""
     rows = [_row(model, block) for block in reversed(model.blocks)]

@@ -27,6 +27,18 @@ def rename(row, old, new):
         row.hole_picks = json.dumps(picks)
 
 
+def move(row, old, new):
+    """Moves the picks at a place, (x, y, z) in model coordinates, to another."""
+    picks = of_rock(row)
+    there = [pick for _, met in picks.values() for pick in met if tuple(pick[1]) == tuple(old)]
+    for pick in there:
+        pick[1] = [float(value) for value in new]
+    if there:
+        for _, met in picks.values():
+            met.sort(key=lambda pick: -pick[1][2])
+        row.hole_picks = json.dumps(picks)
+
+
 def remove_at(row, places):
     """Removes the picks at some places (N, 3), and holes that have no others."""
     removed = {tuple(place) for place in places.tolist()}
@@ -40,16 +52,35 @@ def remove_at(row, places):
 
 def paths(row):
     """The line of each hole of a rock mass: its collar, if that is known, and its picks or, where it has
-    intervals, all of these."""
+    intervals, all of these, and its end."""
+    return list(named_paths(row).values())
+
+
+def named_paths(row):
+    """{hole: its line}, as of `paths`."""
     logs, _ = observed_blocks.shown(row)
-    picked = of_rock(row)
-    found = []
+    picked, ends = of_rock(row), ends_of(row)
+    found = {}
     for hole in dict.fromkeys((*picked, *logs)):
         collar, picks = picked.get(hole, (None, []))
         places = logs[hole].places.tolist() if hole in logs else [place for _, place in picks]
-        given = [*([] if collar is None else [collar]), *places]
-        found.append([place for n, place in enumerate(given) if n == 0 or place != given[n - 1]])
-    return [line for line in found if line]
+        given = [*([] if collar is None else [collar]), *places, *([ends[hole]] if hole in ends else [])]
+        line = [place for n, place in enumerate(given) if n == 0 or place != given[n - 1]]
+        if line:
+            found[hole] = line
+    return found
+
+
+def keep_ends(row, ends):
+    """Adds the ends of holes, as realmodel.core's Picks.ends, to those that a rock mass has."""
+    if ends:
+        known = {hole: [float(value) for value in place] for hole, place in ends.items()}
+        row.hole_ends = json.dumps(ends_of(row) | known)
+
+
+def ends_of(row):
+    """{hole: (x, y, z)} where holes end, as far as it is known, model coordinates."""
+    return json.loads(row.hole_ends) if row.hole_ends else {}
 
 
 def of_rock(row):

@@ -21,6 +21,7 @@ from . import (
     viewports,
     weathering,
 )
+from .field import handle
 
 
 def _unless_filling(consequence):
@@ -36,8 +37,8 @@ def _unless_filling(consequence):
 setting = _unless_filling(live.touch)  # of settings that the model depends on
 coloring = _unless_filling(display.colors_changed)
 view = _unless_filling(display.mode_changed)  # of settings of the display
-boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
+field_data = _unless_filling(display.field_changed)
 ensemble = _unless_filling(display.ensemble_changed)
 exaggeration = _unless_filling(display.exaggeration_changed)
 section = _unless_filling(display.section_changed)  # another plane, or none
@@ -186,6 +187,12 @@ def stage(group, _context):
 
 def overlay(_row, _context):
     viewports.redraw()
+
+
+def misfit_chosen(group, context):
+    """A row of the list of misfits was chosen."""
+    if not settings.is_filling() and 0 <= group.active_misfit < len(group.misfits) and context is not None:
+        handle.show_misfit(context)
 
 
 def property_id(row, _context):

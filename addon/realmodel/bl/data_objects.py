@@ -57,8 +57,7 @@ def update(scene, read=None):
     if collection is not None and not len(collection.objects):
         bpy.data.collections.remove(collection)
     place(scene)
-    if len(scene.realmodel.results):
-        display.exaggeration_changed(scene)
+    display.field_changed(scene)
 
 
 def objects(scene):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from ..core import DipFile, Dips, InputRefused, ObservationFile, Observations
 from ..core.readers import (
+    MAP_ENDINGS,
     Picks,
     UnitNames,
     names_units,
@@ -15,11 +16,13 @@ from ..core.readers import (
     table_kind,
 )
 from ..core.readers.objects.object_file import is_object_file
+from ..core.readers.tables.interval_values import read_interval_values
 from ..core.settings.boreholes import COLUMNS as OF_HOLES
 from ..core.settings.boreholes import Boreholes, check_column_names
 from ..core.settings.dips import COLUMNS as OF_DIPS
+from ..core.settings.map_file import MapFile
 from ..core.settings.observation_file import COLUMNS as OF_PLACES
-from . import observed_blocks
+from . import map_settings, observed_blocks
 
 ALL_COLUMNS = tuple(dict.fromkeys((*OF_HOLES, *OF_PLACES, *OF_DIPS)))
 _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
@@ -27,10 +30,13 @@ _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
 
 @dataclass
 class FieldTables:
-    """boreholes: None where there are none. observations, dips: ObservationFile and DipFile. rock_dips:
-    DipFiles that name surfaces or blocks; those of `dips` name none."""
+    """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
+    dips: ObservationFile and DipFile. rock_dips: DipFiles that name surfaces or blocks; those of `dips` name
+    none. maps: MapFile, whose ground is a file or the name of a surface."""
 
     boreholes: Boreholes | None = None
+    assays: list = field(default_factory=list)
+    maps: list = field(default_factory=list)
     observations: list = field(default_factory=list)
     dips: list = field(default_factory=list)
     rock_dips: list = field(default_factory=list)
@@ -40,7 +46,8 @@ class FieldTables:
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
     dips: of one surface, rock_dips: with their surfaces and blocks; None where there are none. new: units
-    that no surface, block or body is called, to be added."""
+    that no surface, block or body is called, to be added. values: IntervalValues of tables of intervals and
+    assays. maps: DrapedMap of each map. warnings: sentences."""
 
     picks: Picks
     observations: Observations
@@ -48,17 +55,23 @@ class Found:
     rock_dips: Dips | None
     left_out: list
     new: list
+    values: list
+    maps: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
 
 
-def sorted_out(paths, columns, units=None, **of_holes):
-    """FieldTables of files. columns: names of those that are called otherwise, in any of the tables.
-    of_holes: what else Boreholes have; tables given there are added to those of `paths`. Raises InputRefused,
-    and OptionRefused."""
+def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
+    """FieldTables of files. columns: names of those that are called otherwise, in any of the tables. of_maps:
+    keys of MapFile beside its file, for all maps. of_holes: what else Boreholes have; tables given there are
+    added to those of `paths`. Raises InputRefused, and OptionRefused."""
     check_column_names(columns, ALL_COLUMNS)
     tables = {kind: given for kind in _ONE_OF_EACH if (given := of_holes.pop(kind, None)) is not None}
-    found = FieldTables()
+    found, assays = FieldTables(), []
     for path in paths:
         if path in tables.values():
+            continue
+        if is_map(path):
+            found.maps.append(_map_file(path, of_maps or {}, units))
             continue
         kind = "picks" if is_object_file(path) else table_kind(path, columns)
         if kind == "observations":
@@ -66,15 +79,32 @@ def sorted_out(paths, columns, units=None, **of_holes):
         elif kind == "dips":
             given = DipFile(path, _of(columns, OF_DIPS), units=units)
             (found.rock_dips if names_units(given) else found.dips).append(given)
+        elif kind == "assays":
+            assays.append(path)
         elif kind in tables:
             what = f"{tables[kind].name} and {path.name} both have {kind}"
             raise InputRefused(what, file=path, advice="choose one of them, or name columns that differ")
         else:
             tables[kind] = path
-    if tables:
-        found.boreholes = Boreholes(**tables, **of_holes, columns=_of(columns, OF_HOLES), units=units)
+    of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
+    if tables and not (assays and tables.keys() <= {"collars", "survey"}):
+        found.boreholes = Boreholes(**tables, **of_holes)
         found.boreholes.check()
+    for path in assays:
+        found.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
+        found.assays[-1].check()
     return found
+
+
+def is_map(path):
+    """Whether a file has shapes in plan."""
+    return path.suffix.lower() in MAP_ENDINGS
+
+
+def _map_file(path, given, units):
+    map_file = MapFile(path, units=units, **given)
+    map_file.check()
+    return map_file
 
 
 def _of(columns, known):
@@ -104,13 +134,23 @@ def _read(scene, rock, tables, units):
     unit = scene.realmodel.units
     step = rock.edge_length if rock is not None and rock.edge_length > 0.0 else None
     picks = Picks()
+    logged = [*tables.assays]
     if tables.boreholes is not None:
         picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
+        intervals = tables.boreholes.intervals
+        logged += [tables.boreholes] if intervals is not None and not is_object_file(intervals) else []
     seen, left_out = list(picks.observations), list(picks.left_out)
     for file in tables.observations:
         observed, not_used = read_observed_places(file, units, unit)
         seen.append(observed)
         left_out += not_used
+    maps, warnings = [], []
+    for file in tables.maps:
+        observed, not_used, draped, said = map_settings.read(scene, rock, file, units)
+        seen.append(observed)
+        left_out += not_used
+        maps.append(draped)
+        warnings += [*said, *draped.warnings]
     dips, of_rock = [read_dips(file, unit) for file in tables.dips], []
     for file in tables.rock_dips:
         named, not_used = read_dips_of_rock(file, units, unit)
@@ -126,4 +166,7 @@ def _read(scene, rock, tables, units):
         Dips.joined(of_rock) if of_rock else None,
         left_out,
         [name for name in meant if name not in known],
+        [read_interval_values(each, unit) for each in logged],
+        maps,
+        warnings,
     )

@@ -11,14 +11,14 @@ from ..core.readers import UnitNames
 from . import caches, settings, stored_arrays
 
 _shown = caches.new(most=8)  # by text
-_NAMES = ("places", "blocks", "holes", "depths", "intervals")
+NAMES = ("places", "blocks", "holes", "depths", "intervals", "used")
 
 
 def keep(row, observations):
     """Stores realmodel.core.Observations, or None."""
     row.observations = ""
     if observations is not None and len(observations):
-        row.observations = stored_arrays.pack(**{name: getattr(observations, name) for name in _NAMES})
+        row.observations = stored_arrays.pack(**{name: getattr(observations, name) for name in NAMES})
 
 
 def add(row, observations):
@@ -46,7 +46,7 @@ def of_rock(row):
     if not row.observations:
         return None
     arrays = stored_arrays.unpack(row.observations)
-    return Observations(**{name: arrays[name] for name in _NAMES if name in arrays})
+    return Observations(**{name: arrays[name] for name in NAMES if name in arrays})
 
 
 def rename(row, old, new):

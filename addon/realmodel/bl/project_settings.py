@@ -108,7 +108,8 @@ def compose(scene, depsgraph, whole=True):
     for number, row in enumerate(group.rocks):
         base = method_settings.value(row, "base_elevation", ROCK)
         picks = borehole_picks.of_rock(row)
-        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks)
+        ends = borehole_picks.ends_of(row)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
             rock.dips = surface_dips.of_row(row)
@@ -145,6 +146,8 @@ def _plain_surface(row, fields):
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
         surface.dips = surface_dips.of_row(row)
+        if row.left_out:
+            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     return surface
 
 
@@ -195,7 +198,7 @@ def _shape(source, composed, place, surface, row):
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
-                surface.method, surface.options, surface.dips = None, {}, None
+                surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
                 for key in _OF_INTERPOLATED:
                     setattr(surface, key, None)
             base = _made_of(source.scene, place, row)
@@ -412,6 +415,7 @@ def add_rock(group, rock):
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
+        borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
         surface_dips.keep(row, rock.dips)
         series_settings.keep(row, rock.series)
@@ -428,6 +432,8 @@ def fill_surface(row, surface):
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
         surface_dips.keep(row, surface.own_dips())
+        if surface.left_out is not None and len(surface.left_out):
+            row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
         has_points = surface.interpolated or surface.is_level_set
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if has_points else "MESH_FILE"

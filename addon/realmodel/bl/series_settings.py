@@ -7,6 +7,8 @@ from ..core import InputRefused, Series, SpaceDips
 from ..core.settings.series import FIELD
 from . import stored_arrays
 
+_KEYS = ("name", "kind", "dips", "resolution")
+
 
 def keep(row, series):
     """Stores realmodel.core.Series with dips as arrays."""
@@ -21,13 +23,22 @@ def _entry(series):
 
 def of_row(row):
     """The stored series. Raises InputRefused for damaged text."""
+    return [
+        Series(each["name"], each["kind"], _dips(each["dips"]), each["resolution"]) for each in _entries(row)
+    ]
+
+
+def fields(row):
+    """The names of the series whose surfaces are level sets. Raises InputRefused for damaged text."""
+    return {each["name"] for each in _entries(row) if each["kind"] == FIELD}
+
+
+def _entries(row):
     if not row.series:
         return []
     try:
         entries = json.loads(row.series)
-        return [
-            Series(each["name"], each["kind"], _dips(each["dips"]), each["resolution"]) for each in entries
-        ]
+        return [{key: each[key] for key in _KEYS} for each in entries]
     except (KeyError, TypeError, ValueError) as error:
         raise InputRefused(
             f"what the .blend keeps of its series cannot be read: {error}",
@@ -37,8 +48,3 @@ def of_row(row):
 
 def _dips(text):
     return None if text is None else SpaceDips(**stored_arrays.unpack(text))
-
-
-def fields(row):
-    """The names of the series whose surfaces are level sets."""
-    return {series.name for series in of_row(row) if series.kind == FIELD}

@@ -28,6 +28,22 @@ def of_row(row):
     return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
 
 
+def with_used(dips, number, used):
+    """Dips of which one is switched off, or on."""
+    in_use = np.ones(len(dips), bool) if dips.used is None else dips.used.copy()
+    in_use[number] = used
+    return replace(dips, used=None if in_use.all() else in_use)
+
+
+def moved(dips, number, place):
+    """Dips of which one is at a place (x, y, z); a height that is not known stays so."""
+    positions, z = dips.positions.copy(), None if dips.z is None else dips.z.copy()
+    positions[number] = place[:2]
+    if z is not None and not np.isnan(z[number]):
+        z[number] = place[2]
+    return replace(dips, positions=positions, z=z)
+
+
 def rename(row, old, new):
     """Gives a surface, and the block beneath it, its new name in the dips of a rock mass."""
     dips = of_row(row)

@@ -31,6 +31,8 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
 from .project.series import Series
 from .project.structure_entries import Body, Fault
+from .proof.left_out_holes import HoleValidation, LeftOutContact, LeftOutHole
+from .proof.misfits import Misfit
 from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
 from .readers.tables.observations import Bounds, LeftOut, Observations
@@ -73,12 +75,15 @@ __all__ = [
     "HoleAxis",
     "HoleContact",
     "HoleInterval",
+    "HoleValidation",
     "InputRefused",
     "Interpolation",
     "Intersection",
     "Interval",
     "Lattice",
     "LeftOut",
+    "LeftOutContact",
+    "LeftOutHole",
     "Library",
     "Loop",
     "MapArea",
@@ -86,6 +91,7 @@ __all__ = [
     "MapLayer",
     "MeshEstimate",
     "MeshFile",
+    "Misfit",
     "Model",
     "NotEnoughMemory",
     "ObservationFile",

@@ -10,7 +10,9 @@ from ..bl import (
     caches,
     data_objects,
     field_tables,
+    interval_values,
     live,
+    map_settings,
     method_settings,
     observed_blocks,
     project_settings,
@@ -20,7 +22,7 @@ from ..bl import (
     surface_dips,
 )
 from ..core import InputRefused, RealModelError
-from ..core.readers import OBJECT_ENDINGS, TABLE_ENDINGS, table_kind
+from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
 from ..core.readers.objects.object_file import is_object_file
 from ..core.settings.schema import READING
 from ..core.surfaces.field_data import left_out_texts
@@ -30,23 +32,40 @@ from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, r
 from .rocks import add_rock
 
 _SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
+_OF_MAPS = ("map_layer", "map_block", "map_ground")
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
-    the surfaces) and of logged intervals, or the drillholes of an OMF or geoh5 file; tables of places in
-    known blocks, such as outcrops; and dips, which count for the surfaces or blocks that their rows name, or
-    for the active surface where none names any. Choose all of them at once: each
-    is told by its columns. Surfaces get these data beside their own, and are added where they are not there
-    yet"""
+    the surfaces), of logged intervals and of assays, or the drillholes of an OMF or geoh5 file; tables of
+    places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
+    name, or for the active surface where none names any; and geological maps. Choose all of them at once:
+    each is told by its columns. Surfaces get these data beside their own, and are added where they are not
+    there yet"""
 
-    bl_label = "Import Boreholes"
+    bl_label = "Import Field Data"
 
     filepath: StringProperty(
         name="File", description="One of the tables", subtype="FILE_PATH", options={"SKIP_SAVE"}
     )
-    filter_glob: file_filter(*TABLE_ENDINGS, *OBJECT_ENDINGS)
+    filter_glob: file_filter(*TABLE_ENDINGS, *OBJECT_ENDINGS, *MAP_ENDINGS)
+    map_layer: StringProperty(
+        name="Map Layer",
+        description="Layer of a GeoPackage that has the polygons; empty: its only one",
+        search=lambda self, _context, _text: self.of_map(contents.layer_names),
+    )
+    map_block: StringProperty(
+        name="Block Column",
+        description="Attribute of the polygons that names the block, or its code",
+        search=lambda self, _context, _text: self.of_map(contents.column_names, self.map_layer or None),
+    )
+    map_ground: StringProperty(
+        name="Ground",
+        description="Surface of the list that is the ground of the map, or a file of it beside the map or "
+        "anywhere: a raster, points or a mesh; empty: the youngest surface",
+        search=lambda self, context, _text: self.surfaces(context),
+    )
     layer: StringProperty(
         name="Layer",
         description="Object of an OMF or geoh5 file with the boreholes; empty: all of its boreholes",
@@ -93,16 +112,28 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         default=True,
     )
 
+    def of_map(self, ask, *arguments):
+        """The contents of the first of the chosen maps; none where it cannot be read."""
+        path = next((path for path in self.paths() if field_tables.is_map(path)), None)
+        try:
+            return [] if path is None else ask(path, *arguments)
+        except RealModelError:
+            return []
+
+    def surfaces(self, context):
+        row = settings.active_rock(context.scene)
+        return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
+
     def act(self, context):
         scene = context.scene
-        tables = self._tables()
+        tables = self._tables(context)
         surface = _surface_for_dips(scene).name if tables.dips else ""
         rock = settings.active_rock(scene)
         found = field_tables.read(
             scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces
         )
         rock = rock or add_rock(scene)
-        warnings = [*found.picks.warnings, *left_out_texts(found.left_out).values()]
+        warnings = [*found.picks.warnings, *found.warnings, *left_out_texts(found.left_out).values()]
         if found.picks.points or found.new:
             warnings += borehole_points.give(scene, rock, found.picks, self.add_surfaces, found.new)
         given = list(found.picks.points.values())
@@ -116,12 +147,23 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         if found.rock_dips is not None:
             surface_dips.add(rock, found.rock_dips)
         borehole_picks.keep(rock, found.picks.holes)
+        borehole_picks.keep_ends(rock, found.picks.ends)
+        for draped, file in zip(found.maps, tables.maps, strict=True):
+            map_settings.keep(rock, draped)
+            given.append(draped.vertices)
+            if ground := map_settings.take_ground(rock, file):
+                warnings.append(f"'{ground}' is the ground of the map; check the order of the surfaces")
+            with settings.filling():
+                scene.realmodel.view.show_map = True
+        for values in found.values:
+            interval_values.add(rock, values)
+            given.append(values.begins)
         arrived(context, rock, given)
         for text in warnings:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, _summary(found, surface))
 
-    def _tables(self):
+    def _tables(self, context):
         """The chosen tables, and those that are named. Raises InputRefused."""
         paths = self.paths() or [chosen_path(self, "the tables")]
         named = {
@@ -135,10 +177,29 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             paths,
             reading_text.named_columns(self.columns),
             None if self.units == "NONE" else self.units,
+            of_maps=self._of_maps(context, paths),
             downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
             layer=self.layer.strip() or None,
             **named,
         )
+
+    def _of_maps(self, context, paths):
+        """The keys of MapFile. Raises InputRefused where the column of blocks is not said."""
+        maps = [path for path in paths if field_tables.is_map(path)]
+        if maps and not self.map_block.strip():
+            names = self.of_map(contents.column_names, self.map_layer or None)
+            advice = f"choose Block Column: it has {', '.join(map(str, names))}" if names else None
+            raise InputRefused("it is not said which attribute names the blocks", file=maps[0], advice=advice)
+        ground = self.map_ground.strip()
+        if ground and ground not in self.surfaces(context) and maps:
+            path = _beside(maps[0], ground)
+            require_file(path)
+            ground = str(path)
+        return {
+            "block": self.map_block.strip(),
+            "layer": self.map_layer.strip() or None,
+            "ground": ground or None,
+        }
 
     def draw(self, _context):
         layout = self.layout
@@ -150,7 +211,8 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         if not shown:
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
-        for name in _SHOWN:
+        has_maps = any(field_tables.is_map(path) for path in shown)
+        for name in (*(_OF_MAPS if has_maps else ()), *_SHOWN):
             layout.prop(self, name)
 
     def check(self, _context):
@@ -169,7 +231,8 @@ def shown_kind(path, columns):
     if key not in _kinds:
         try:
             named = reading_text.named_columns(columns)
-            _kinds[key] = ("boreholes" if is_object_file(path) else table_kind(path, named)), "CHECKMARK"
+            kind = "boreholes" if is_object_file(path) else "map" if field_tables.is_map(path) else None
+            _kinds[key] = kind or table_kind(path, named), "CHECKMARK"
         except RealModelError as error:
             _kinds[key] = error.what, "ERROR"
     return _kinds[key]
@@ -197,8 +260,13 @@ def _summary(found, surface):
         said.append(f"{len(found.new)} new surfaces")
     if len(found.observations):
         said.append(f"{len(found.observations)} observations of blocks")
+    if found.maps:
+        said.append(f"{sum(len(draped.triangles) for draped in found.maps)} triangles of a map")
     if found.dips is not None:
         said.append(f"{len(found.dips)} dips of '{surface}'")
+    columns = dict.fromkeys(name for values in found.values for name in values.columns)
+    if columns:
+        said.append(f"the columns {', '.join(columns)} of intervals")
     if found.rock_dips is not None:
         said.append(f"{len(found.rock_dips)} dips of the rock mass")
     text = ", ".join(said) or "nothing that could be used"

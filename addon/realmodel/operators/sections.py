@@ -2,19 +2,30 @@
 """Sections: the movable plane that shows the model cut open, and exact sections as mesh objects."""
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
 from mathutils import Quaternion, Vector
 
-from ..bl import display, exaggeration, project_settings, settings
+from ..bl import (
+    display,
+    drawn_data,
+    exaggeration,
+    project_settings,
+    section_holes,
+    settings,
+    viewports,
+)
 from ..bl.display import cuts, sections, visible
 from ..core import InputRefused, UsageError
 from ..core.results.section_drawing import MOST_EXAGGERATION
 from .files import SECTIONS, Exporting, format_filter, format_menu
+from .in_viewport import InViewport
 from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 
+_PIXELS = 20.0  # a borehole that is farther from the mouse is not meant
 _FLAT = "Unroll the section beside the model instead of leaving it in its place"
 
 
@@ -106,6 +117,87 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
         _show(self, context, sections.add(context.scene, found, "Fence", self.flat))
 
 
+def some_holes(context):
+    there = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
+    return None if there else "there are no boreholes; import some first (Surfaces, Import Boreholes)"
+
+
+def chosen_holes(context):
+    there = context.scene.realmodel.view.section_holes.strip()
+    return None if there else "no boreholes are chosen; pick them first (Pick Holes)"
+
+
+class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
+    """Click boreholes in the viewport, one after another: the section goes through them in this order"""
+
+    bl_label = "Pick Holes"
+    bl_options = {"UNDO"}
+    needs = (some_holes,)
+    keys = "Click a borehole"
+
+    _names = ()
+    _lines = None
+
+    def begin(self, context):
+        self._names, self._lines = [], section_holes.paths(context.scene)
+        context.scene.realmodel.show_data = True
+
+    def clicked(self, context, area, at, is_held):
+        if is_held:
+            return None
+        name = self._nearest(context, area, at)
+        if name is None:
+            return "There is no borehole here"
+        if name not in self._names[-1:]:
+            self._names.append(name)
+        return ", ".join(self._names)
+
+    def _nearest(self, context, area, at):
+        best = _PIXELS, None
+        for name, line in self._lines.items():
+            seen = [
+                viewports.pixel(area, place) for place in drawn_data.in_world(context.scene, line).tolist()
+            ]
+            seen = np.array([tuple(each) for each in seen if each is not None]).reshape(-1, 2)
+            best = min(best, (_distance(np.array(at, float), seen), name), key=lambda found: found[0])
+        return best[1]
+
+    def remove_last(self):
+        del self._names[-1:]
+
+    def marks(self, context):
+        tops = [self._lines[name][0] for name in self._names]
+        return drawn_data.in_world(context.scene, tops).tolist()
+
+    def act(self, context):
+        if not self._names:
+            raise InputRefused("no borehole was picked", advice="click boreholes, then press Enter")
+        section_holes.choose(context.scene, self._names)
+
+
+def _distance(at, line):
+    """How far a position is from a line (N, 2)."""
+    if not len(line):
+        return np.inf
+    begin, way = line[:-1], np.diff(line, axis=0)
+    share = ((at - begin) * way).sum(axis=1) / np.maximum((way**2).sum(axis=1), 1e-12)
+    feet = np.vstack([line[:1], begin + np.clip(share, 0.0, 1.0)[:, None] * way])
+    return float(np.linalg.norm(feet - at, axis=1).min())
+
+
+class REALMODEL_OT_fence_holes(Reporting, bpy.types.Operator):
+    """Make vertical sections of the model through the chosen boreholes, as a mesh object"""
+
+    bl_label = "Section through Holes"
+    needs = (a_model, chosen_holes)
+
+    flat: BoolProperty(name="Flat", description=_FLAT)
+
+    def act(self, context):
+        found = sections.through(context.scene, section_holes.line(context.scene))
+        _show(self, context, sections.add(context.scene, found, "Holes", self.flat))
+
+
 class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     """Save a section as a drawing with axes, legend, and scale, or as polygons"""
 
@@ -122,6 +214,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         items=(
             ("PLANE", "Section Plane", "The section plane, or the location and normal that are given"),
             ("LINE", "Active Curve", "Vertical sections along the active curve or mesh of edges"),
+            ("HOLES", "Boreholes", "Vertical sections through the chosen boreholes"),
         ),
     )
     exaggeration: FloatProperty(
@@ -132,10 +225,18 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         max=MOST_EXAGGERATION,
         soft_max=20.0,
     )
+    hole_width: FloatProperty(
+        name="Holes Within",
+        description="Draw the boreholes within this distance of the section; 0: none",
+        min=0.0,
+        subtype="DISTANCE",
+    )
 
     def invoke(self, context, event):
         if not self.properties.is_property_set("exaggeration"):
             self.exaggeration = exaggeration.factor(context.scene)
+        if not self.properties.is_property_set("hole_width"):
+            self.hole_width = context.scene.realmodel.view.hole_width
         return super().invoke(context, event)
 
     def draw(self, context):
@@ -143,18 +244,23 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.layout.prop(self, name)
         if self.along == "PLANE":
             _draw_plane(self, context)
-        self.layout.prop(self, "exaggeration")
+        for name in ("exaggeration", "hole_width"):
+            self.layout.prop(self, name)
 
     def write(self, context, path):
         if self.along == "PLANE":
             found = sections.by_plane(context.scene, *_plane_of(self, context))
+        elif self.along == "HOLES":
+            if reason := chosen_holes(context):
+                raise InputRefused(reason)
+            found = sections.through(context.scene, section_holes.line(context.scene))
         else:
             reason = an_outline_object(context)
             if reason:
                 raise InputRefused(reason)
             item = context.active_object
             found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
-        found.save(path, self.exaggeration)
+        found.save(path, self.exaggeration, self.hole_width)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

@@ -15,6 +15,7 @@ from ..bl import (
     data_objects,
     library_rows,
     live,
+    map_settings,
     model_tree,
     project_settings,
     region_size,
@@ -157,9 +158,11 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
 
 
 def _open(scene, path):
-    project = with_arrays(load_project(path))
+    given = load_project(path)
+    project = with_arrays(given)
     _begin(scene, project.name)
     project_settings.fill(scene, project)
+    map_settings.keep_of_project(scene, given)
     data_objects.update(scene)
     region_size.ask()
     live.touch(scene)

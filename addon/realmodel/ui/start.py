@@ -31,7 +31,7 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.operator_menu_enum("realmodel.open_sample", "sample", text="Open Example", icon="EXPERIMENTAL")
         column.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
-        column.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
+        column.operator("realmodel.boreholes_read", text="Import Field Data...", icon="EMPTY_SINGLE_ARROW")
         column.operator("realmodel.from_selected", text="From Selected Meshes", icon="OUTLINER_OB_MESH")
         column.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
         column.operator("realmodel.tiles_read", text="Import Tiles...", icon="MESH_GRID")

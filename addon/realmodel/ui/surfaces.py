@@ -3,7 +3,15 @@
 
 import bpy
 
-from ..bl import library_rows, method_settings, project_settings, settings, surface_statistics, units
+from ..bl import (
+    library_rows,
+    method_settings,
+    project_settings,
+    series_settings,
+    settings,
+    surface_statistics,
+    units,
+)
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.settings.schema import MESH_READING, READING, SURFACE
 from ..core.settings.variogram import VARIOGRAMS
@@ -49,7 +57,7 @@ def _draw_adding(layout):
     line = layout.column(align=True)
     line.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
     line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
-    line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
+    line.operator("realmodel.boreholes_read", text="Import Field Data...", icon="EMPTY_SINGLE_ARROW")
 
 
 def _draw_removable(layout, text, operator):
@@ -68,7 +76,12 @@ def _draw_surface(layout, context, surface):
         file_field(layout, surface, "filepath")
         if project_settings.stored_shape(surface) and not surface.filepath:
             hint(layout, "The data are stored in the .blend.")
-    if surface.source not in method_settings.READY_MESHES:
+    rock = settings.active_rock(context.scene)
+    if rock.series:
+        layout.prop(surface, "series")
+    if surface.series in series_settings.fields(rock):
+        hint(layout, "A level set of the field of its series.")
+    elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
         setting_rows.draw(layout, surface, "correlation", SURFACE)

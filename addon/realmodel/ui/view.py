@@ -4,7 +4,7 @@
 import bpy
 
 from .. import props_stage
-from ..bl import compartments, library_rows, observed_blocks, project_settings, settings, units
+from ..bl import compartments, library_rows, project_settings, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing, residuals, viewpoints
 from .lists import draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
@@ -46,8 +46,6 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
             layout.operator("realmodel.edit_done", icon="CHECKMARK")
         elif group.display == "SURFACES":
             layout.operator("realmodel.edit_surface", icon="EDITMODE_HLT")
-        if any(rock.hole_picks or observed_blocks.shown(rock)[0] for rock in group.rocks):
-            layout.prop(group.view, "show_boreholes")
         layout.prop(group.view, "show_residuals")
         for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
             column = layout.column(align=True)
@@ -140,6 +138,12 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         layout.operator("realmodel.image_place", text="Place Image...", icon="IMAGE_DATA")
         if plane is not None:
             _section_buttons(layout, "section", "PLANE", "Save Section...")
+        if any(rock.hole_picks or rock.observations for rock in group.rocks):
+            row = layout.row(align=True)
+            row.prop(view, "section_holes")
+            row.operator("realmodel.pick_holes", text="", icon="EYEDROPPER")
+            layout.prop(view, "section_beyond")
+            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
 

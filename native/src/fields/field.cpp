@@ -442,9 +442,11 @@ private:
         }
     }
 
+    /// Whether the nearest dips have the attitude of one, but the other polarity, and none a little
+    /// farther away agrees with it, as one on the same limb of a tight fold would.
     bool is_against_neighbors(std::size_t dip) const {
-        constexpr std::size_t kNearest = 3;
-        constexpr double kOpposite = -0.7;
+        constexpr std::size_t kNearest = 3, kNear = 8;
+        constexpr double kAlike = 0.7;
         const FieldData& data = known_.data();
         std::vector<std::pair<double, std::size_t>> near;
         for (std::size_t n = 0; n < data.dips.size(); ++n) {
@@ -452,10 +454,13 @@ private:
             if (n != dip) near.emplace_back(dot(d, d), n);
         }
         if (near.size() < kNearest) return false;
-        std::partial_sort(near.begin(), near.begin() + kNearest, near.end());
-        return std::all_of(near.begin(), near.begin() + kNearest, [&](const auto& neighbor) {
-            return dot(data.normals[neighbor.second], data.normals[dip]) < kOpposite;
-        });
+        std::sort(near.begin(), near.end());
+        near.resize(std::min(near.size(), kNear));
+        for (std::size_t n = 0; n < near.size(); ++n) {
+            const double cosine = dot(data.normals[near[n].second], data.normals[dip]);
+            if (n < kNearest ? cosine > -kAlike : cosine > kAlike) return false;
+        }
+        return true;
     }
 
     void report_missed(Field& out) const {

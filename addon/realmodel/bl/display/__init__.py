@@ -29,7 +29,6 @@ from .. import exaggeration, settings
 from ..model_tree import TAG
 from . import (
     bodies,
-    boreholes,
     colors,
     coordinates,
     cuts,
@@ -46,6 +45,7 @@ from . import (
     stages,
 )
 
+_field = None  # see show_field_with
 _STRETCHED = (TAG, settings.DATA, settings.IMAGE)  # on objects that are shown with vertical exaggeration
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
@@ -95,7 +95,9 @@ def opened():
 
 
 def mode_changed(scene):
-    """The display mode was changed, or a surface or property hidden or shown."""
+    """The display mode was changed, or a surface or property hidden or shown, or the cut is another one."""
+    if _field is not None:
+        _field.follow_cut(scene)
     _show(scene, display=scene.realmodel.display)
 
 
@@ -112,6 +114,8 @@ def explode_changed(scene):
 
 def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
+    if _field is not None:
+        _field.follow_exaggeration(scene)
     items = [item for item in scene.objects if any(key in item for key in _STRETCHED)]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
     residuals.follow_exaggeration(scene)
@@ -129,13 +133,18 @@ def residuals_changed(scene):
     exaggeration_changed(scene)
 
 
-def boreholes_changed(scene):
-    """The boreholes are wanted, or not; or there is another model."""
-    if scene.realmodel.view.show_boreholes and len(scene.realmodel.results):
-        boreholes.show(scene)
-    else:
-        bodies.remove(scene, bodies.BOREHOLES)
-    exaggeration_changed(scene)
+def field_changed(scene):
+    """Other field data are to be shown, or the data are others; or there is another model."""
+    if scene.library is None and _field is not None:
+        _field.show(scene)
+        exaggeration_changed(scene)
+
+
+def show_field_with(shown):
+    """Sets what shows field data: show(scene); follow_exaggeration(scene) shapes them anew, follow_cut(scene)
+    those on the section plane."""
+    global _field
+    _field = shown
 
 
 def ensemble_changed(scene):
@@ -182,8 +191,7 @@ def built(scene, bounds, stage=None):
     group.view.cells_of = group.view.surviving_of = ""
     if group.view.show_residuals:
         residuals_changed(scene)
-    if group.view.show_boreholes:
-        boreholes_changed(scene)
+    field_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -196,10 +204,11 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    for kind in (bodies.CELLS, bodies.SURVIVING, bodies.BOREHOLES):
+    for kind in (bodies.CELLS, bodies.SURVIVING):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)
+    field_changed(scene)
     cuts.take_off(scene)
     colors.forget(scene)
     modes.without_blocks(scene)

@@ -12,7 +12,7 @@ from . import replacing
 
 KIND = "realmodel_view"  # on an object: its purpose
 CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
-SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
+SURVIVING, RESIDUALS = "surviving", "residuals"
 
 
 def of_kind(scene, kind):

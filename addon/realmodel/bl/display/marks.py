@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points and lines as small bodies, for renders: a renderer draws faces only."""
+"""Points, lines and planes as small bodies, for renders: a renderer draws faces only."""
 
 import numpy as np
+from mathutils.kdtree import KDTree
 
 from ...core.display.polygon_mesh import PolygonMesh
+
+_RADIUS, _LEAST_RADIUS = 0.007, 0.0015  # of the size of all, at most and at least
+_APART = 0.1  # of the points may lie so close that their bodies overlap
+_ASKED = 2000  # points at most whose distance to the nearest other is looked at
+_DISC_SIDES = 16
+_THICK, _NORMAL, _NORMAL_RADIUS = 0.02, 0.5, 0.05  # of a disc's radius: between its sides, its normal
 
 _OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])
@@ -15,6 +22,55 @@ def points(places, radius, stretch):
     body = np.float32(radius) * _OCTAHEDRON / np.array([1.0, 1.0, stretch], np.float32)
     coordinates = (places[:, None].astype(np.float32) + body).reshape(-1, 3)
     return PolygonMesh(coordinates, *_repeated(_FACES, len(places), 6))
+
+
+def spaced_points(places, size, stretch):
+    """`points` that are as large as their places (N, 3) allow, if most are not to overlap with the vertical
+    exaggeration `stretch`. size: of all that is shown."""
+    shown = places * (1.0, 1.0, stretch)
+    tree = KDTree(len(shown))
+    for number, place in enumerate(shown.tolist()):
+        tree.insert(place, number)
+    tree.balance()
+    asked = shown[:: -(-len(shown) // _ASKED)].tolist()
+    nearest = [tree.find_n(place, 2)[-1][2] for place in asked]
+    least, most = _LEAST_RADIUS * size, _RADIUS * size
+    apart = float(np.quantile(nearest, _APART)) if len(shown) > 1 else most
+    return points(places, np.clip(0.5 * apart, least, most), stretch)
+
+
+def discs(places, gradients, radius, stretch):
+    """A disc at each place (N, 3) in the plane that rises by gradients (N, 2) along x and y, with a short
+    line along its normal, as a PolygonMesh: of each disc its upper side, its lower side, and the faces of
+    the line. They are round, and the line is normal, with the vertical exaggeration `stretch`."""
+    normals = np.column_stack([-gradients * stretch, np.ones(len(gradients))])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
+    side = np.cross(normals, helper)
+    side /= np.linalg.norm(side, axis=1)[:, None]
+    other = np.cross(normals, side)
+    angles = 2 * np.pi * np.arange(_DISC_SIDES) / _DISC_SIDES
+    ring = np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
+    flat = (1.0, 1.0, 1.0 / stretch)
+    centers = places * (1.0, 1.0, stretch)
+    apart = 0.5 * _THICK * radius * normals
+    upper, lower = ((centers + shift)[:, None] + radius * ring for shift in (apart, -apart))
+    ends = np.stack([centers, centers + _NORMAL * radius * normals], axis=1).reshape(-1, 3)
+    bars = lines(ends, np.arange(len(ends)).reshape(-1, 2), _NORMAL_RADIUS * radius)
+    bar = bars.coordinates.reshape(len(places), -1, 3)
+    coordinates = np.concatenate([upper, lower[:, ::-1], bar], axis=1) * flat
+    first = np.arange(_DISC_SIDES)
+    faces = [first, first + _DISC_SIDES, *(_around(3) + 2 * _DISC_SIDES)]
+    count, vertices = len(places), coordinates.shape[1]
+    corners = np.arange(count, dtype=np.int32)[:, None] * vertices + np.concatenate(faces)
+    sizes = np.tile([len(face) for face in faces], count)
+    offsets = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32)
+    return PolygonMesh(
+        coordinates.reshape(-1, 3).astype(np.float32), offsets, corners.ravel().astype(np.int32)
+    )
+
+
+DISC_FACES = 5  # of a disc: its sides, and the three faces of its normal
 
 
 def places_of(coordinates):

@@ -4,7 +4,6 @@
 import json
 
 import numpy as np
-from mathutils.kdtree import KDTree
 
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
@@ -14,10 +13,7 @@ from . import bodies, colors, explosion, marks, shown_models
 
 _MOST = 20_000  # points shown at most: those farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
-_RADIUS, _LEAST_RADIUS = 0.007, 0.0015  # of the model's size, at most and at least
-_APART = 0.1  # of the points may lie so close that their bodies overlap
 _STRETCH = "realmodel_stretch"  # on the object: the vertical exaggeration that its bodies are shaped for
-_ASKED = 2000  # points at most whose distance to the nearest other is looked at
 
 
 def show(scene):
@@ -55,19 +51,9 @@ def show(scene):
 
 
 def _shape(scene, points):
-    """Bodies around points (N, 3), as long as wide with the vertical exaggeration of the scene, and so small
-    that most do not overlap there."""
-    stretch, (low, high) = exaggeration.factor(scene), explosion.bounds(scene)
-    shown = points * (1.0, 1.0, stretch)
-    tree = KDTree(len(shown))
-    for number, place in enumerate(shown.tolist()):
-        tree.insert(place, number)
-    tree.balance()
-    asked = shown[:: -(-len(shown) // _ASKED)].tolist()
-    nearest = [tree.find_n(place, 2)[-1][2] for place in asked]
-    least, most = (share * float(np.linalg.norm(high - low)) for share in (_LEAST_RADIUS, _RADIUS))
-    apart = float(np.quantile(nearest, _APART)) if len(shown) > 1 else most
-    return marks.points(points, np.clip(0.5 * apart, least, most), stretch)
+    """Bodies around points (N, 3), as long as wide with the vertical exaggeration of the scene."""
+    low, high = explosion.bounds(scene)
+    return marks.spaced_points(points, float(np.linalg.norm(high - low)), exaggeration.factor(scene))
 
 
 def follow_exaggeration(scene):

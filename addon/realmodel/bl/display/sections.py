@@ -30,7 +30,12 @@ def by_plane(scene, location, normal):
 def along(scene, item, depsgraph):
     """The core's Fence of a scene's model, at its stage, along the line of a curve or mesh object. Raises
     InputRefused, BuildFailed."""
-    line = shapes.polyline(item, depsgraph) + project_settings.model_origin(scene)[:2]
+    return through(scene, shapes.polyline(item, depsgraph) + project_settings.model_origin(scene)[:2])
+
+
+def through(scene, line):
+    """The core's Fence of a scene's model, at its stage, along a line (N, 2) in model coordinates. Raises
+    InputRefused, BuildFailed."""
     return _colored(scene, shown_models.at_stage(scene, scene.realmodel.stage).fence(line))
 
 

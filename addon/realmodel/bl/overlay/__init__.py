@@ -10,6 +10,7 @@ import numpy as np
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from .. import caches, exaggeration, project_settings
 from ..display import colors, ensembles, explosion, residuals
+from ..field import boreholes
 
 WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
@@ -33,15 +34,14 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     """
     group = scene.realmodel
     view_settings = group.view
-    if not len(group.results):
-        return None
-    keys = _keys(scene)
+    keys, labels = _keys(scene), boreholes.labels(scene)
     parts = [part for part in ("north", "scale", "axes") if getattr(view_settings, f"show_{part}")]
+    parts = parts if len(group.results) else []
     if group.explode and "axes" in parts:
         parts.remove("axes")
-    if not keys and not parts:
+    if not (keys or parts or labels):
         return None
-    if not parts:
+    if not (parts or labels):
         picture = picture._replace(projection=np.eye(4), matrix=np.eye(4))  # of legends: it may turn
     view = np.array(picture.matrix, np.float64)
     right, up, back = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
@@ -61,19 +61,20 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     shown = Shown(low + origin, high + origin, placed, group.units, factor)
     arrays = eye.projection, eye.back, eye.right, eye.up, shown.low, shown.high, shown.placed
     of_keys = tuple((k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes()) for k in keys)
-    name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, of_keys, *parts, tuple(margins))
+    of_parts = of_keys, *parts, *labels, tuple(margins)
+    name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, *of_parts)
     if name not in _drawings:
-        _drawings[name] = draw_overlay(eye, shown, keys, parts, margins)
+        _drawings[name] = draw_overlay(eye, shown, keys, parts, margins, labels)
     return _drawings[name]
 
 
 def _keys(scene):
     """The core's ColorKeys of what colors are to be seen."""
-    if not (len(scene.realmodel.results) and scene.realmodel.view.show_legend):
+    if not scene.realmodel.view.show_legend:
         return ()
-    return tuple(
-        key for key in (colors.key(scene), residuals.key(scene), ensembles.key(scene)) if key is not None
-    )
+    of_model = (colors.key, residuals.key, ensembles.key) if len(scene.realmodel.results) else ()
+    found = (key(scene) for key in (*of_model, boreholes.key))
+    return tuple(key for key in found if key is not None)
 
 
 def legend_shares(scene, size):

@@ -98,6 +98,7 @@ def _margins(area, scale):
     left corner cover, in points."""
     there = {region.type: region for region in area.regions if min(region.width, region.height) > 1}
     low = there["HUD"].y + there["HUD"].height - there["WINDOW"].y if "HUD" in there else 0
+    low = max(low, 0)  # it may have been moved out of the window
     if 2 * low > area.height:  # unfolded: a legend above it would have no room
         low = 0
     if not bpy.context.preferences.system.use_region_overlap:

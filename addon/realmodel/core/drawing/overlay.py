@@ -18,6 +18,7 @@ _PAD = 0.8 * SIZE
 _PAPER = (1.0, 1.0, 1.0, 0.9)
 _BAR = (12.0, 110.0)  # width, height of a color bar
 _LEAST_AXIS = 40.0  # points: an axis that looks shorter has no ticks
+_LIFT = 6.0  # of a label over its place, points
 _FLATTEST = 0.35  # how flat the north arrow may lie
 _FACES = [(axis, end) for axis in range(3) for end in (0, 1)]
 _AXIS_NAMES = ("Easting", "Northing", "Elevation")
@@ -84,13 +85,16 @@ def draw_overlay(
     keys: Sequence[ColorKey],
     parts: Collection[str],
     margins: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    labels: Sequence[tuple[str, tuple[float, float, float]]] = (),
 ) -> Drawing:
     """A Drawing as large as the picture. keys: its legends. parts: those of "north", "scale" and "axes" that
-    it has. margins: what is covered at the left and right, and below the legends, in points."""
+    it has. margins: what is covered at the left and right, and below the legends, in points. labels: texts
+    and their places in model coordinates; of those in each other's way the first is drawn."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
     if "axes" in parts:
         _axes(drawing, eye, shown)
+    _labels(drawing, eye, shown, labels)
     for key in keys:
         left = _legend(drawing, key, left, margins[2] + _MARGIN)
     if "scale" in parts:
@@ -98,6 +102,20 @@ def draw_overlay(
     if "north" in parts:
         _north_arrow(drawing, eye, right)
     return drawing
+
+
+def _labels(drawing: Drawing, eye: Eye, shown: Shown, labels) -> None:
+    taken: list[tuple[float, float, float]] = []  # from left to right, and the height
+    places = eye.at(shown.world([place for _, place in labels]))
+    for (text, _), (x, y) in zip(labels, places.tolist(), strict=True):
+        width = text_width(text, SIZE)
+        begin, end, low = x - width / 2 - 2, x + width / 2 + 2, y + _LIFT
+        is_seen = 0 < x < drawing.width and 0 < y < drawing.height  # also not of places behind the eye
+        if not is_seen or any(begin < b and a < end and abs(low - c) < 1.3 * SIZE for a, b, c in taken):
+            continue
+        taken.append((begin, end, low))
+        drawing.rectangle((begin, low - 2, end - begin, 1.25 * SIZE), _PAPER, None)
+        drawing.text(x, low, text, SIZE, anchor="middle")
 
 
 def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) -> None:

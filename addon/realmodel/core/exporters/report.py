@@ -14,6 +14,7 @@ import numpy as np
 from ..base.errors import UsageError
 from ..base.work import native_module
 from ..notebook import data_frame
+from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport
 from ..results.erosion import Erosion
@@ -255,6 +256,15 @@ def observation_entries(found: Observed) -> dict[str, list[dict]]:
             for rock, each in found.left_out
         ],
     }
+
+
+def hole_entries(found: HoleValidation) -> dict[str, list[dict]]:
+    """What models say of holes without knowing them, as a list of the report."""
+    holes = [
+        {**vars(hole), "contacts": [{**vars(each), "place": list(each.place)} for each in hole.contacts]}
+        for hole in found.holes
+    ]
+    return {"left_out_holes": holes}
 
 
 def warning_entries(model) -> list[dict]:

@@ -33,21 +33,23 @@ from .shapes.parts import section_parts
 _POLYGON = 7
 
 
-def section_writer(path: str | Path, exaggeration: float = 1.0) -> Callable[..., None]:
-    """The function (section, file) that writes files of this ending. exaggeration: of heights in drawings.
-    Raises UsageError."""
+def section_writer(
+    path: str | Path, exaggeration: float = 1.0, hole_width: float = 0.0
+) -> Callable[..., None]:
+    """The function (section, file) that writes files of this ending. exaggeration, hole_width: of drawings,
+    as of draw_section. Raises UsageError."""
     writer = by_ending(path, SECTION_WRITERS, "sections are not written as {}")
     if writer is write_section_drawing:
         draw = drawing.WRITERS[Path(path).suffix.lower()]
-        return partial(writer, write=draw, exaggeration=exaggeration)
+        return partial(writer, write=draw, exaggeration=exaggeration, hole_width=hole_width)
     return writer
 
 
 def write_section_drawing(
-    section, file: BinaryIO, write=drawing.write_svg, exaggeration: float = 1.0
+    section, file: BinaryIO, write=drawing.write_svg, exaggeration: float = 1.0, hole_width: float = 0.0
 ) -> None:
     """A drawing with axes and a legend."""
-    write(draw_section(section, exaggeration), file)
+    write(draw_section(section, exaggeration, hole_width=hole_width), file)
 
 
 def write_section_npz(section, file: BinaryIO) -> None:

@@ -36,13 +36,14 @@ def _through(field: ScalarField, contacts: np.ndarray, levels: np.ndarray) -> np
     """(nodes,) the values nearest to those of a field with which it has levels (C,) at contacts: with the
     weights A of contacts, values + A^T y where (A A^T + loose) y is what they miss their levels by; by
     conjugate gradients (Hestenes and Stiefel 1952)."""
-    nodes, weights = field.lattice.located(contacts)
-    size = len(field.values)
+    found, weights = field.lattice.located(contacts)
+    used, nodes = np.unique(found, return_inverse=True)
+    nodes = nodes.reshape(found.shape)
 
     def spread(y: np.ndarray) -> np.ndarray:
-        return np.bincount(nodes.ravel(), (weights * y[:, None]).ravel(), size)
+        return np.bincount(nodes.ravel(), (weights * y[:, None]).ravel(), len(used))
 
-    missed = levels - (field.values[nodes] * weights).sum(axis=1)
+    missed = levels - (field.values[found] * weights).sum(axis=1)
     y, way, rest = np.zeros(len(missed)), missed, missed
     square = first = (rest * rest).sum()
     for _ in range(_ROUNDS):
@@ -54,7 +55,9 @@ def _through(field: ScalarField, contacts: np.ndarray, levels: np.ndarray) -> np
         rest = rest - step * ahead
         square, before = (rest * rest).sum(), square
         way = rest + square / before * way
-    return field.values + spread(y)
+    values = field.values.copy()
+    values[used] += spread(y)
+    return values
 
 
 def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:

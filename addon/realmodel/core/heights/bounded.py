@@ -60,8 +60,7 @@ def interpolated(method: str, task: Task) -> Result:
         kept[given.left_out] = False
         result = run_method(method, replace(task, bounds=bounds.some(kept)))
         return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, given.left_out)])
-    run = runner(method, free)
-
+    run = runner(method, task)
     give = Heights(replace(free, left_out=False), run, METHODS[method].leaves_one_out)
     active = active_bounds(task.work, task.points, given, give)
     result = run(replace(free, points=np.vstack([task.points, active])))
@@ -106,7 +105,7 @@ def holds_bounds(method: str) -> bool:
 
 
 def runner(method: str, task: Task) -> Callable[[Task], Result]:
-    """The method with what it finds from the points alone."""
+    """The method with what it finds from the points alone, and from whether there are bounds."""
     if "variogram" in task.settings:
         known = from_neighbours.structure(task)
         return lambda each: from_neighbours.krige(each, known)

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
-from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
+from ..settings.variogram import Variogram, fit_warnings
 from .interpolation import Result, Task
 
 
@@ -31,19 +31,15 @@ class DipUse:
         return None if dips is None else (dips.positions, dips.gradients, self.baseline, self.neighbours)
 
 
-_OF_SMOOTH = 1 / 64  # of the spacing of the data: what a baseline is where slopes have a variance
-_LEAST_BASELINE = 1 / 1024  # of a range: less leaves too few digits of differences
-_ROUGH = ("spherical", "exponential")  # models without one
 _FEWEST_DIPS = 2
 
 
 def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
     """How the dips of a task count, of which at a node `neighbours` points count.
 
-    A model that is not differentiable at 0 has slopes of infinite variance, and a slope at a point would say
-    nothing of heights around it; so it is with a spline (variogram None), but for a logarithm. There the
-    slope is that over the mean spacing of points and dips. Otherwise the baseline is so short that the slope
-    is that at its position. Of as many dips as lie among the nearest points, on average, but no more than of
+    The baseline is that of the native dip_baseline for a variogram. With a spline (variogram None) a slope at
+    a point would have an infinite variance, if only by a logarithm: the slope is that over the mean spacing
+    of points and dips. Of as many dips as lie among the nearest points, on average, but no more than of
     these, the nearest count.
     """
     dips, points = task.dips, task.points
@@ -51,14 +47,7 @@ def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
         return DipUse(1.0, 0)
     baseline = _spacing(points, dips)
     if variogram is not None:
-        parts = variogram.parts()
-        ratios = [
-            (part.anisotropy or task.settings["anisotropy"] or NO_ANISOTROPY)["ratio"] for part in parts
-        ]
-        shortest = min(part.range / max(r, 1 / r) for part, r in zip(parts, ratios, strict=True))
-        baseline = min(baseline, shortest)
-        if not any(part.model in _ROUGH and part.sill > 0 for part in parts):
-            baseline = max(_OF_SMOOTH * baseline, _LEAST_BASELINE * max(part.range for part in parts))
+        baseline = native_module().dip_baseline(variogram.native(task.settings["anisotropy"]), baseline)
     share = -(-neighbours * len(dips) // max(len(points), 1))
     return DipUse(baseline, min(max(share, _FEWEST_DIPS), neighbours) if neighbours else 0)
 
@@ -97,10 +86,12 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
         drift=settings.get("drift", "constant"),
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
         are_apart=are_apart,
+        dips=None if task.dips is None else DipUse(_spacing(task.points, task.dips), 0).native(task.dips),
+        has_bounds=task.bounds is not None and len(task.bounds) > 0,
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
     variogram = Variogram.from_fit(fitted, anisotropy is None)
-    warnings = tuple(fit_warnings(variogram, task.points, "drift" in settings))
+    warnings = tuple(fit_warnings(variogram, task.points, "drift" in settings, task.dips is not None))
     return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
 
 

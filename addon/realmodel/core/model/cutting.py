@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Generic
 
@@ -18,6 +19,7 @@ from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
 from ..results.section_faults import traces_on_fence, traces_on_plane
+from ..results.section_holes import hole_lines, hole_places, line_through
 from ..settings.method_options import check_threads
 from .section import Fence, Section
 
@@ -208,6 +210,7 @@ def section(
             **_section_arrays(model, found),
             plane=(point, normal),
             faults=traces_on_plane(model, point, normal),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
@@ -259,9 +262,27 @@ def fence(
             polyline=polyline,
             panel=np.concatenate(numbers),
             faults=traces_on_fence(model, polyline),
+            holes=hole_lines(model),
         )
 
     return run(task, progress, cancel, threads=threads)
+
+
+def fence_through_holes(
+    model: ModelData,
+    holes: Sequence[str],
+    extend: float | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Fence:
+    """Vertical sections through boreholes of the project, in the order of their names.
+
+    holes: names. extend: how far the line goes on at both ends, model units; None: a twentieth of its length.
+    Raises InputRefused for a hole that is not there, or where all are at one place, UsageError, BuildFailed,
+    Cancelled.
+    """
+    return fence(model, line_through(hole_places(model.project), holes, extend), threads, progress, cancel)
 
 
 def _joined(panels: list[dict]) -> dict:

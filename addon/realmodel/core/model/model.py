@@ -15,6 +15,8 @@ from ..exporters import save_model
 from ..exporters.report import Report, model_report
 from ..exporters.surfaces import save_surfaces
 from ..fields import ScalarField
+from ..proof.left_out_holes import cross_validate_holes
+from ..proof.misfits import misfits
 from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
@@ -173,6 +175,9 @@ class Model(ModelData):
     cut_by_block = cutting.cut_by_block
     section = cutting.section
     fence = cutting.fence
+    fence_through_holes = cutting.fence_through_holes
     borehole = borehole
     planned_hole = planned_hole
     observed = observed
+    misfits = misfits
+    cross_validate_holes = cross_validate_holes

@@ -16,11 +16,12 @@ from ..results.section_drawing import draw_section
 class Section(SectionData):
     """Convex polygons on a cutter."""
 
-    def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
+    def save(self, path: str | Path, exaggeration: float = 1.0, hole_width: float = 0.0) -> None:
         """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
-        of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. The file appears whole or not
-        at all. Raises UsageError, OutputFailed."""
-        writer = section_writer(path, exaggeration)
+        of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. hole_width: drawings have the
+        boreholes within this distance of the section, model units. The file appears whole or not at all.
+        Raises UsageError, OutputFailed."""
+        writer = section_writer(path, exaggeration, hole_width)
         with Outputs() as outputs, outputs.file(path) as file:
             writer(self, file)
 

@@ -66,7 +66,8 @@ class Surface(Shaped):
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
     (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. With
+    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3)
+    are points that are not used: those of its file, or its array, at these places, model units. With
     `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
     `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
@@ -91,6 +92,7 @@ class Surface(Shaped):
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
     dips: Dips | DipFile | str | Path | None = None
+    left_out: np.ndarray | Sequence | None = None
     series: str | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
@@ -136,8 +138,9 @@ class Surface(Shaped):
         return self.dips
 
     def known_dips(self) -> Dips | None:
-        """All dips that count for a surface that is read."""
-        parts = [each for each in (self.own_dips(), self.rock_dips) if each is not None]
+        """All dips that count for a surface that is read: none of them is switched off."""
+        given = [each.used_only() for each in (self.own_dips(), self.rock_dips) if each is not None]
+        parts = [each for each in given if each is not None]
         return Dips.joined(parts) if len(parts) > 1 else next(iter(parts), None)
 
     @builtins.property  # a field of this class is called property
@@ -176,7 +179,8 @@ class Rock(Entry):
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
     `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
-    blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
+    blocks; `hole_picks` is what each of them met once they are read (Picks.holes), and `hole_ends` where it
+    ends (Picks.ends): for display, no input.
     `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
     they are read, with those of the boreholes and of the `map`, polygons of blocks on the ground. `dips` are
     those of its beds, a file, a DipFile or arrays: each counts for the surfaces that are parallel to it.
@@ -210,6 +214,7 @@ class Rock(Entry):
     map: MapFile | None = None
     series: list[Series] = field(default_factory=list)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
+    hole_ends: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
@@ -428,7 +433,8 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     if not surface.interpolated:
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given = [] if continues else given
-        given += [key for key in ("minimum_thickness", "correlation") if getattr(surface, key) is not None]
+        of_points = ("minimum_thickness", "correlation", "left_out")
+        given += [key for key in of_points if getattr(surface, key) is not None]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         if continues:

@@ -290,11 +290,23 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         name=name,
         method=table.text("method"),
         dips=_read_field_table(table, "dips", folder, DipFile, "dips.csv"),
+        left_out=_read_left_out(table),
         options=options,
         source=Source(table.document, table.path),
         **_values(table, SURFACE, _OF_SURFACE),
         **_shape_files(table, folder),
     )
+
+
+def _read_left_out(table: Table) -> np.ndarray | None:
+    given = table.content.get("left_out")
+    if given is None:
+        return None
+    is_list = isinstance(given, list) and all(isinstance(row, list) and len(row) == 3 for row in given)
+    if not is_list or not all(is_number(value) for row in given for value in row):
+        what = "'left_out' must be a list of points"
+        raise table.refuse(what, "left_out", "write left_out = [[x, y, z], ...]")
+    return np.array(given, np.float64).reshape(-1, 3)
 
 
 def _shape_files(table: Table, folder: Path) -> dict:

@@ -198,6 +198,8 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     values: dict[str, object] = {"name": given.name, "series": given.series, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
+    if given.left_out is not None and len(given.left_out):
+        values["left_out"] = np.asarray(given.left_out, np.float64).tolist()
     values |= {
         "minimum_thickness": given.minimum_thickness,
         "correlation": given.correlation,
@@ -273,6 +275,9 @@ def dips_text(dips: Dips) -> bytes:
         if (texts != "").any():
             names.append(name)
             columns.append(texts.tolist())
+    if not dips.in_use.all():
+        names.append("use")
+        columns.append(dips.in_use.astype(int).tolist())
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerows([names, *zip(*columns, strict=True)])
@@ -301,15 +306,18 @@ def observations_text(rock: Rock) -> bytes:
     written = _block_codes(rock)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(("x", "y", "z", "block", "hole", "depth"))
-    for place, block, hole, depth in zip(
+    all_used = bool(given.in_use.all())
+    table.writerow(("x", "y", "z", "block", "hole", "depth") + ("use",) * (not all_used))
+    for place, block, hole, depth, used in zip(
         given.places.tolist(),
         given.blocks.tolist(),
         given.holes.tolist(),
         given.depths.tolist(),
+        given.in_use.tolist(),
         strict=True,
     ):
-        table.writerow((*place, written.get(block, block), hole, "" if np.isnan(depth) else depth))
+        row = (*place, written.get(block, block), hole, "" if np.isnan(depth) else depth)
+        table.writerow(row if all_used else (*row, int(used)))
     return text.getvalue().encode()
 
 
@@ -325,5 +333,9 @@ def _rows(numbers: np.ndarray, apart: str) -> bytes:
     """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
-        text.write(apart.join(map(repr, row)) + "\n")
+        text.write(_joined(row, apart) + "\n")
     return text.getvalue().encode()
+
+
+def _joined(row: list[float], apart: str) -> str:
+    return apart.join(map(repr, row))

@@ -15,6 +15,8 @@ import numpy as np
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..settings.rules import RULES
+from ..structures.parts.parts import Structures
+from ..surfaces.rock_input import RockInput
 from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import RockFaults, sides_of
 from ..surfaces.wrong_sides import heights_at
@@ -49,7 +51,7 @@ class ClosedForm:
     rules: Sequence[str]
     faults: RockFaults
     compartments: np.ndarray
-    sheets: Sequence[Sequence[Sheet]]
+    sheets: Sequence[Sequence[Sheet | None]]
     blocks: Sequence[int]
     base_elevation: float | None = None
     bodies: Sequence[BodyOfRock] = ()
@@ -85,7 +87,11 @@ class ClosedForm:
 
     def youngest_heights(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the heights of the youngest surface over or under points (N, 3), NaN where it has none."""
-        return self._heights(work, len(self.rules) - 1, points, self.compartments_of(work, points))
+        return self.heights(work, len(self.rules) - 1, points)
+
+    def heights(self, work: Work, surface: int, points: np.ndarray) -> np.ndarray:
+        """(N,) the heights of a surface over or under points (N, 3), NaN where it has none."""
+        return self._heights(work, surface, points, self.compartments_of(work, points))
 
     def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
         """(N,) heights of a surface at points in the compartments `where`. That of a level set is where it
@@ -96,7 +102,9 @@ class ClosedForm:
         found = np.full(len(points), np.nan)
         of_sheet: dict[Sheet, list[int]] = {}
         for compartment, sheets in enumerate(self.sheets):
-            of_sheet.setdefault(sheets[surface], []).append(compartment)
+            sheet = sheets[surface]
+            assert sheet is not None  # of a level set alone there is none
+            of_sheet.setdefault(sheet, []).append(compartment)
         for sheet, compartments in of_sheet.items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
@@ -106,17 +114,28 @@ class ClosedForm:
 
 def closed_forms(model) -> list[ClosedForm]:
     """The closed form of each rock mass of a model; blocks have the model's numbers."""
-    structures = model.structures
     number = {block.surface: n for n, block in enumerate(model.blocks)}
-    count = sum(len(entry.surfaces) for entry in model.rock_inputs)
+    return _forms(model.rock_inputs, model.structures, number)
+
+
+def surface_forms(entries: Sequence[RockInput], structures: Structures) -> list[ClosedForm]:
+    """The closed form of each rock mass before anything is built; blocks have the numbers of the surfaces,
+    then of the bodies."""
+    count = sum(len(entry.surfaces) for entry in entries) + len(structures.faults) + len(structures.bodies)
+    return _forms(entries, structures, {surface: surface for surface in range(count)})
+
+
+def _forms(entries: Sequence[RockInput], structures: Structures, number: dict[int, int]) -> list[ClosedForm]:
+    """number: of the block beneath each surface, or of each body, which are numbered after the faults."""
+    count = sum(len(entry.surfaces) for entry in entries)
     found, first = [], 0
-    for rock, entry in enumerate(model.rock_inputs):
+    for rock, entry in enumerate(entries):
         own = range(first, first + len(entry.surfaces))
         first += len(entry.surfaces)
         structure = entry.divided()
         bodies = [
             BodyOfRock(
-                Sheet(body.vertices, body.triangles),
+                Sheet(*body.triangulation()),
                 structures.times[n][rock],
                 number.get(count + len(structures.faults) + n, AIR),
             )

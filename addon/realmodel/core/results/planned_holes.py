@@ -4,24 +4,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.algebra import dot
+from ..base.algebra import dot, norm
 from ..base.elementary import cos, sin
 from ..base.errors import UsageError
 from ..notebook import data_frame
-from .layer_values import at_places
 from .section_data import SectionData
 
 if TYPE_CHECKING:
     import pandas
 
 _SAME = 1e-9  # of the size of a hole and its model: depths that are nearer are one
-_STEP = 1e-6  # of a hole: over which the slopes of surfaces are taken
+_SAME_WEIGHT = 1e-6  # of a corner of a triangle: a place so far outside lies on its edge
 COLUMNS = (
     *("block", "name", "property", "from", "to", "length", "vertical_from", "vertical_to"),
     *("probability", "from_deviation", "to_deviation"),
@@ -92,7 +91,7 @@ class HoleInterval:
 @dataclass(frozen=True)
 class HoleContact:
     """Where a planned hole goes from the block `above` into the block `below`, -1 outside of the model.
-    surface: which the contact lies on, "" for another one, such as a fault or the base. deviation: the
+    surface: the surface, fault or body that the contact lies on, "" for the base and walls. deviation: the
     standard deviation of its depth along the hole: of the realizations that have this contact, and `share` is
     how many of them do, from 0 to 1; without an ensemble (share None) as the variance of the interpolated
     height gives it, None where that is not known."""
@@ -209,39 +208,54 @@ def contacts_between(intervals: Sequence[HoleInterval], axis: HoleAxis) -> list[
 
 def on_surfaces(model, contacts: Sequence[HoleContact], axis: HoleAxis) -> list[HoleContact]:
     """Contacts with the surfaces that they lie on, and the standard deviations of their depths that follow
-    from the variances of interpolated heights: that of the height, over how fast the hole nears the
-    surface."""
-    if not contacts or model.lacks_project is not None:
-        return list(contacts)
-    depths = np.array([contact.depth for contact in contacts])
-    places = axis.places(depths)
-    step = _STEP * axis.length
-    near = 1e-7 * float(np.abs(np.ptp(model.vertices, axis=0)).max() + axis.length)
-    names, deviations = [""] * len(contacts), np.full(len(contacts), np.nan)
-    for number in np.flatnonzero(model.surface_kind == 0).tolist():
-        vertices, _ = model.surface(number)
-        variance = model.surface_attributes(number)["variance"]
-        spread = np.column_stack([vertices[:, :2], np.sqrt(np.maximum(variance, 0.0))])
-        for triangles in model.sheet_triangles(number):
-            height = at_places(vertices, triangles, places[:, :2], model.threads)
-            on = np.flatnonzero(np.abs(height - places[:, 2]) <= near)
-            if not len(on):
+    from the variances of interpolated heights: a surface that is raised meets the hole farther along it by
+    the slope of its triangle there."""
+    places = axis.places([contact.depth for contact in contacts])
+    near = 1e-7 * float(np.ptp(model.vertices, axis=0).max(initial=0.0) + axis.length)
+    found = list(contacts)
+    for number, kind in enumerate(model.surface_kind.tolist() if contacts else []):
+        vertices, triangles = model.surface(number)
+        corners = vertices[triangles]
+        low, high = corners.min(axis=1) - near, corners.max(axis=1) + near
+        variance = None
+        for row, place in enumerate(places):
+            if kind != 0 and found[row].surface:
                 continue
-            before, after = (
-                at_places(vertices, triangles, axis.places(depths[on] + way)[:, :2], model.threads)
-                for way in (-step, step)
-            )
-            there = height[on]
-            rise = np.where(
-                np.isnan(before),
-                after - there,
-                np.where(np.isnan(after), there - before, 0.5 * (after - before)),
-            )
-            nearing = np.abs(axis.direction[2] - np.nan_to_num(rise) / step)
-            own = at_places(spread, triangles, places[on, :2], model.threads)
-            for row, value in zip(on.tolist(), (own / np.maximum(nearing, 1e-12)).tolist(), strict=True):
-                names[row], deviations[row] = model.surface_names[number], value
-    return [
-        HoleContact(each.depth, each.above, each.below, name, None if np.isnan(value) else value)
-        for each, name, value in zip(contacts, names, deviations.tolist(), strict=True)
-    ]
+            some = np.flatnonzero(((low <= place) & (place <= high)).all(axis=1))
+            chosen = _containing(corners[some], place, near)
+            if chosen is None:
+                continue
+            at, weights, normal = some[chosen[0]], *chosen[1:]
+            if variance is None and kind == 0 and model.lacks_project is None:
+                variance = model.surface_attributes(number)["variance"]
+            deviation = None
+            nearing = abs(float(dot(normal, axis.direction)))
+            if variance is not None and nearing > 0:
+                own = np.maximum(variance[triangles[at]], 0.0)
+                height = float(dot(weights, np.sqrt(own)))
+                deviation = None if np.isnan(height) else height * abs(float(normal[2])) / nearing
+            found[row] = replace(contacts[row], surface=model.surface_names[number], deviation=deviation)
+    return found
+
+
+def _containing(
+    corners: np.ndarray, place: np.ndarray, near: float
+) -> tuple[int, np.ndarray, np.ndarray] | None:
+    """The number of the triangle (T, 3, 3) that a place lies in, up to a distance, how much each of its
+    corners counts there, and its normal; None where it lies in none."""
+    a, b, c = corners.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    doubled = norm(normal)
+    with_area = np.flatnonzero(doubled > 0)
+    if not len(with_area):
+        return None
+    a, b, c, normal, doubled = (each[with_area] for each in (a, b, c, normal, doubled))
+    unit = normal / doubled[:, None]
+    weights = np.column_stack(
+        [dot(unit, np.cross(q - place, r - place)) for q, r in ((b, c), (c, a), (a, b))]
+    )
+    weights = weights / doubled[:, None]
+    is_off = np.abs(dot(unit, place - a)) > near
+    least = np.where(is_off, -np.inf, weights.min(axis=1))
+    best = int(least.argmax())
+    return None if least[best] < -_SAME_WEIGHT else (int(with_area[best]), weights[best], unit[best])

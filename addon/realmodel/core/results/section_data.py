@@ -13,6 +13,7 @@ import numpy as np
 from ..base.units import number_text
 from ..notebook import data_frame, polygon_mesh, with_data
 from .section_faults import FaultTrace
+from .section_holes import HoleLine
 
 if TYPE_CHECKING:
     import pandas
@@ -35,7 +36,8 @@ class SectionData:
     block below, or above where there is none below, and its library id; compartment: (K,) int32, its
     compartment, of compartment_names. block_names: (B,) of the model's, from the oldest of each rock mass;
     block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its lengths. plane: its point and
-    normal, where the cutter is one. faults: where they are on planes and fences.
+    normal, where the cutter is one. faults: where they are on planes and fences. holes: the boreholes of the
+    model, wherever they are.
     """
 
     vertices: np.ndarray
@@ -53,6 +55,7 @@ class SectionData:
     compartment: np.ndarray = field(kw_only=True)
     compartment_names: list[str] = field(kw_only=True)
     faults: list[FaultTrace] = field(default_factory=list, kw_only=True)
+    holes: list[HoleLine] = field(default_factory=list, kw_only=True)
 
     def __repr__(self) -> str:
         met = len(np.unique(self.block))

@@ -5,22 +5,26 @@ age, and the coordinates of both ends."""
 from __future__ import annotations
 
 from collections import Counter
+from itertools import pairwise
 
 import numpy as np
 
 from ..base.errors import UsageError
 from ..base.units import METERS
 from ..drawing.charts import Axes, legend, legend_size, tick_texts
-from ..drawing.drawing import BLACK, Drawing
+from ..drawing.drawing import BLACK, WHITE, Drawing
 from ..drawing.glyphs import text_width
 from .section_data import FenceData, SectionData
+from .section_holes import UNKNOWN, HoleLine, parts_near
 
 MOST_EXAGGERATION = 1000.0
 _POINT = 0.0254 / 72  # meters
 _PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
-_FAULT_WIDTH = 1.4
+_FAULT_WIDTH, _HOLE_WIDTH = 1.4, 3.0
+_HOLES = "Boreholes"  # layer of the drawing
+_HIGHEST_NAME = 6  # lines over the end of a hole, where others have taken those below
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
 _LINE = _SIZE + 3  # height of a line of coordinates
@@ -33,12 +37,14 @@ def draw_section(
     exaggeration: float = 1.0,
     title: str | None = None,
     cells: tuple[np.ndarray, np.ndarray] | None = None,
+    hole_width: float = 0.0,
 ) -> Drawing:
     """The section on a page, in its own coordinates at a scale of 1, 2, 2.5, or 5 times a power of ten.
 
     exaggeration: of heights, where the section is vertical. The drawing's layers are named after the blocks.
     cells: corners (N, 4, 2), as of `flattened`, and colors (N, 3) of what is drawn below the outlines of the
-    blocks, in place of their colors.
+    blocks, in place of their colors. hole_width: boreholes within this distance of the section are drawn on
+    it, with their names; of a fence on the panel beside which they lie.
     Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
     """
     if not 0 < exaggeration <= MOST_EXAGGERATION:
@@ -49,7 +55,10 @@ def draw_section(
         raise UsageError("there is nothing to draw: the section does not meet the model")
     flat = flattened(section)
     exaggeration = exaggeration if is_vertical(section) else 1.0
-    places = flat if cells is None else np.concatenate([flat, cells[0].reshape(-1, 2)])
+    holes = holes_on(section, hole_width) if hole_width > 0 else []
+    places = np.concatenate(
+        [flat, *([] if cells is None else [cells[0].reshape(-1, 2)]), *(line for _, line in holes)]
+    )
     low, high = places.min(axis=0), places.max(axis=0)
     if isinstance(section, FenceData):
         low[0], high[0] = 0.0, section.length
@@ -86,6 +95,7 @@ def draw_section(
         color, name = tuple(section.block_colors[block]), section.block_names[block]
         drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
     _draw_faults(drawing, axes, section)
+    _draw_holes(drawing, axes, section, holes)
     axes.frame(*_axis_names(section), layer="Axes")
     _draw_ends(drawing, axes, section, ends, are_beside)
     legend(drawing, (_LEFT + width + _GAP, base + height), _LEGEND, entries, _SIZE, layer="Legend")
@@ -119,6 +129,47 @@ def flat_of(section: SectionData, points: np.ndarray) -> np.ndarray:
     axes = np.column_stack([right, up])
     point, _ = plane_of(section)
     return (points - point) @ axes - ((section.vertices - point) @ axes).min(axis=0)
+
+
+def holes_on(section: SectionData, width: float) -> list[tuple[HoleLine, np.ndarray]]:
+    """The parts of boreholes within a width of a section, moved onto it, and their corners (N, 2) as they are
+    drawn."""
+    if not isinstance(section, FenceData):
+        parts = parts_near(section.holes, plane_of(section), width)
+        return [(part, flat_of(section, part.places)) for part in parts]
+    found = []
+    for panel, (start, end) in enumerate(pairwise(section.polyline)):
+        plane = np.append(start, 0.0), np.array([end[1] - start[1], start[0] - end[0], 0.0])
+        for part in parts_near(section.holes, plane, width, (start, end)):
+            flat = section.along_panels(part.places, np.full(len(part.places), panel))
+            found.append((part, flat))
+    return found
+
+
+def _draw_holes(
+    drawing: Drawing, axes: Axes, section: SectionData, holes: list[tuple[HoleLine, np.ndarray]]
+) -> None:
+    """Draws boreholes as lines in the colors of the blocks that are known along them, with black borders;
+    each name once, over the upper end, where there is room."""
+    named, top = set(), axes.box[1] + axes.box[3]
+    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
+    for hole, flat in holes:
+        points = axes.at(flat)
+        drawing.line(points, BLACK, _HOLE_WIDTH + 1.2, layer=_HOLES)
+        for k, block in enumerate(hole.blocks.tolist()):
+            color = WHITE if block == UNKNOWN else tuple(section.block_colors[block])
+            drawing.line(points[k : k + 2], color, _HOLE_WIDTH, layer=_HOLES)
+            drawing.dots(points[k + 1 : k + 2], _HOLE_WIDTH / 2, BLACK, layer=_HOLES)
+        if hole.name not in named:
+            x, y = points[np.argmax(points[:, 1])].tolist()
+            half = text_width(hole.name, _SIZE) / 2
+            lifted = [(x - half, x + half, y + 4 + _LINE * k) for k in range(_HIGHEST_NAME)]
+            lifted = [each for k, each in enumerate(lifted) if k == 0 or each[2] + _SIZE < top]
+            place = next((each for each in lifted if not any(_overlap(each, one) for one in taken)), None)
+            if place is not None:
+                taken.append(place)
+                drawing.text(x, place[2], hole.name, _SIZE, anchor="middle", layer=_HOLES)
+        named.add(hole.name)
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:

@@ -79,7 +79,15 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
     vertices, triangles = model.surface(number)
     on_mesh = METHODS[method].on_mesh
     nodes = np.ascontiguousarray(vertices[:, :2]) if on_mesh else np.empty((0, 2))
-    task = Task(work, points, nodes, settings, triangles if on_mesh else None, dips=surface.known_dips())
+    task = Task(
+        work,
+        points,
+        nodes,
+        settings,
+        triangles if on_mesh else None,
+        dips=surface.known_dips(),
+        bounds=surface.bounds,
+    )
     try:
         return validate(method, task, DEFAULT_FOLDS), ""
     except InputRefused as error:

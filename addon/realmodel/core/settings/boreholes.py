@@ -12,7 +12,7 @@ from .point_file import check_name, check_units
 
 COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
-    *("from", "to", "block"),
+    *("from", "to", "block", "end"),
 )
 DOWNWARD_DIPS = ("negative", "positive")
 
@@ -24,7 +24,8 @@ class Boreholes:
     picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the
     collar (along the hole), or its elevation. intervals: a table with a row for each logged interval:
     hole, from, to (along the hole) and block. One of the two, or both. collars: a table with a row for
-    each hole: hole, x, y, z, and azimuth and dip or inclination where it is straight but not vertical;
+    each hole: hole, x, y, z, azimuth and dip or inclination where it is straight but not vertical, and the
+    depth of its end, which is only shown;
     None where the rows of picks and intervals have x, y and z themselves. survey: a table with a row for
     each place where the direction of a hole was measured: hole, depth along it, azimuth in degrees
     clockwise from north (+y), and either the inclination in degrees from the vertical or the dip from the

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from .field_table import FieldTable
 NORMAL = ("normal_x", "normal_y", "normal_z")
 COLUMNS = (
     *("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y", *NORMAL),
-    *("surface", "block"),
+    *("surface", "block", "use"),
 )
 
 
@@ -28,6 +28,7 @@ class DipFile(FieldTable):
     dip direction is 90 degrees clockwise from it. polarity: optional, 1 upright, -1 overturned, which is for
     series whose kind is "field" alone. slope_x and slope_y, how much the surface rises along x and along y,
     may take the place of angles; in such a series so may normal_x, normal_y, normal_z, toward younger rock.
+    use: optional, 0 where a row is switched off.
     surface, block: their names, or those that the rock mass's names give them; empty: not known.
     columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
@@ -65,7 +66,8 @@ class SpaceDips:
 class Dips:
     """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
     along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
-    says on which side of a fault a dip is, and in which block one is that names none.
+    says on which side of a fault a dip is, and in which block one is that names none. used: (D,) bool, False
+    where one is switched off, which says nothing then; None: all are used.
 
     Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
     blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
@@ -77,15 +79,26 @@ class Dips:
     z: np.ndarray | None = None
     surfaces: np.ndarray | None = None
     blocks: np.ndarray | None = None
+    used: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
 
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
-        more = (self.z, self.surfaces, self.blocks)
-        chosen = [None if each is None else each[kept] for each in more]
+        more = (self.z, self.surfaces, self.blocks, self.used)
+        chosen = [None if each is None else np.asarray(each)[kept] for each in more]
         return Dips(self.positions[kept], self.gradients[kept], *chosen)
+
+    @property
+    def in_use(self) -> np.ndarray:
+        """(D,) bool: which are not switched off."""
+        return np.ones(len(self), bool) if self.used is None else np.asarray(self.used, bool)
+
+    def used_only(self) -> Dips | None:
+        """Those that are not switched off; None where there are none."""
+        kept = self if self.used is None else replace(self.some(self.in_use), used=None)
+        return kept if len(kept) else None
 
     @property
     def heights(self) -> np.ndarray:
@@ -109,12 +122,15 @@ class Dips:
             for key in ("positions", "gradients")
         )
         z = np.concatenate([np.empty(0), *(part.heights for part in parts)])
+        used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
+        in_use = None if used.all() else used
         names = [
             np.concatenate([np.empty(0, str), *each]) for each in zip(*(p.named for p in parts), strict=True)
         ]
         if not names or not any((each != "").any() for each in names):
-            return cls(positions, gradients, z)
-        return cls(positions, gradients, z, *names)
+            return cls(positions, gradients, z, used=in_use)
+        surfaces, blocks = names
+        return cls(positions, gradients, z, surfaces, blocks, in_use)
 
     def checked(self) -> Dips:
         """The same as arrays of float64. Raises InputRefused."""
@@ -130,7 +146,10 @@ class Dips:
             None if names is None else _texts(names, len(positions), f"{what} of dips")
             for what, names in (("surfaces", self.surfaces), ("blocks", self.blocks))
         )
-        return Dips(positions, gradients, z, surfaces, blocks)
+        used = None if self.used is None else np.ascontiguousarray(self.used, bool)
+        if used is not None and used.shape != (len(positions),):
+            raise InputRefused(f"{len(positions)} dips have {used.size} of 'used'", item="dips")
+        return Dips(positions, gradients, z, surfaces, blocks, used)
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""

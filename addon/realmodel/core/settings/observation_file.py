@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from .field_table import FieldTable
 
-COLUMNS = ("x", "y", "z", "block", "hole", "depth")
+COLUMNS = ("x", "y", "z", "block", "hole", "depth", "use")
 
 
 @dataclass(frozen=True)
 class ObservationFile(FieldTable):
     """file: a table with a row for each place that lies in a block: x, y, z and the block; where they are
-    known the hole, and the depth along it.
+    known the hole, and the depth along it. use: optional, 0 where a row is switched off.
 
     columns: {"block": "UNIT", ...}, names or numbers from 1 of columns that are called otherwise. separator,
     decimal: as of a PointFile. units: "ft", or {"xy": "m", "z": "ft"}; None: those of the model.

@@ -208,6 +208,7 @@ SURFACE = {
     **READING,
     "mesh": _OTHER,
     "dips": _OTHER,
+    "left_out": _OTHER,
     "series": Setting(
         kind="text",
         label="Series",

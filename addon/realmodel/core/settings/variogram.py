@@ -158,19 +158,21 @@ class Variogram:
         }
 
 
-def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
+def fit_warnings(
+    variogram: Variogram, points: np.ndarray, has_trend: bool = False, has_dips: bool = False
+) -> list[str]:
     """Warnings about a fitted variogram of little significance, as sentences. has_trend: heights far from
-    points follow a trend."""
+    points follow a trend. has_dips: it was fitted to dips, too, which show much of it."""
     warnings = []
     lags, _, counts = variogram.experimental()
     pairs = int(counts.sum())
-    if pairs < _FEW_PAIRS:
+    if pairs < _FEW_PAIRS and not has_dips:
         number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
         warnings.append(
             f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
             "hand, or use the method 'plane' or 'tin'"
         )
-    elif variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
+    elif pairs >= _FEW_PAIRS and variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(
             "the fitted variogram is nearly pure nugget: neighboring points differ almost as much as "
             "distant ones, so kriging gives hardly more than local means; check the points for errors"

@@ -19,6 +19,7 @@ from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips
 from .map_data import blocks_on_map, read_map, with_ground
+from .observed.contradictions import without_contradictions
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -87,6 +88,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         map=None,
         names={},
         hole_picks=picks.holes or rock.hole_picks,
+        hole_ends=picks.ends or rock.hole_ends,
     )
     return FieldData(
         read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped
@@ -159,6 +161,9 @@ def apply_observations(
     entry.used = derived.used
     of_tables = [each for each in entry.left_out if each.kind in IN_TABLES]
     entry.left_out = [*of_tables, *derived.left_out]
+    if situation.sides is None or not situation.sides.shape[1]:  # a bound counts on its side of a fault
+        entry.rock, contradictions = without_contradictions(entry.rock, observations)
+        entry.left_out += contradictions
 
 
 def _covered(work: Work, entry: RockInput, places: np.ndarray) -> np.ndarray | None:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The geological map of a rock mass: its polygons, the ground and the faults, read and put together."""
+"""The geological map of a rock mass: its polygons, the ground and the faults, read and put together; and as
+triangles on its ground."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
 from ..readers.fault_trace import read_fault_trace
-from ..readers.maps.unit_polygons import read_unit_polygons
+from ..readers.maps.unit_polygons import UnitPolygon, read_unit_polygons
 from ..readers.point_input import read_raster_heights
 from ..readers.tables.observations import LeftOut, Observations
 from ..settings.map_file import MapFile
@@ -29,6 +30,7 @@ from ..settings.methods import CONTINUATION, CONTINUATION_OPTIONS
 from ..settings.point_file import MeshFile, PointFile
 from .observed.map_places import MapFrame, observed_on_map
 from .observed.polygon_borders import inside
+from .planar_mesh import mesh_region
 from .surface_input import SurfaceInput
 
 _PARTS = 100  # of the diagonal of the region: the spacing of places for an automatic edge length
@@ -55,9 +57,17 @@ def _ground_shape(rock: Rock) -> dict | None:
     return {"mesh" if is_mesh_file(ground) else "points": ground}
 
 
-def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observations, list[LeftOut], list[str]]:
-    """The observations of the map of a rock mass, what of it is not used, and warnings, sentences. Raises
-    InputRefused."""
+@dataclass(frozen=True, eq=False)
+class MapOnGround:
+    """A map as it is read. polygons: in plan. frame: where it counts, and the ground. warnings: sentences."""
+
+    polygons: list[UnitPolygon]
+    frame: MapFrame
+    warnings: list[str]
+
+
+def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
+    """The polygons of the map of a rock mass that has a region, and its ground. Raises InputRefused."""
     given = rock.map
     assert given is not None
     surface = _ground(rock, given)
@@ -73,12 +83,21 @@ def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observatio
         return _heights(rock, surface, plan, project.units)
 
     frame = MapFrame(box, _spacing(rock, rings, box), faults, heights)
-    observations, left_out, more = observed_on_map(polygons, units, frame)
+    return MapOnGround(polygons, frame, warnings)
+
+
+def read_map(project: Project, rock: Rock, units: UnitNames) -> tuple[Observations, list[LeftOut], list[str]]:
+    """The observations of the map of a rock mass, what of it is not used, and warnings, sentences. Raises
+    InputRefused."""
+    read = map_on_ground(project, rock)
+    assert rock.map is not None
+    file = rock.map.file
+    observations, left_out, more = observed_on_map(read.polygons, units, read.frame)
     if not len(observations) and not left_out:
         what = "no polygon of it lies in the region, or the ground is known nowhere there"
         advice = "check the coordinates of the map, the ground and the region"
-        raise InputRefused(what, file=given.file, item=f"{rock.item}, map", advice=advice)
-    return observations, left_out, [*warnings, *(f"{given.file}: {text}" for text in more)]
+        raise InputRefused(what, file=file, item=f"{rock.item}, map", advice=advice)
+    return observations, left_out, [*read.warnings, *(f"{file}: {text}" for text in more)]
 
 
 def blocks_on_map(project: Project, rock: Rock, units: UnitNames, plan: np.ndarray) -> np.ndarray:
@@ -155,3 +174,42 @@ def _heights(rock: Rock, surface: Surface, plan: np.ndarray, units: str = MODEL_
         return native_module().surface_heights(*read.shape.arrays, np.ascontiguousarray(plan))
     options: dict[str, Any] = dict(CONTINUATION_OPTIONS)
     return interpolate(read.surface.point_array(), plan, CONTINUATION, **options).z
+
+
+@dataclass(frozen=True, eq=False)
+class DrapedMap:
+    """vertices: (V, 3) float64, model units. triangles: (T, 3) int32, counter-clockwise from above. unit:
+    (T,) int32, of `names`: the block that a triangle shows or, where there is none, what the map says.
+    warnings: sentences about polygons that are not shown."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    unit: np.ndarray
+    names: list[str]
+    warnings: list[str]
+
+
+def draped_map(given: MapOnGround, units: UnitNames) -> DrapedMap:
+    """A map on its ground, as densely as it counts. Triangles where the ground is not known are left out."""
+    vertices, triangles, numbers = [np.empty((0, 2))], [np.empty((0, 3), np.int32)], [np.empty(0, np.int32)]
+    names: dict[str, int] = {}
+    warnings, count = [], 0
+    for polygon in given.polygons:
+        block = polygon.unit if units.says_nothing(polygon.unit) else units.block(polygon.unit)
+        number = names.setdefault(block or polygon.unit, len(names))
+        try:
+            plan, faces = mesh_region(list(polygon.rings), edge_length=given.frame.spacing)
+        except InputRefused as error:
+            warnings.append(f"{polygon.item} is not shown: {error.what}")
+            continue
+        vertices.append(plan)
+        triangles.append(faces + np.int32(count))
+        numbers.append(np.full(len(faces), number, np.int32))
+        count += len(plan)
+    plan = np.concatenate(vertices)
+    z = given.frame.heights(plan) if len(plan) else np.empty(0)
+    faces, unit = np.concatenate(triangles), np.concatenate(numbers)
+    known = np.isfinite(z[faces]).all(axis=1)
+    used, corners = np.unique(faces[known], return_inverse=True)
+    places = np.column_stack([plan, z])[used]
+    return DrapedMap(places, corners.reshape(-1, 3).astype(np.int32), unit[known], list(names), warnings)

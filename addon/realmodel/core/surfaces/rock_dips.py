@@ -45,6 +45,8 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
         alike = (runs[0 if rock.base_elevation is not None else 1 :] == runs[-1]).all()
         shown = None if mapped is None else mapped[without]
         counts[without] = runs[-1] if alike else runs[_blocks_of(work, entry, dips.some(without), shown)]
+    is_known &= dips.in_use
+    counts[~dips.in_use] = False
     entry.warnings += _of_default_rules(rock, int((is_known & (surfaces == "")).sum()))
     given = list(rock.surfaces)
     for number, surface in enumerate(given):

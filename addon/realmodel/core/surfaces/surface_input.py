@@ -88,6 +88,9 @@ class SurfaceInput:
         warnings: list[str] = []
         if surface.point_file is not None:
             points, warnings = read_point_file(surface.point_file, self.units, step, gather)
+        if points is not None and surface.left_out is not None and len(surface.left_out):
+            points = gather(_without(in_pieces(checked_points(points)), surface.left_out), np.empty((0, 3)))
+            points = points if len(points) else None
         if self.met is not None:
             own = np.empty((0, 3)) if points is None else checked_points(points)
             points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
@@ -117,6 +120,13 @@ class SurfaceInput:
             mesh = read_mesh(surface.mesh_file, step, arrays.rows)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
+
+
+def _without(pieces: Iterable[np.ndarray], left_out) -> Iterator[np.ndarray]:
+    """Pieces (P, 3) of points without those at places (Q, 3)."""
+    places = set(map(tuple, np.asarray(left_out, np.float64).reshape(-1, 3).tolist()))
+    for piece in pieces:
+        yield piece[[tuple(point) not in places for point in piece.tolist()]]
 
 
 # Reads surfaces in any order: pairs of number and surface. It reports its progress to the Work.

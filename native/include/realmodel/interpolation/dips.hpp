@@ -4,6 +4,8 @@
 #include <array>
 #include <span>
 
+#include "realmodel/interpolation/variogram.hpp"
+
 namespace realmodel::interpolation {
 
 /// Slopes that a surface has at positions in plan. Along each axis a slope is the difference of the
@@ -17,5 +19,12 @@ struct Dips {
     double baseline = 0;                               ///< above 0 where there are dips
     int neighbors = 0;  ///< so many of the nearest count at a node; 0: all
 };
+
+/// The baseline with which slopes say most of heights under a variogram. A model that is not
+/// differentiable at 0 has slopes of infinite variance, and a slope at a point would say nothing of
+/// the heights around it: there the slope is that over the mean spacing of the data. Otherwise the
+/// baseline is so short that the slope is that at its position.
+/// @param spacing  of points and dips together
+double dip_baseline(const Variogram& variogram, double spacing);
 
 }  // namespace realmodel::interpolation

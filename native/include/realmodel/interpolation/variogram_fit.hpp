@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/dips.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
@@ -32,6 +33,8 @@ struct FitOptions {
     int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
     bool finds_anisotropy = false;  ///< instead of taking the one that is given
     bool are_apart = false;         ///< no two points lie at one position, and all are finite
+    Dips dips{};                    ///< their baseline is the mean spacing of points and dips
+    bool has_bounds = false;        ///< bounds of heights are known, which hold beside the points
 };
 
 struct FittedVariogram {
@@ -55,6 +58,11 @@ struct FittedVariogram {
 /// With finds_anisotropy ratio and azimuth are searched in the same way, from 30 points on that
 /// spread in two directions; one is accepted where it lowers the mean square of the errors by 3 %
 /// and by two standard errors, and the rest is fitted again under it.
+///
+/// Few contacts of a surface that dips and bounds describe as well show too little by their pairs,
+/// and by those that are left out: with bounds the variogram of fewer than 30 points, with dips of
+/// fewer than 150, is the one with which points and dips are most likely (restricted maximum
+/// likelihood).
 ///
 /// With a drift all this is done with the residuals of the polynomial that fits best, or that fits
 /// a fixed part of more than 20,000 points best.

@@ -22,11 +22,13 @@ from .unit_names import UnitNames
 class Picks:
     """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
     and (surface, place (3,)) of its picks, and of the tops of its intervals, the highest first; warnings,
-    sentences. observations: of the blocks of intervals; left_out: intervals that are not used."""
+    sentences. ends: where holes end (3,), as far as their collars say. observations: of the blocks of
+    intervals; left_out: intervals that are not used."""
 
     points: dict[str, np.ndarray] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    ends: dict[str, np.ndarray] = field(default_factory=dict)
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
 
@@ -51,6 +53,7 @@ def read_borehole_tables(
         found.left_out += logged.left_out
         for name, (collar, tops) in logged.holes.items():
             found.holes.setdefault(name, (collar, []))[1].extend(tops)
+        found.ends |= logged.ends
     for _, places in found.holes.values():
         places.sort(key=lambda pick: -pick[1][2])
     found.warnings += holes.warnings()
@@ -62,6 +65,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
     assert given.picks is not None
     found: dict[str, list] = {}
     met: dict[str, tuple] = {}
+    ends: dict[str, np.ndarray] = {}
     missing = 0
     for row in rows(given, Path(given.picks), COLLARS, ("hole", "surface"), step):
         begin = holes.begin_of(row)
@@ -73,18 +77,19 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
             missing += 1
             continue
         if column == "depth":
-            # Depths, and horizontal offsets along a hole, are in the unit of z.
-            way = holes.way_to(row, row.number("depth")) * (1.0, 1.0, -1.0) * (scale[2] / scale)
-            place = (begin + way) * scale
+            place = holes.place(row, row.number("depth"), scale)
         else:
             holes.refuse_deviated(row)
-            place = (begin[0], begin[1], row.number(column)) * scale
+            place = np.array([begin[0], begin[1], row.number(column)]) * scale
         found.setdefault(name, []).append(place)
         collar = begin * scale if np.isfinite(begin).all() else None
-        met.setdefault(row.text("hole"), (collar, []))[1].append((name, place))
+        hole = row.text("hole")
+        met.setdefault(hole, (collar, []))[1].append((name, place))
+        if hole in holes.ends and hole not in ends:
+            ends[hole] = holes.place(row, holes.ends[hole], scale)
     if not found:
         raise InputRefused("there are no picks in it", file=given.picks)
-    picks = Picks({name: np.array(places) for name, places in found.items()}, met)
+    picks = Picks({name: np.array(places) for name, places in found.items()}, met, ends=ends)
     if missing:
         picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
     return picks

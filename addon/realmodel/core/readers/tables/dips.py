@@ -31,6 +31,7 @@ DIPS = {
     "polarity": ("polarity", "younging", "facing"),
     "slope_x": ("slope_x", "dz_dx"),
     "slope_y": ("slope_y", "dz_dy"),
+    "use": ("use",),
     **{name: (name,) for name in NORMAL},
 }
 # "formation" and "unit" are blocks where there are dips, which are measured within the beds
@@ -90,15 +91,18 @@ def names_units(given: DipFile, step: Step = no_step) -> bool:
 def _dips(given: DipFile, kept: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
     """The dips of rows of a table."""
     plan, height = factors(given.units, model_unit)
-    places, gradients, z = [], [], []
+    places, gradients, z, used = [], [], [], []
     for row in kept:
         places.append((plan * row.number("x"), plan * row.number("y")))
         z.append(height * row.number("z") if row.has("z") else math.nan)
         gradients.append(_gradient(row))
+        used.append(row.is_used)
     if not (places or may_be_none):
         raise InputRefused("there are no dips in it", file=given.file)
     shape = (-1, 2)
-    return Dips(np.array(places).reshape(shape), np.array(gradients).reshape(shape), np.array(z))
+    in_use = None if all(used) else np.array(used)
+    arrays = np.array(places).reshape(shape), np.array(gradients).reshape(shape), np.array(z)
+    return Dips(*arrays, used=in_use)
 
 
 def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> SpaceDips:

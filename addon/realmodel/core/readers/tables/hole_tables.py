@@ -36,7 +36,14 @@ SURVEY = {
     "depth": ("depth", "md", "measured_depth", "at", "distance", "dist", "survey_depth"),
     **DIRECTIONS,
 }
-COLLARS = {**PICKS, **DIRECTIONS}
+COLLARS = {
+    **PICKS,
+    **DIRECTIONS,
+    "end": (
+        *("end", "eoh", "end_of_hole", "end_depth", "total_depth", "totaldepth", "td", "max_depth"),
+        *("maxdepth", "final_depth", "hole_depth", "hole_length", "length"),
+    ),
+}
 _BLOCK = (
     *(
         "block",
@@ -73,8 +80,10 @@ OBSERVED = {
     "block": _BLOCK,
     "hole": _HOLE[:-2],  # names and ids are of the places
     "depth": ("depth", "md"),
+    "use": ("use",),
 }
 # What stands in a column where there is no value; in small letters.
+_OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 
@@ -115,6 +124,11 @@ class Row:
         """Whether there is such a column, with a value in this row."""
         at = self.columns.get(column, len(self.entries))
         return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
+
+    @property
+    def is_used(self) -> bool:
+        """Whether the row is not switched off in its column `use`."""
+        return not self.has("use") or self.entries[self.columns["use"]].lower() not in _OFF
 
     def called(self, column: str) -> str:
         """The name of a column in the header, in small letters; empty without a header."""

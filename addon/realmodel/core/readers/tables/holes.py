@@ -24,6 +24,7 @@ class Holes:
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, WellTrajectory] = {}
         self._warnings: list[str] = []
+        self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
         self._collars = None if given.collars is None else self._read_collars()
         self._unused = set(self._collars or ())
         self._surveyed: set[str] = set()
@@ -42,6 +43,9 @@ class Holes:
             hole = row.text("hole")
             place = (row.number("x"), row.number("y"), row.number("z"))
             known = hole in collars
+            end = next((name for name in ("end", "depth") if row.has(name)), None)
+            if end is not None:
+                self.ends[hole] = row.number(end)
             if collars.setdefault(hole, place) != place:
                 raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
             if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
@@ -52,6 +56,12 @@ class Holes:
             raise InputRefused("there are no holes in it", file=self.given.collars)
         self._paths |= directions.paths()
         return collars
+
+    def place(self, row: Row, depth: float, scale: np.ndarray) -> np.ndarray:
+        """(3,) the place at a depth along a row's hole. scale: (3,) to the unit of the model."""
+        # Depths, and horizontal offsets along a hole, are in the unit of z.
+        way = self.way_to(row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)
+        return (self.begin_of(row) + way) * scale
 
     def begin_of(self, row: Row) -> np.ndarray:
         """(3,) the collar of a row's hole, in the units of the tables; its height is NaN where it is not

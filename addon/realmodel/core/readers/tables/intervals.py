@@ -36,11 +36,12 @@ class _Hole:
 @dataclass
 class Intervals:
     """observations: the ends of the intervals, and places between them where holes are inclined. holes: as of
-    Picks, the tops of the intervals. left_out: intervals that are not used."""
+    Picks, the tops of the intervals. left_out: intervals that are not used. ends: as of Picks."""
 
     observations: Observations
     holes: dict[str, tuple[np.ndarray, list[tuple[str, np.ndarray]]]]
     left_out: list[LeftOut]
+    ends: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def read_intervals(
@@ -71,17 +72,17 @@ def read_intervals(
     if plan_step is None:
         plan = np.array([hole.begin[:2] for hole in found.values()]) * scale[:2]
         plan_step = plan_step_of(plan)
-    parts, tops = [], {}
+    parts, tops, ends = [], {}, {}
     for name, hole in found.items():
 
         def place(depth: float, hole: _Hole = hole) -> np.ndarray:
-            # Depths, and horizontal offsets along a hole, are in the unit of z.
-            way = holes.way_to(hole.row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)
-            return (hole.begin + way) * scale
+            return holes.place(hole.row, depth, scale)
 
         parts.append(observed_intervals(name, hole.intervals, place, plan_step, left_out))
         tops[name] = hole.begin * scale, tops_of(parts[-1])
-    return Intervals(Observations.joined(parts), tops, left_out)
+        if name in holes.ends:
+            ends[name] = place(holes.ends[name])
+    return Intervals(Observations.joined(parts), tops, left_out, ends)
 
 
 def plan_step_of(plan: np.ndarray) -> float:

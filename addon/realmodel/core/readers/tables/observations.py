@@ -12,7 +12,7 @@ import numpy as np
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
-_ARRAYS = ("places", "blocks", "holes", "depths", "intervals")
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -25,6 +25,7 @@ class Observations(ShortRepr):
     An interval is at least two places, its ends: a place that two intervals share is on the boundary of both.
     intervals: (N,) int64, equal for the places of one interval, so that two of one block with lost core
     between them are two; without them places of one block that follow one another in a hole are one interval.
+    used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -37,6 +38,7 @@ class Observations(ShortRepr):
     holes: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
     intervals: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
+    used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
 
     def __post_init__(self) -> None:
         try:
@@ -57,10 +59,12 @@ class Observations(ShortRepr):
             what = f"{count} places have {len(blocks)} blocks, {len(holes)} holes and {len(depths)} depths"
             raise InputRefused(what, item="observations", advice="give each place one of each")
         intervals = np.asarray(self.intervals, np.int64).reshape(-1)
-        if len(intervals) not in (0, count):
-            what = f"{count} places have {len(intervals)} numbers of intervals"
-            raise InputRefused(what, item="observations", advice="give each place one, or none of them")
-        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals), strict=True):
+        used = np.asarray(self.used, bool).reshape(-1)
+        for what, given in (("numbers of intervals", intervals), ("of 'used'", used)):
+            if len(given) not in (0, count):
+                text = f"{count} places have {len(given)} {what}"
+                raise InputRefused(text, item="observations", advice="give each place one, or none of them")
+        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals, used), strict=True):
             object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
@@ -70,6 +74,11 @@ class Observations(ShortRepr):
         """Some of them. chosen: (N,) bool, or numbers of rows."""
         kept = (getattr(self, name) for name in _ARRAYS)
         return Observations(*(array[chosen] if len(array) else array for array in kept))
+
+    @property
+    def in_use(self) -> np.ndarray:
+        """(N,) bool: which are not switched off."""
+        return self.used if len(self.used) else np.ones(len(self), bool)
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -112,12 +121,14 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        *arrays, intervals = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        *arrays, intervals, used = ([getattr(part, name) for part in parts] for name in _ARRAYS)
         if any(map(len, intervals)):
             intervals = [np.cumsum(~part.goes_on) for part in parts]
             firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
             intervals = [own + first for own, first in zip(intervals, firsts.tolist(), strict=True)]
-        return cls(*(np.concatenate(array) for array in (*arrays, intervals)))
+        if any(map(len, used)):
+            used = [part.in_use for part in parts]
+        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used)))
 
 
 def source_text(hole: str, depth: float, place) -> str:
@@ -130,9 +141,10 @@ def source_text(hole: str, depth: float, place) -> str:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """An observation that is not used. kind: a word of KINDS. text: what and why. block: its name. hole: its
-    name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model units, None where
-    it is not known."""
+    """An observation that is not used. kind: a word of KINDS, or SWITCHED_OFF. text: what and why. block: its
+    name. hole: its name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model
+    units, None where it is not known. contradicts: what the others say that it contradicts, which are used;
+    each with its hole and depth, or its place."""
 
     kind: str
     text: str
@@ -140,6 +152,7 @@ class LeftOut:
     hole: str = ""
     depth: float | None = None
     place: tuple[float, ...] | None = None
+    contradicts: tuple[str, ...] = ()
 
 
 def unknown_block(
@@ -159,9 +172,11 @@ IN_TABLES = {
     "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
     "dip_surface": "dips count for no surface, as only surfaces that cut them bound their block",
 }
+SWITCHED_OFF = "switched_off"  # by the user: no warning
 KINDS = {
     **IN_TABLES,
     "wrong_order": "observations have an older block above a younger one, or a block twice, and are not used",
+    "contradiction": "observations contradict others, of which as few as possible are left out",
     "in_body": "observations contradict a body, and are not used",
     "no_surface": "observations are of blocks that cannot be there, and are not used",
 }

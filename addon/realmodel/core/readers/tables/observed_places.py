@@ -23,7 +23,7 @@ def read_observed_places(
     InputRefused naming file and line."""
     plan, height = factors(given.units, model_unit)
     scale = np.array([plan, plan, height])
-    places, blocks, holes, depths = [], [], [], []
+    places, blocks, holes, depths, used = [], [], [], [], []
     left_out: list[LeftOut] = []
     count = 0
     for row in rows(given, Path(given.file), OBSERVED, ("x", "y", "z", "block"), step):
@@ -46,11 +46,9 @@ def read_observed_places(
         blocks.append(block)
         holes.append(hole)
         depths.append(depth)
+        used.append(row.is_used)
     if not count:
         raise InputRefused("there are no observations in it", file=given.file)
-    return (
-        Observations(
-            np.array(places).reshape(-1, 3), np.array(blocks, str), np.array(holes, str), np.array(depths)
-        ),
-        left_out,
-    )
+    texts = np.array(blocks, str), np.array(holes, str)
+    in_use = np.array([] if all(used) else used, bool)
+    return Observations(np.array(places).reshape(-1, 3), *texts, np.array(depths), used=in_use), left_out

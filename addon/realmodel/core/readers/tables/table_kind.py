@@ -11,7 +11,7 @@ from ...settings.boreholes import Boreholes
 from .dips import DIPS
 from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, SURVEY, columns_in
 
-TABLE_KINDS = ("collars", "survey", "picks", "intervals", "observations", "dips")
+TABLE_KINDS = ("collars", "survey", "picks", "intervals", "assays", "observations", "dips")
 
 
 def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None) -> str:
@@ -20,6 +20,7 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
     columns: names or numbers of those that are called otherwise, by meaning, as of Boreholes, ObservationFile
     and DipFile; they decide where the names in the header do not: a column that is named as `surface` makes a
     table one of picks, as `block` one of intervals or observations, as `dip_direction` one of dips.
+    Assays are intervals without blocks, whose other columns are shown.
     Raises InputRefused where it may be none of them.
     """
     file = Path(file)
@@ -48,6 +49,8 @@ def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None)
         return "collars"
     if {"hole", "depth"} <= survey.keys() and not DIRECTIONS.keys().isdisjoint(survey):
         return "survey"
+    if {"hole", "from", "to"} <= logged.keys():
+        return "assays"
     raise InputRefused(
         f"its columns do not say whether it has {', '.join(TABLE_KINDS[:-1])} or {TABLE_KINDS[-1]}",
         file=file,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import Bounds, LeftOut, Observations
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations
 from .columns import in_wrong_order
 from .succession import Succession
 
@@ -71,7 +71,13 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     situation = situation or Situation()
     blocks = BlockNumbers(rock, situation.bodies).of(observations.blocks)
     left_out = _Listed(observations)
-    left_out.add(blocks < 0, "no_surface", "no block, surface or body of the rock mass has this name")
+    left_out.add(~observations.in_use, SWITCHED_OFF, "it is switched off")
+    left_out.add(
+        observations.in_use & (blocks < 0),
+        "no_surface",
+        "no block, surface or body of the rock mass has this name",
+    )
+    blocks = np.where(observations.in_use, blocks, -1)
     used = blocks >= 0
     if situation.parted is not None:
         used &= ~situation.parted
@@ -184,9 +190,11 @@ def _of_used(
     for number in range(len(rock.surfaces)):
         on = np.sort(first_rows[meets[:, number]])
         contacts.append(places[on])
+        lower, upper = (np.flatnonzero(said[:, number] & ~meets[place, number]) for said in (above, below))
+        crossed = _crossed(places, column, lower, upper, on)
         kept = [
-            _tightest(places, column, np.flatnonzero(said[:, number] & ~meets[place, number]), on, sign)
-            for said, sign in ((above, 1.0), (below, -1.0))
+            np.union1d(_tightest(places, column, rows, on, sign), rows[crossed[column[rows]]])
+            for rows, sign in ((lower, 1.0), (upper, -1.0))
         ]
         rows = used[np.concatenate(kept)]
         bounds.append(
@@ -230,6 +238,20 @@ def _statements(
                 fills = situation.inside[used, body] & (blocks[used] > dug) & (blocks[used] < count)
                 below[fills, : dug + 1] = False
     return above, below
+
+
+def _crossed(
+    places: np.ndarray, column: np.ndarray, lower: np.ndarray, upper: np.ndarray, contacts: np.ndarray
+) -> np.ndarray:
+    """(K,) bool: the columns in which bounds contradict one another or a contact: there all count, as the
+    fewest are to be left out. lower, upper, contacts: rows."""
+    count = int(column.max(initial=-1)) + 1
+    low, high = np.full(count, -np.inf), np.full(count, np.inf)
+    for rows in (lower, contacts):
+        np.maximum.at(low, column[rows], places[rows, 2])
+    for rows in (upper, contacts):
+        np.minimum.at(high, column[rows], places[rows, 2])
+    return low > high
 
 
 def _tightest(

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Boreholes as tubes: in the colors of the blocks of their intervals or, of a hole with picks alone, of the
+layers beneath these; or by a column of the tables of intervals. Where the model is cut, those within a width
+of the plane, on it. And the names of the holes."""
+
+import colorsys
+from itertools import pairwise
+
+import numpy as np
+
+from ...core.drawing.overlay import ColorKey
+from ...core.results import layer_values
+from ...core.results.section_holes import near_plane
+from .. import borehole_picks, interval_values, library_rows, observed_blocks, project_settings
+from ..display import bodies, colors, cuts, marks
+from . import heights
+
+BOREHOLES = "boreholes"
+_RADIUS = 0.005  # of the size of all
+_SIDES = 8
+_STEPS = 15  # of the color scale: each is a material, which all ways of shading show
+_MOST_WORDS = 24  # of a column of words that have a color of their own
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
+_OTHERS = "#b0b0b0"  # words beyond these
+
+
+def show(scene):
+    """Shows the boreholes of a scene, in place of those that are shown."""
+    bodies.remove(scene, BOREHOLES)
+    tubes = list(_by_column(scene) if column(scene) else _by_block(scene))
+    begin, end = (np.array([tube[side] for tube in tubes], np.float64).reshape(-1, 3) for side in (1, 2))
+    kept = np.flatnonzero((begin != end).any(axis=1))
+    if is_on_cut(scene):
+        on_plane, begin, end = near_plane(
+            begin[kept], end[kept], cuts.plane_in_model(scene), scene.realmodel.view.hole_width
+        )
+        kept = kept[on_plane]
+    else:
+        begin, end = begin[kept], end[kept]
+    if not len(kept):
+        return
+    places = np.stack([begin, end], axis=1).reshape(-1, 3) - project_settings.model_origin(scene)
+    pairs = np.arange(len(places)).reshape(-1, 2)
+    shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
+    mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
+    materials = [tubes[number][0] for number in kept.tolist()]
+    slots = {material.name: None for material in materials}
+    slots = {name: number for number, name in enumerate(slots)}
+    by_name = {material.name: material for material in materials}
+    for name in slots:
+        mesh.materials.append(by_name[name])
+    given = np.array([slots[material.name] for material in materials], np.int32)
+    mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
+    mesh.update()
+
+
+def is_on_cut(scene):
+    """Whether only what is near the section plane is shown, on it."""
+    return cuts.is_on(scene) and scene.realmodel.view.hole_width > 0.0
+
+
+def column(scene):
+    """The column by which the tubes are colored; empty: by their blocks."""
+    wanted = scene.realmodel.view.boreholes_by
+    return wanted if wanted in columns(scene) else ""
+
+
+def columns(scene):
+    """The columns of the tables of intervals that there are."""
+    found = (interval_values.of_rock(rock) for rock in scene.realmodel.rocks)
+    return list(dict.fromkeys(name for values in found if values is not None for name in values.columns))
+
+
+def key(scene):
+    """The core's ColorKey of the column that the tubes show, or None."""
+    name = column(scene)
+    if not (name and scene.realmodel.view.show_boreholes):
+        return None
+    limits, words = _scale(scene, name)
+    if limits is None:
+        return ColorKey(name, [(word, _rgb(_hue(n))) for n, word in enumerate(words)])
+    if not limits[1] > limits[0]:
+        return None
+    shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
+    return ColorKey(name, limits=limits, colors=shades)
+
+
+def labels(scene):
+    """(name, (x, y, z) in model coordinates) of each hole, at its upper end."""
+    if not scene.realmodel.view.show_hole_names:
+        return []
+    near = cuts.plane_in_model(scene) if is_on_cut(scene) else None
+    found = []
+    for rock in scene.realmodel.rocks:
+        for name, line in borehole_picks.named_paths(rock).items():
+            line = np.array(line)
+            if near is not None and len(line) > 1:
+                _, line, _ = near_plane(line[:-1], line[1:], near, scene.realmodel.view.hole_width)
+            if len(line):
+                found.append((name, tuple(line[0].tolist())))
+    return found
+
+
+def _by_block(scene):
+    """(material, begin, end) of the tubes."""
+    for rock in scene.realmodel.rocks:
+        logs, _ = observed_blocks.shown(rock)
+        for layer, begin, end in (*_of_logs(scene, rock, logs.values()), *_of_picks(rock, logs)):
+            yield colors.of_property(scene, layer or 0), begin, end
+
+
+def _by_column(scene):
+    name = column(scene)
+    limits, words = _scale(scene, name)
+    for rock in scene.realmodel.rocks:
+        values = interval_values.of_rock(rock)
+        if values is None or name not in values.columns:
+            continue
+        values = values.some(values.has(name))
+        given = values.columns[name]
+        codes = _hues(given, words) if limits is None else _shades(given, limits)
+        materials = {code: colors.plain_material(f"{name} {code}", code) for code in sorted(set(codes))}
+        for code, begin, end in zip(codes, values.begins.tolist(), values.ends.tolist(), strict=True):
+            yield materials[code], begin, end
+
+
+def _scale(scene, name):
+    """The range (low, high) of a column of numbers and no words; or None, and the words of another, the most
+    frequent first."""
+    parts = []
+    for rock in scene.realmodel.rocks:
+        values = interval_values.of_rock(rock)
+        if values is not None and name in values.columns:
+            parts.append(values.columns[name])
+    if all(part.dtype.kind == "f" for part in parts):
+        known = np.concatenate(parts)
+        known = known[np.isfinite(known)]
+        return ((float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)), []
+    words, counts = np.unique(np.concatenate([part.astype(str) for part in parts]), return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    return None, [word for word in words[order].tolist() if word][:_MOST_WORDS]
+
+
+def _shades(values, limits):
+    steps = np.rint((values - limits[0]) / ((limits[1] - limits[0]) or 1.0) * (_STEPS - 1))
+    shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
+    codes = [library_rows.hex_color(shade) for shade in shades]
+    return [codes[int(step)] for step in steps.tolist()]
+
+
+def _hues(values, words):
+    numbers = {word: number for number, word in enumerate(words)}
+    return [_hue(numbers[word]) if word in numbers else _OTHERS for word in values.astype(str).tolist()]
+
+
+def _hue(number):
+    brightness = 0.9 if number % 2 else 0.7
+    return library_rows.hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
+
+
+def _rgb(code):
+    return tuple(int(code[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+
+
+def _of_picks(rock, logs):
+    """(property, begin, end) of the tubes of holes that have no intervals."""
+    ids = [surface.property_id for surface in rock.surfaces]
+    below = {surface.name: number for surface, number in zip(rock.surfaces, ids, strict=True)}
+    above = {surface.name: number for surface, number in zip(rock.surfaces, ids[1:], strict=False)}
+    ends = borehole_picks.ends_of(rock)
+    for hole, (collar, picks) in borehole_picks.of_rock(rock).items():
+        if hole in logs or not picks:
+            continue
+        stops = [] if collar is None else [(above.get(picks[0][0]), collar)]
+        stops += [(below.get(name), place) for name, place in picks]
+        stops += [(None, ends[hole])] if hole in ends else []
+        for (layer, begin), (_, end) in pairwise(stops):
+            yield layer, begin, end
+
+
+def _of_logs(scene, rock, logs):
+    """(property, begin, end) of the tubes of intervals; between two of them there are none."""
+    rows = {row.name: row.property_id for row in (*rock.surfaces, *scene.realmodel.bodies)}
+    units = observed_blocks.units_of(scene, rock)
+    for log in logs:
+        blocks, places = log.blocks.tolist(), log.places.tolist()
+        for row in np.flatnonzero(log.goes_on).tolist():
+            yield rows.get(units.block(blocks[row])), places[row - 1], places[row]

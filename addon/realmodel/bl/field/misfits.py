@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of data that the built model does not have as they say, and the way from each to its datum."""
+
+import json
+
+import numpy as np
+
+from ...core import RealModelError
+from ...core.proof.misfits import misfits
+from .. import caches, project_settings, settings
+from ..display import shown_models
+from . import data
+
+MOST = 500  # rows of the list: the largest of each kind
+_found = caches.new(most=2)  # by the stamp of a model and the tolerances: its Misfits
+
+
+def shown(scene):
+    """The core's Misfits of a scene's model; none where it has no model, or one without its project. Raises
+    RealModelError."""
+    group = scene.realmodel
+    if not len(group.results):
+        return []
+    tolerance = group.view.misfit_tolerance or None
+    key = group.built_stamp, tolerance, group.view.dip_tolerance
+    if key not in _found:
+        _found[key] = misfits(shown_models.whole(scene, None), tolerance, group.view.dip_tolerance)
+    return _found[key]
+
+
+def fill(scene):
+    """Fills the list anew, or empties it where it is not wanted."""
+    group = scene.realmodel
+    try:
+        found = shown(scene) if group.view.show_misfits else []
+    except RealModelError as error:
+        group.view.message, found = str(error), []
+    with settings.filling():
+        group.misfits.clear()
+        group.active_misfit = -1
+        group.view.misfit_count = len(found)
+        for each in _largest(found):
+            row = group.misfits.add()
+            row.kind, row.rock, row.name = each.kind, each.rock, each.name
+            row.source = _source(scene, each)
+            row.depth = "" if each.depth is None else f"{round(each.depth, 2):g}"
+            row.says, row.has = each.says, each.has
+            row.by = "" if each.by is None else f"{each.by:.3g}{'°' if each.kind == 'dip' else ''}"
+            row.place = "" if each.place is None else json.dumps(list(each.place))
+            row.hole = each.hole
+
+
+def datum_of(scene, row):
+    """The Datum that a row of the list speaks of; None where it has no place, or is not there any more."""
+    if not row.place:
+        return None
+    place = np.array(json.loads(row.place))
+    wanted = {"dip": data.DIPS, "point": (data.POINT, data.INTERVAL, data.PLACE)}
+    kinds = wanted.get(row.kind, (data.INTERVAL, data.PLACE))
+    best = None
+    for group in data.groups(scene):
+        if group.kind not in kinds or group.rock != row.rock:
+            continue
+        axes = 2 if group.kind in data.DIPS else 3
+        starts = (group.places[:, :axes] == place[:axes]).all(axis=1)
+        ends = starts | (group.ends == place).all(axis=1) if group.ends is not None else starts
+        for there, rank in ((starts & (group.names == row.name), 0), (starts, 1), (ends, 2)):
+            number = next(iter(np.flatnonzero(there).tolist()), None)
+            if number is not None and (best is None or rank < best[0]):
+                best = rank, group.datum(number)
+    return None if best is None else best[1]
+
+
+def _largest(found):
+    """At most MOST, with some of each kind."""
+    if len(found) <= MOST:
+        return found
+    kinds = list(dict.fromkeys(each.kind for each in found))
+    return [e for kind in kinds for e in [e for e in found if e.kind == kind][: MOST // len(kinds)]]
+
+
+def _source(scene, misfit):
+    """Where a datum comes from: its hole, or its file and row."""
+    if misfit.hole:
+        return misfit.hole
+    if misfit.row is None:
+        return misfit.rock
+    row = next(
+        (s for r, s in settings.surface_rows(scene) if (r.name, s.name) == (misfit.rock, misfit.name)), None
+    )
+    path = project_settings.absolute(row.filepath) if row is not None and misfit.kind == "point" else None
+    what = path.name if path is not None else "dip" if misfit.kind == "dip" else "row"
+    return f"{what} {misfit.row + 1}"

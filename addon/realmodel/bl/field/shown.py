@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Field data as bodies: contacts as points and dips as discs in the colors of their surfaces, what is
+switched off in gray, what does not fit in red."""
+
+import sys
+
+import numpy as np
+
+from ...core import RealModelError
+from ...core.display.polygon_mesh import PolygonMesh
+from .. import display, exaggeration, map_settings, project_settings, settings
+from ..display import bodies, colors, marks
+from . import boreholes, data, handle, heights, misfits
+
+MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
+KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration
+_OFF, _RED = ("Switched Off", "#8c8c8c"), ("Misfit", "#e01818")
+_STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that it is shaped for
+_MOST = 20_000  # data of a kind shown at most
+_LIFT = 1e-3  # of a map over the ground, of the size of all, against flickering
+_DISC = 0.025  # radius of a disc, of the size of all
+_RED_LARGER = 1.6  # than other points, so that they are seen around these
+_TUBE, _SIDES = 0.009, 8  # of an interval that does not fit: radius, of the size of all
+
+
+def register():
+    """Called when the add-on is enabled."""
+    display.show_field_with(sys.modules[__name__])
+
+
+def unregister():
+    """Called when the add-on is disabled."""
+    handle.stop()
+
+
+def show(scene):
+    """Shows what is wanted of the field data of a scene, in place of what is shown."""
+    view = scene.realmodel.view
+    misfits.fill(scene)
+    for kind, wanted, shown in (
+        (boreholes.BOREHOLES, view.show_boreholes, _boreholes),
+        (MAP, view.show_map, _maps),
+        (CONTACTS, view.show_contacts, _contacts),
+        (DIPS, view.show_dips, _dips),
+        (MISFITS, view.show_misfits, _misfits),
+    ):
+        bodies.remove(scene, kind)
+        if wanted:
+            try:
+                shown(scene)
+            except RealModelError as error:
+                view.message = str(error)
+        for item in bodies.listed(scene, kind):
+            item[_STRETCH] = exaggeration.factor(scene)
+
+
+def follow_exaggeration(scene):
+    """Shapes the bodies for the vertical exaggeration of the scene."""
+    shown = [item for kind in KINDS for item in bodies.listed(scene, kind)]
+    if any(item.get(_STRETCH) != exaggeration.factor(scene) for item in shown):
+        show(scene)
+
+
+def follow_cut(scene):
+    """Shows the boreholes on the section plane, where that has moved."""
+    if scene.realmodel.view.show_boreholes and scene.realmodel.view.holes_on != _cut(scene):
+        _boreholes(scene)
+        display.exaggeration_changed(scene)
+
+
+def _cut(scene):
+    """The state of the cut that boreholes lie on; empty where they stand in their places."""
+    return scene.realmodel.view.cut if boreholes.is_on_cut(scene) else ""
+
+
+def _boreholes(scene):
+    boreholes.show(scene)
+    scene.realmodel.view.holes_on = _cut(scene)
+
+
+def _contacts(scene):
+    """Points of surfaces, contacts that follow from logs, and observed places."""
+    places, materials = [], []
+    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    for group in data.groups(scene):
+        if group.kind in data.DIPS:
+            continue
+        for number in range(min(len(group.places), _MOST)):
+            name = str(group.names[number])
+            is_used = bool(group.used[number])
+            material = colors.of_property(scene, of_block.get(name, 0)) if is_used else None
+            places.append(group.places[number])
+            materials.append(material or colors.plain_material(*_OFF))
+    _add_points(scene, CONTACTS, "Contacts", np.array(places).reshape(-1, 3), materials)
+
+
+def _properties(scene):
+    yield from (row for _, row in settings.surface_rows(scene))
+    yield from scene.realmodel.bodies
+
+
+def _names(row):
+    return {row.name, getattr(row, "block", "") or row.name}
+
+
+def _add_points(scene, kind, name, places, materials, larger=1.0):
+    if not len(places):
+        return None
+    stretch = exaggeration.factor(scene)
+    shape = marks.spaced_points(
+        places - project_settings.model_origin(scene), larger * heights.extent(scene), stretch
+    )
+    item = bodies.add(scene, kind, name, shape)
+    _give_materials(item.data, materials, len(shape.offsets) // len(places))
+    return item
+
+
+def _give_materials(mesh, materials, faces):
+    """The material of each part of a mesh, which has so many faces."""
+    slots = {}
+    for material in materials:
+        if material.name not in slots:
+            slots[material.name] = len(slots)
+            mesh.materials.append(material)
+    given = np.array([slots[material.name] for material in materials], np.int32)
+    mesh.polygons.foreach_set("material_index", np.repeat(given, faces))
+    mesh.update()
+
+
+def _dips(scene):
+    places, gradients, materials = [], [], []
+    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    for group in data.groups(scene):
+        if group.kind not in data.DIPS:
+            continue
+        at, names = group.places[:_MOST].copy(), group.names[:_MOST]
+        at[:, 2] = heights.of_dips(scene, group.rock, names, at)
+        places.append(at)
+        gradients.append(group.dips.gradients[:_MOST])
+        for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
+            own = colors.of_property(scene, of_block.get(name, 0))
+            upper = own if used else colors.plain_material(*_OFF)
+            materials += [upper, *[colors.dark()] * (marks.DISC_FACES - 1)]
+    if not places:
+        return
+    places = np.concatenate(places) - project_settings.model_origin(scene)
+    radius = _DISC * heights.extent(scene)
+    shape = marks.discs(places, np.concatenate(gradients), radius, exaggeration.factor(scene))
+    item = bodies.add(scene, DIPS, "Dips", shape)
+    _give_materials(item.data, materials, 1)
+
+
+def _maps(scene):
+    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    lift = np.array([0.0, 0.0, _LIFT * heights.extent(scene)])
+    for rock in scene.realmodel.rocks:
+        draped = map_settings.of_rock(rock)
+        if draped is None or not len(draped.triangles):
+            continue
+        places = draped.vertices - project_settings.model_origin(scene) + lift
+        corners = draped.triangles.ravel().astype(np.int32)
+        offsets = np.arange(0, len(corners) + 1, 3, dtype=np.int32)
+        shape = PolygonMesh(places.astype(np.float32), offsets, corners)
+        item = bodies.add(scene, MAP, f"{rock.name} map", shape)
+        own = [
+            colors.of_property(scene, of_block[name]) if name in of_block else colors.plain_material(*_OFF)
+            for name in draped.names
+        ]
+        _give_materials(item.data, [own[unit] for unit in draped.unit.tolist()], 1)
+
+
+def _misfits(scene):
+    found = misfits.shown(scene)
+    places = np.array([each.place for each in found if each.place is not None][:_MOST]).reshape(-1, 3)
+    places = np.unique(places, axis=0)  # several may speak of one place
+    red = colors.plain_material(*_RED)
+    _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
+    ends = [end for each in found if each.end is not None for end in (each.place, each.end)]
+    if not ends:
+        return
+    places = np.array(ends) - project_settings.model_origin(scene)
+    pairs = np.arange(len(places)).reshape(-1, 2)
+    shape = marks.lines(places, pairs, _TUBE * heights.extent(scene), _SIDES)
+    item = bodies.add(scene, MISFITS, "Misfits of Intervals", shape)
+    item.data.materials.append(red)

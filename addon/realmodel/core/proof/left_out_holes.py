@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cross-validation by holes: what a model has where a hole is that it knows nothing of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..base.algebra import norm
+from ..base.errors import InputRefused, UsageError
+from ..base.work import Cancel, Progress, Work, run
+from ..project.project import Project, Rock, Surface
+from ..readers.tables.observations import Observations
+from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
+from ..surfaces.observed.derived import BlockNumbers
+from .closed_form import AIR, ClosedForm, surface_forms
+
+DEFAULT_FOLDS = 20  # holes are left out in so many groups, where they are more
+_SAMPLES = 16  # places at which an interval is looked at
+
+
+@dataclass(frozen=True)
+class LeftOutContact:
+    """Where a hole that was left out met a surface. depth: along the hole, None where it is not known. place:
+    (x, y, z). error: the height of the surface that was made without the hole, less that of the place; None
+    where it has none."""
+
+    surface: str
+    depth: float | None
+    place: tuple[float, float, float]
+    error: float | None
+
+
+@dataclass(frozen=True)
+class LeftOutHole:
+    """A hole of a rock mass that was left out. length: of its logged intervals, model units; share: of it in
+    the right block, None where it has none; intervals of bodies are not looked at. contacts: where it met
+    surfaces. refused: why no surfaces can be made without it, "" where they can."""
+
+    rock: str
+    hole: str
+    length: float
+    share: float | None
+    contacts: tuple[LeftOutContact, ...] = ()
+    refused: str = ""
+
+    @property
+    def errors(self) -> np.ndarray:
+        """(E,) the known errors of its contacts."""
+        return np.array([each.error for each in self.contacts if each.error is not None])
+
+
+@dataclass(frozen=True)
+class HoleValidation:
+    """What models say of each hole without knowing it. holes: as the rock masses have them. groups: in how
+    many groups they were left out."""
+
+    holes: list[LeftOutHole] = field(default_factory=list)
+    groups: int = 0
+
+    @property
+    def share(self) -> float | None:
+        """The share of the length of all holes in the right block; None where no hole has intervals."""
+        total = sum(hole.length for hole in self.holes)
+        inside = sum(hole.length * hole.share for hole in self.holes if hole.share is not None)
+        return inside / total if total else None
+
+    @property
+    def errors(self) -> np.ndarray:
+        """(E,) the known errors of the contacts of all holes."""
+        return np.concatenate([np.empty(0), *(hole.errors for hole in self.holes)])
+
+    def summary(self) -> str:
+        """A line about all of it."""
+        errors = self.errors
+        share = "" if self.share is None else f", {100 * self.share:.1f} % of their length in the right block"
+        heights = ""
+        if len(errors):
+            worst = float(np.abs(errors).max())
+            rmse, middle = float(np.sqrt((errors**2).mean())), float(np.median(np.abs(errors)))
+            heights = (
+                f"; heights of {len(errors)} contacts: root mean square error {rmse:.4g}, median "
+                f"{middle:.4g}, largest {worst:.4g}"
+            )
+        refused = sum(bool(hole.refused) for hole in self.holes)
+        lost = f"; without {refused} of them there are no surfaces" if refused else ""
+        return f"{len(self.holes)} holes left out in {self.groups} groups{share}{heights}{lost}"
+
+
+def cross_validate_holes(
+    model,
+    folds: int | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> HoleValidation:
+    """Makes the surfaces of a `model` again without each hole: without its contacts, its intervals and the
+    bounds that follow, all at once. Of each hole it says which share of its length the others have in the
+    right block, and how far off they have its contacts.
+
+    folds: the number of groups in which holes are left out; None: each hole by itself, but in at most 20
+    groups. The holes of a group are spread over the order of the table. Outcrops, dips and points that no
+    hole met stay. Variograms are fitted anew each time, and "auto" stays what it chose.
+
+    Raises InputRefused for a model without holes, or of a file without its project; UsageError, Cancelled.
+    """
+    model.require_project("cross-validation")
+    if folds is not None and (isinstance(folds, bool) or not isinstance(folds, int) or folds < 2):
+        raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
+    rocks = [entry.rock for entry in model.rock_inputs]
+    holes = [[(number, hole) for hole in _holes_of(rock)] for number, rock in enumerate(rocks)]
+    every = [each for own in holes for each in own]
+    if len(every) < 2:
+        raise InputRefused(
+            f"the model has {len(every)} holes: leaving one out takes two or more",
+            advice="give boreholes with intervals or picks",
+        )
+    groups = min(folds or DEFAULT_FOLDS, len(every))
+
+    def task(work: Work) -> HoleValidation:
+        found: dict[tuple[int, str], LeftOutHole] = {}
+        for group in range(groups):
+            out = every[group::groups]
+            with work.part(group / groups, (group + 1) / groups):
+                try:
+                    found |= _without(work, model.project, rocks, out)
+                except InputRefused as error:
+                    lost = [LeftOutHole(rocks[n].name, hole, 0.0, None, (), str(error)) for n, hole in out]
+                    found |= dict(zip(out, lost, strict=True))
+        return HoleValidation([found[each] for each in every], groups)
+
+    return run(task, progress, cancel, threads=threads)
+
+
+def _holes_of(rock: Rock) -> list[str]:
+    """The holes of a rock mass that have intervals or picks, in their order."""
+    observed = rock.observed
+    logged = [] if observed is None else [hole for hole in observed.holes.tolist() if hole]
+    picked = [hole for hole, (_, picks) in rock.hole_picks.items() if picks]
+    return list(dict.fromkeys([*logged, *picked]))
+
+
+def _without(
+    work: Work, project: Project, rocks: Sequence[Rock], out: Sequence[tuple[int, str]]
+) -> dict[tuple[int, str], LeftOutHole]:
+    """What the surfaces made without some holes, (rock mass, name), say of these."""
+    given = [
+        _rock_without(rock, {hole for number, hole in out if number == own}) for own, rock in enumerate(rocks)
+    ]
+    with work.phase(0.0, 0.1, "leaving out holes"):
+        inputs, known = read_inputs(work, replace(project, rocks=given))
+    with work.part(0.1, 0.4):
+        mesh_inputs(work, inputs)
+    with work.part(0.4, 1.0):
+        structures = make_surfaces(work, known, inputs, None)
+    forms = surface_forms(inputs, structures)
+    return {(number, hole): _judged(work, rocks[number], forms[number], hole) for number, hole in out}
+
+
+def _rock_without(rock: Rock, holes: set[str]) -> Rock:
+    """A rock mass without what some holes say."""
+    if not holes:
+        return rock
+    met: dict[str, set[tuple]] = {}
+    for hole in sorted(holes):
+        for surface, place in rock.hole_picks.get(hole, (None, ()))[1]:
+            met.setdefault(surface, set()).add(tuple(np.asarray(place).tolist()))
+    observed = rock.observed
+    kept = None if observed is None else observed.some(~np.isin(observed.holes, sorted(holes)))
+    surfaces = [_surface_without(surface, met.get(surface.name, set())) for surface in rock.surfaces]
+    picks = {hole: each for hole, each in rock.hole_picks.items() if hole not in holes}
+    return replace(rock, surfaces=surfaces, observations=kept, hole_picks=picks)
+
+
+def _surface_without(surface: Surface, met: set[tuple]) -> Surface:
+    """A surface without points that holes met, and without contacts and bounds: these are found anew."""
+    if not surface.interpolated:
+        return surface
+    points = surface.own_points()
+    if points is not None and met:
+        points = points[[tuple(point) not in met for point in points.tolist()]]
+    is_left = points is not None and len(points)
+    return replace(surface, points=points if is_left else None, contacts=None, bounds=None)
+
+
+def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
+    observed = rock.observed
+    length, share = 0.0, None
+    sources: dict[tuple, float | None] = {}
+    if observed is not None:
+        own = observed.some(observed.holes == hole)
+        length, share = _length_in_block(work, rock, form, own)
+        depths = [None if depth != depth else depth for depth in own.depths.tolist()]
+        sources = dict(zip(map(tuple, own.places.tolist()), depths, strict=True))
+    contacts = []
+    for number, surface in enumerate(rock.surfaces):
+        places = [place for place in map(tuple, surface.contact_array().tolist()) if place in sources]
+        for name, place in rock.hole_picks.get(hole, (None, ()))[1]:
+            picked = tuple(np.asarray(place).tolist())
+            if name == surface.name and picked not in places:
+                places.append(picked)
+        if not places:
+            continue
+        z = form.heights(work, number, np.array(places))
+        for place, height in zip(places, z.tolist(), strict=True):
+            error = None if height != height else height - place[2]
+            contacts.append(LeftOutContact(surface.name, sources.get(place), place, error))
+    return LeftOutHole(rock.name, hole, length, share, tuple(contacts))
+
+
+def _length_in_block(
+    work: Work, rock: Rock, form: ClosedForm, own: Observations
+) -> tuple[float, float | None]:
+    """The length of the intervals of a hole, and the share of it in the right block."""
+    blocks = BlockNumbers(rock).of(own.blocks)
+    if form.base_elevation is None:
+        blocks[blocks == 0] = -1  # without a base there is no such block
+    ends = 1 + np.flatnonzero((own.blocks[1:] == own.blocks[:-1]) & (blocks[1:] >= 0))
+    if not len(ends):
+        return 0.0, None
+    begin, way = own.places[ends - 1], own.places[ends] - own.places[ends - 1]
+    lengths = norm(way)
+    shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    places = (begin[:, None] + shares[None, :, None] * way[:, None]).reshape(-1, 3)
+    found = form.blocks_at(work, places).reshape(-1, _SAMPLES)
+    numbers = np.array(form.blocks)
+    right = (found == numbers[blocks[ends]][:, None]) & (found != AIR)
+    total = float(lengths.sum())
+    return total, float((right.mean(axis=1) * lengths).sum() / total) if total else None

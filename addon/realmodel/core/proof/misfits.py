@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The data of a built model that it does not have as they say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.algebra import norm
+from ..base.elementary import atan2
+from ..base.work import Work, run
+from ..cells.model_data import ModelData
+from ..readers.tables.observations import SWITCHED_OFF
+from ..results.residuals import heights_of_points
+from .closed_form import AIR, ClosedForm, closed_forms
+from .observed import sources_of, violated_bounds
+from .seen_places import NEAR, look
+
+MISFIT_KINDS = ("point", "bound", "block", "dip", "left_out")
+DIP_TOLERANCE = 5.0  # degrees
+_NO_ROCK = "no rock"
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A datum that a built model does not have as it says. kind: "point" (of a surface, contacts too),
+    "bound", "block" (a place or an interval), "dip", or "left_out". rock: its rock mass. name: its surface or
+    block. hole, depth: where it comes from; "" and None where it has none. row: of a point, a dip and an
+    observation its row in the data of the surface or the rock mass, from 0; None where there is none. place:
+    (x, y, z), model units, None where it is not known; end: of an interval its lower end. says: what the
+    datum says; has: what the model has there, or why it is not used. by: how much is between them, model
+    units, of dips degrees; None of what is left out."""
+
+    kind: str
+    rock: str
+    name: str
+    hole: str
+    depth: float | None
+    row: int | None
+    place: tuple[float, ...] | None
+    says: str
+    has: str
+    by: float | None
+    end: tuple[float, ...] | None = None
+
+
+def misfits(
+    model: ModelData, tolerance: float | None = None, dip_tolerance: float = DIP_TOLERANCE
+) -> list[Misfit]:
+    """The data that a built model does not have as they say: points and contacts off their surfaces, bounds
+    that are not kept, intervals and places in another block, dips, and observations that are left out, but
+    not those that are switched off. In this order, the largest of each kind first. Of surfaces that are level
+    sets of a field, blocks and what is left out are listed alone.
+
+    tolerance: model units, from which on something counts; None: a billionth of the range of heights of the
+    data. dip_tolerance: degrees between a dip and its surface. Raises InputRefused for a model of a file
+    without its project.
+    """
+    model.require_project("what does not fit")
+    return run(lambda work: _misfits(work, model, tolerance, dip_tolerance), threads=model.threads)
+
+
+def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_tolerance: float) -> list[Misfit]:
+    found: list[Misfit] = []
+    forms, first = closed_forms(model), 0
+    for number, (entry, form) in enumerate(zip(model.rock_inputs, forms, strict=True)):
+        near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry.rock)
+        sources = _sources(entry.rock)
+        for at, surface in enumerate(entry.rock.surfaces):
+            if surface.is_level_set:  # it has no one height over a place
+                continue
+            which = first + at, at, number
+            found += _points(model, which, sources, near)
+            found += _bounds(model, which, near)
+            if surface.known_dips() is not None:
+                found += _dips(model, which, dip_tolerance)
+        observed = entry.rock.observed
+        if observed is not None and len(observed):
+            found += _blocks(work, model, number, form, near)
+        found += [
+            Misfit(
+                "left_out", entry.rock.name, e.block, e.hole, e.depth, None, e.place, e.block, e.text, None
+            )
+            for e in entry.left_out
+            if e.kind != SWITCHED_OFF
+        ]
+        first += len(entry.rock.surfaces)
+    order = {kind: number for number, kind in enumerate(MISFIT_KINDS)}
+    return sorted(found, key=lambda each: (order[each.kind], -(each.by or 0.0)))
+
+
+def _range_of_heights(rock) -> float:
+    parts = [surface.point_array()[:, 2] for surface in rock.surfaces]
+    parts += [] if rock.observed is None else [rock.observed.places[:, 2]]
+    heights = np.concatenate(parts) if parts else np.empty(0)
+    return float(np.ptp(heights)) if len(heights) else 0.0
+
+
+def _sources(rock) -> dict[tuple, tuple[str, float | None]]:
+    """The hole and the depth of places: of observations, and of picks, which have a depth in vertical
+    holes."""
+    found = {} if rock.observed is None else sources_of(rock.observed)
+    for hole, (collar, picks) in rock.hole_picks.items():
+        for _, place in picks:
+            is_below = collar is not None and tuple(collar[:2]) == tuple(place[:2])
+            key = tuple(float(value) for value in place)
+            found.setdefault(key, (hole, float(collar[2] - place[2]) if is_below else None))
+    return found
+
+
+def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: float) -> Iterator[Misfit]:
+    """which: the number of a surface in the model, in its rock mass, and that of the rock mass."""
+    rock = model.rock_inputs[which[2]].rock
+    surface = rock.surfaces[which[1]]
+    points = surface.point_array()
+    heights = heights_of_points(model, *which, points) if len(points) else np.empty(0)
+    for row in np.flatnonzero(np.abs(points[:, 2] - heights) > near).tolist():
+        place, z = tuple(points[row].tolist()), float(heights[row])
+        by = abs(place[2] - z)
+        has = f"{z:,.6g}, {by:.4g} {'below' if z < place[2] else 'above'}"
+        hole, depth = sources.get(place, ("", None))
+        yield Misfit("point", rock.name, surface.name, hole, depth, row, place, f"{place[2]:,.6g}", has, by)
+
+
+def _bounds(model: ModelData, which: tuple[int, int, int], near: float) -> Iterator[Misfit]:
+    for each in violated_bounds(model, which, near):
+        side, other = ("at or above", "below") if each.is_lower else ("at or below", "above")
+        says = f"{each.surface} {side} {each.place[2]:,.6g}"
+        has = f"{each.by:.4g} {other}"
+        source = each.hole, each.depth, None
+        yield Misfit("bound", each.rock, each.surface, *source, each.place, says, has, each.by)
+
+
+def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: float) -> Iterator[Misfit]:
+    rock, seen = model.rock_inputs[number].rock, look(work, model, number, form)
+    given = rock.observed
+    assert given is not None
+    begin, end = given.places[seen.rows[:, 0]], given.places[seen.rows[:, 1]]
+    length = (1.0 - seen.share) * norm(end - begin)
+    is_place = seen.rows[:, 0] == seen.rows[:, 1]
+    chosen = (seen.share < 1.0) & ~seen.is_beside & ((length > near) | is_place)
+    for each in np.flatnonzero(chosen).tolist():
+        row, last = seen.rows[each].tolist()
+        block, there = str(given.blocks[row]), int(seen.found[each])
+        name = _NO_ROCK if there == AIR else seen.names.get(there) or model.blocks[there].name
+        depth, to = (None if np.isnan(d) else float(d) for d in given.depths[[row, last]])
+        says = f"{block} to {to:.6g}" if to is not None and last > row else block
+        has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
+        source = str(given.holes[row]), depth, row
+        place = tuple(begin[each].tolist())
+        low = None if is_place[each] else tuple(end[each].tolist())
+        yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)
+
+
+def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> Iterator[Misfit]:
+    rock = model.rock_inputs[which[2]].rock
+    surface = rock.surfaces[which[1]]
+    dips = surface.known_dips()  # its own ones first
+    assert dips is not None
+    own = surface.own_dips()
+    rows = np.empty(0, np.int64) if own is None else np.flatnonzero(own.in_use)
+    z = dips.heights
+    slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
+    normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
+    cross = norm(np.cross(normals, there))
+    angles = np.degrees(atan2(cross, (normals * there).sum(axis=1)))
+    for k in np.flatnonzero(angles > tolerance).tolist():
+        place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
+        texts = attitude_text(dips.gradients[k]), f"{attitude_text(slopes[k])}, {angles[k]:.0f}° off"
+        source = "", None, int(rows[k]) if k < len(rows) else None
+        yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
+
+
+def _slopes(
+    model: ModelData, which: tuple[int, int, int], places: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The slopes (N, 2) of a surface along x and y, and its heights (N,), at places (N, 3), whose height may
+    be NaN: of the triangle there."""
+    vertices, _ = model.surface(which[0])
+    step = 1e-6 * float(np.ptp(vertices[:, :2], axis=0).max())
+    known = places.copy()
+    at = heights_of_points(model, *which, known)
+    known[:, 2] = np.where(np.isnan(places[:, 2]), at, places[:, 2])
+    slopes = np.empty((len(places), 2))
+    for axis in (0, 1):
+        shift = np.zeros(3)
+        shift[axis] = step
+        ahead, behind = (heights_of_points(model, *which, known + sign * shift) for sign in (1.0, -1.0))
+        one_sided = np.where(np.isnan(ahead), (at - behind) / step, (ahead - at) / step)
+        both = (ahead - behind) / (2 * step)
+        slopes[:, axis] = np.where(np.isnan(both), one_sided, both)
+    return slopes, at
+
+
+def attitude_text(gradient: np.ndarray) -> str:
+    """A slope (2,) along x and y as dip direction and dip: "120/35", degrees."""
+    x, y = (float(value) for value in gradient)  # adding 0.0 makes no -0 of a level plane
+    dip = np.degrees(atan2(math.sqrt(x * x + y * y), 1.0))
+    direction = np.degrees(atan2(-x + 0.0, -y + 0.0)) % 360.0
+    return f"{round(direction) % 360:03d}/{dip:02.0f}"

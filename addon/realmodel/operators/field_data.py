@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One datum at a time: picked in the viewport, shown, switched off or on."""
+
+import bpy
+import numpy as np
+
+from ..bl import data_objects, exaggeration, live, project_settings
+from ..bl.display import capture
+from ..bl.field import data, edits, handle, heights
+from ..core import InputRefused
+from .reporting import Reporting, place_property
+
+_NEAR = 24  # pixels between the mouse and a datum, at most
+
+
+def any_data(context):
+    return None if data.are_there(context.scene) else "there are no field data; import some first"
+
+
+def a_datum(context):
+    there = handle.active(context.scene) is not None
+    return None if there else "no datum is active; pick one first"
+
+
+def any_switched_off(context):
+    return None if data.switched_off(context.scene) else "no datum is switched off"
+
+
+def _shown_places(scene):
+    """(groups, numbers, places): of each datum its Group, its number in that, and where it is shown, (N,
+    3)."""
+    groups, numbers, places = [], [], [np.empty((0, 3))]
+    for group in data.groups(scene):
+        at = group.places.copy()
+        if group.kind in data.DIPS:
+            at[:, 2] = heights.of_dips(scene, group.rock, group.names, at)
+        groups += [group] * len(at)
+        numbers += range(len(at))
+        places.append(at)
+    offsets = np.concatenate(places) - project_settings.model_origin(scene)
+    stretched = exaggeration.matrix(scene)
+    return groups, numbers, offsets @ stretched[:3, :3].T + stretched[:3, 3]
+
+
+def _changed(scene):
+    """The settings of a datum were changed: all that shows it, and the model, follow."""
+    handle.follow(scene)
+    data_objects.update(scene)
+    live.touch(scene)
+
+
+class REALMODEL_OT_datum_pick(Reporting, bpy.types.Operator):
+    """Pick a datum in the viewport - a point, a dip, an outcrop or an interval - to move it, or to switch it
+    off; move its sphere as any object (G)"""
+
+    bl_label = "Pick Datum"
+    needs = (any_data,)
+
+    location: place_property("Where the datum is, in the coordinates of the scene: the nearest is picked")
+
+    def act(self, context):
+        given = self.properties.is_property_set("location")
+        at = np.array(self.location if given else context.scene.cursor.location)
+        groups, numbers, places = _shown_places(context.scene)
+        if not groups:
+            raise InputRefused("there are no data with a place", advice="import points, boreholes or dips")
+        best = int(np.linalg.norm(places - at, axis=1).argmin())
+        self._activate(context, groups[best].datum(numbers[best]))
+
+    def invoke(self, context, _event):
+        if bpy.app.background or capture.viewport(context) is None:
+            return self.execute(context)
+        context.window_manager.modal_handler_add(self)
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.workspace.status_text_set("Pick Datum: click at a datum     Esc: leave")
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"}:
+            return self._leave(context, {"CANCELLED"})
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            found = _under_mouse(context, event)
+            if found is None:
+                self.report({"INFO"}, "no datum is here; click nearer to one")
+                return {"RUNNING_MODAL"}
+            self._activate(context, found)
+            return self._leave(context, {"FINISHED"})
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context):
+        self._leave(context, {"CANCELLED"})
+
+    def _activate(self, context, datum):
+        handle.activate(context, datum)
+        self.report({"INFO"}, handle.text_of(context.scene, datum))
+
+    def _leave(self, context, result):
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+        return result
+
+
+def _under_mouse(context, event):
+    """The datum nearest to the mouse in whatever 3D viewport that is; None where none is near."""
+    for area in context.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        region = next(r for r in area.regions if r.type == "WINDOW")
+        mouse = np.array([event.mouse_x - region.x, event.mouse_y - region.y])
+        if (mouse < 0).any() or (mouse >= (region.width, region.height)).any():
+            continue
+        groups, numbers, places = _shown_places(context.scene)
+        matrix = np.array(area.spaces.active.region_3d.perspective_matrix)
+        found = np.column_stack([places, np.ones(len(places))]) @ matrix.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pixels = (found[:, :2] / found[:, 3:] + 1.0) / 2.0 * (region.width, region.height)
+        away = np.where(found[:, 3] > 0.0, np.linalg.norm(pixels - mouse, axis=1), np.inf)
+        if len(away) and away.min() <= _NEAR:
+            best = int(away.argmin())
+            return groups[best].datum(numbers[best])
+    return None
+
+
+class REALMODEL_OT_datum_switch(Reporting, bpy.types.Operator):
+    """Switch the active datum off, or on: what is switched off stays in the file, and a build does not use
+    it"""
+
+    bl_label = "Switch Datum Off or On"
+    needs = (a_datum,)
+
+    def act(self, context):
+        scene = context.scene
+        datum = edits.switch(scene, handle.active(scene), not handle.active(scene).used)
+        scene.realmodel.view.datum = datum.text()
+        _changed(scene)
+        self.report({"INFO"}, f"{handle.text_of(scene, datum)}: {'used' if datum.used else 'switched off'}")
+
+
+class REALMODEL_OT_data_switch_on(Reporting, bpy.types.Operator):
+    """Switch on all data that are switched off"""
+
+    bl_label = "Switch All On"
+    needs = (any_switched_off,)
+
+    def act(self, context):
+        count = edits.switch_all_on(context.scene)
+        datum = handle.active(context.scene)
+        if datum is not None:
+            context.scene.realmodel.view.datum = datum._replace(used=True).text()
+        _changed(context.scene)
+        self.report({"INFO"}, f"{count} data are used again")
+
+
+class REALMODEL_OT_datum_show(Reporting, bpy.types.Operator):
+    """Turn the viewport to the active datum, and select it"""
+
+    bl_label = "Show Datum"
+    needs = (a_datum,)
+
+    def act(self, context):
+        handle.activate(context, handle.active(context.scene), jumps=True)
+
+
+class REALMODEL_OT_datum_leave(Reporting, bpy.types.Operator):
+    """No datum is active any more; its sphere is removed"""
+
+    bl_label = "Leave Datum"
+    needs = (a_datum,)
+
+    def act(self, context):
+        handle.clear(context.scene)
+
+
+class REALMODEL_OT_misfit_show(Reporting, bpy.types.Operator):
+    """Turn the viewport to the active row of the list of data that do not fit, and pick its datum"""
+
+    bl_label = "Show Misfit"
+    needs = (any_data,)
+
+    def act(self, context):
+        group = context.scene.realmodel
+        if not 0 <= group.active_misfit < len(group.misfits):
+            raise InputRefused("no row of the list is active", advice="switch Misfits on, and choose a row")
+        handle.show_misfit(context)

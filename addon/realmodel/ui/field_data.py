@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Field data: what of them is shown, the active datum, and the list of those that do not fit."""
+
+import bpy
+
+from ..bl.field import boreholes, data, handle
+from ..core import RealModelError
+from .lists import OfRows
+from .panel import FoldedPanel, OfAModel, hint, right_label, wrapped
+
+
+class REALMODEL_UL_misfits(OfRows, bpy.types.UIList):
+    """Data that the model does not have as they say."""
+
+    def draw_row(self, _context, row, item):
+        split = row.split(factor=0.4)
+        depth = f" {item.depth}" if item.depth else ""
+        split.label(text=f"{item.source}{depth}")
+        rest = split.split(factor=0.58)
+        rest.label(text=item.name)
+        right_label(rest, item.by or "left out")
+
+
+class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
+    bl_label = "Field Data"
+    bl_order = 5
+
+    def draw_in(self, layout, context, group):
+        layout.operator("realmodel.boreholes_read", text="Import Field Data...", icon="IMPORT")
+        if not data.are_there(context.scene):
+            hint(layout, "Boreholes, outcrops, dips and maps: choose all their files at once.")
+            return
+        grid = layout.grid_flow(row_major=True, columns=2, align=True)
+        grid.use_property_split = False
+        maps = ("show_map",) if any(rock.map for rock in group.rocks) else ()
+        for name in (*maps, "show_contacts", "show_dips", "show_boreholes", "show_hole_names"):
+            grid.prop(group.view, name, toggle=True)
+        if group.view.show_boreholes:
+            column = layout.column(align=True)
+            if boreholes.columns(context.scene):
+                column.prop(group.view, "boreholes_by")
+            column.prop(group.view, "hole_width")
+        _draw_datum(layout, context)
+
+
+def _draw_datum(layout, context):
+    row = layout.row(align=True)
+    row.operator("realmodel.datum_pick", text="Pick Datum", icon="EYEDROPPER")
+    datum = handle.active(context.scene)
+    off = data.switched_off(context.scene)
+    if datum is not None:
+        row.operator("realmodel.datum_show", text="", icon="ZOOM_SELECTED")
+        row.operator("realmodel.datum_leave", text="", icon="X")
+        box = layout.box().column(align=True)
+        try:
+            text = handle.text_of(context.scene, datum)
+        except RealModelError as error:
+            text = str(error)
+        for line in wrapped(text):
+            box.label(text=line)
+        icon = "HIDE_OFF" if datum.used else "HIDE_ON"
+        box.operator("realmodel.datum_switch", text="Switch Off" if datum.used else "Switch On", icon=icon)
+        item = handle.item_of(context.scene)
+        if item is not None:
+            box.prop(item, "location", text="Offset")
+        hint(layout, "Move its sphere with G; the model follows where Auto is on.")
+    if off:
+        row = layout.row(align=True)
+        row.label(text=f"{off:,} switched off")
+        row.operator("realmodel.data_switch_on", text="Switch All On")
+
+
+class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
+    bl_label = "Misfits"
+    bl_parent_id = "REALMODEL_PT_field"
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.realmodel.results) > 0
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.realmodel.view, "show_misfits", text="")
+
+    def draw_in(self, layout, context, group):
+        column = layout.column(align=True)
+        column.prop(group.view, "misfit_tolerance")
+        column.prop(group.view, "dip_tolerance")
+        if not group.view.show_misfits:
+            hint(layout, "Switch it on to see in red, and in a list, the data that the model does not have.")
+            return
+        if not len(group.misfits):
+            hint(layout, "All data fit.")
+            return
+        more = group.view.misfit_count - len(group.misfits)
+        layout.label(text=f"{group.view.misfit_count:,} data do not fit" + (", the largest:" if more else ""))
+        layout.template_list("REALMODEL_UL_misfits", "", group, "misfits", group, "active_misfit", rows=5)
+        if 0 <= group.active_misfit < len(group.misfits):
+            _draw_misfit(layout, group.misfits[group.active_misfit])
+
+
+def _draw_misfit(layout, row):
+    column = layout.box().column(align=True)
+    depth = f" at {row.depth}" if row.depth else ""
+    for text in (f"{row.source}{depth}: {row.name}", f"Says: {row.says}", f"Model: {row.has}"):
+        for line in wrapped(text):
+            column.label(text=line)
+    column.operator("realmodel.misfit_show", text="Show", icon="ZOOM_SELECTED")

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+
+#include "realmodel/interpolation/dips.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr double kOfSmooth = 1.0 / 64;   // of the spacing
+constexpr double kOfRange = 1.0 / 1024;  // less leaves too few digits of differences
+
+bool is_rough(VariogramModel model) {
+    return model == VariogramModel::kSpherical || model == VariogramModel::kExponential;
+}
+
+}  // namespace
+
+double dip_baseline(const Variogram& variogram, double spacing) {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    bool rough = false;
+    const auto add = [&](VariogramModel model, double range, double sill, double ratio) {
+        shortest = std::min(shortest, range / std::max(ratio, 1 / ratio));
+        longest = std::max(longest, range);
+        rough = rough || (is_rough(model) && sill > 0);
+    };
+    add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy.ratio);
+    for (const NestedStructure& part : variogram.further)
+        add(part.model, part.range, part.sill, part.anisotropy.ratio);
+    const double baseline = std::min(spacing, shortest);
+    return rough ? baseline : std::max(kOfSmooth * baseline, kOfRange * longest);
+}
+
+}  // namespace realmodel::interpolation

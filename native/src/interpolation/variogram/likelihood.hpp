@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/dips.hpp"
+#include "realmodel/interpolation/variogram_fit.hpp"
+
+namespace realmodel::interpolation {
+
+/// How likely heights and slopes together are with a variogram: restricted maximum likelihood,
+/// which knows nothing of the drift (Kitanidis 1983, "Statistical estimation of polynomial
+/// generalized covariance functions", Water Resources Research 19; Chiles and Delfiner 2012,
+/// section 2.6.3). Of many dips a fixed, even part counts.
+class Likelihood {
+public:
+    /// Points and both slopes of the dips that are taken together.
+    static constexpr std::size_t kMostData = 200;
+
+    /// @param dips  their baseline is the mean spacing of points and dips
+    Likelihood(std::span<const std::array<double, 3>> points, const Dips& dips, Drift drift);
+
+    /// Of points and dips.
+    double diagonal() const { return diagonal_; }
+    /// Heights and slopes, less the terms of the drift.
+    std::size_t free() const { return free_; }
+
+    struct Found {
+        double logarithm;
+        double sill;  ///< with which the data are most likely
+    };
+    /// @param shape  with the sill 1, of which the nugget is a share
+    /// @return none where the data are one another's consequences with it, up to rounding
+    std::optional<Found> of(const Variogram& shape) const;
+
+private:
+    DataPoints points_;
+    std::vector<Position> dips_, slopes_;
+    double spacing_, diagonal_ = 0;
+    Drift drift_;
+    std::size_t free_ = 0;
+};
+
+/// The variogram with which a few points, and dips, are most likely: of all models, of the smooth
+/// ones where there are dips. Ranges from a part of the extent of the data to several times that,
+/// an anisotropy where it is asked for, and a nugget are searched on a grid and refined; anisotropy
+/// and nugget where they are more likely by more than their number of parameters explains (Akaike
+/// 1974).
+/// @return none where there is none, or the data are too few
+std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 3>> points,
+                                             const Anisotropy& given, const FitOptions& options,
+                                             Progress* progress);
+
+}  // namespace realmodel::interpolation

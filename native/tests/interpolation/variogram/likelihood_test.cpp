@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/variogram/likelihood.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../dense_kriging.hpp"
+#include "realmodel/interpolation/nearest_distance.hpp"
+
+namespace realmodel::interpolation {
+namespace {
+
+using Slopes = std::vector<std::array<double, 2>>;
+
+/// Folds of wavelength 400 whose axes run north.
+double fold(double x) {
+    return 50 * std::sin(x / 400 * 6.283185307179586);
+}
+
+struct Folded {
+    Points points = hills(12, 1000, {5e5, 4e6}, 3);
+    Slopes positions, slopes;
+
+    Folded() {
+        for (auto& point : points)
+            point[2] = fold(point[0] - 5e5);
+        for (const auto& [x, y, z] : hills(15, 1000, {5e5, 4e6}, 8)) {
+            positions.push_back({x, y});
+            slopes.push_back({(fold(x - 5e5 + 0.01) - fold(x - 5e5 - 0.01)) / 0.02, 0});
+        }
+    }
+    FitOptions options() const {
+        return {Drift::kConstant, 32, true, false, {positions, slopes, 190, 0}};
+    }
+};
+
+TEST(Likelihood, OfTwoPointsByHand) {
+    // Of two values one difference is free: log N(d; 0, 2 s (1 - c)), less what all shapes share.
+    const Points points{{0, 0, 3}, {100, 0, 7}};
+    const Likelihood likelihood(points, {}, Drift::kConstant);
+    EXPECT_EQ(likelihood.free(), 1U);
+    const Variogram shape{VariogramModel::kSpherical, 400, 1, 0, {}, {}};
+    const double c = 1 - (1.5 * 0.25 - 0.5 * 0.25 * 0.25 * 0.25);
+    const auto found = likelihood.of(shape);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->sill, 16 / (2 * (1 - c)), 1e-9);
+    // -1/2 (log sill + log |C| + log 1' C^-1 1), with |C| = 1 - c^2 and 1' C^-1 1 = 2 / (1 + c)
+    const double expected = -0.5 * (std::log(found->sill) + std::log(2 * (1 - c)));
+    EXPECT_NEAR(found->logarithm, expected, 1e-9);
+}
+
+TEST(Likelihood, DoesNotDependOnTheUnitOfHeights) {
+    Folded feet;
+    const Folded meters;
+    for (auto& point : feet.points)
+        point[2] /= 0.3048;
+    for (auto& slope : feet.slopes)
+        slope = {slope[0] / 0.3048, slope[1] / 0.3048};
+    const auto a = likeliest_variogram(meters.points, {}, meters.options(), nullptr);
+    const auto b = likeliest_variogram(feet.points, {}, feet.options(), nullptr);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->model, b->model);
+    EXPECT_NEAR(a->range, b->range, 1e-6 * a->range);
+    EXPECT_NEAR(a->sill, b->sill * 0.3048 * 0.3048, 1e-6 * a->sill);
+}
+
+TEST(Likelihood, DipsOfFoldsShowTheirAxis) {
+    const Folded folded;
+    const auto found = likeliest_variogram(folded.points, {}, folded.options(), nullptr);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->anisotropy.ratio, 3);
+    const double azimuth = found->anisotropy.azimuth;
+    EXPECT_LT(std::min(azimuth, 180 - azimuth), 5);
+    EXPECT_EQ(found->nugget, 0);
+}
+
+TEST(Likelihood, AGivenAnisotropyStays) {
+    const Folded folded;
+    FitOptions options = folded.options();
+    options.finds_anisotropy = false;
+    const auto found = likeliest_variogram(folded.points, {3, 20}, options, nullptr);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->anisotropy.ratio, 3);
+    EXPECT_EQ(found->anisotropy.azimuth, 20);
+}
+
+TEST(Likelihood, NoiseIsANugget) {
+    Points points = hills(28, 1000, {0, 0}, 4);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i][2] = 0.1 * points[i][0] + (i % 2 == 0 ? 15 : -15);
+    const auto found = likeliest_variogram(points, {}, {}, nullptr);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->nugget + (found->range < 100 ? found->sill : 0), 50);
+}
+
+TEST(Likelihood, OfTooFewDataThereIsNone) {
+    EXPECT_FALSE(likeliest_variogram(Points{{0, 0, 1}, {1, 0, 2}}, {}, {}, nullptr));
+    // one point with a dip: two slopes are free
+    const Slopes at{{5, 5}}, slope{{0.1, 0.2}};
+    const FitOptions options{Drift::kConstant, 32, false, false, {at, slope, 5, 0}};
+    EXPECT_TRUE(likeliest_variogram(Points{{0, 0, 1}}, {}, options, nullptr));
+}
+
+TEST(Likelihood, FitUsesIt) {
+    const Folded folded;
+    const FittedVariogram fitted = fit_variogram(folded.points, {}, folded.options());
+    const auto found = likeliest_variogram(folded.points, {}, folded.options(), nullptr);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(fitted.variogram.range, found->range);
+    EXPECT_EQ(fitted.variogram.sill, found->sill);
+    EXPECT_FALSE(fitted.experimental.lags.empty());
+}
+
+}  // namespace
+}  // namespace realmodel::interpolation

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of docs/dev/field_data.md: of eight histories in closed form the share of random points that
+models have in the right block, from contacts of holes alone and from logs, outcrops and dips.
+
+    scripts/compare_field_data.py [--history NAME]... [--method NAME] [--seeds N]
+        [--write docs/dev/field_data.md]
+
+Needs the built module (scripts/build.sh).
+"""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / folder) for folder in ("addon", "scripts")]
+
+from field_data.histories import HISTORIES  # noqa: E402
+from field_data.measured import measure, project, random_points, right_share  # noqa: E402
+from realmodel.core import build  # noqa: E402
+
+HEADER = (
+    "| history | surfaces | holes | contacts alone | with logs, outcrops and dips | observations kept |",
+    "|---|---|---|---|---|---|",
+)
+TABLE = re.compile(re.escape("\n".join(HEADER)) + r"\n(?:\|.*\n)*")
+
+
+def row(history, method, seeds):
+    """A row of the table: means over places of measurements drawn `seeds` times."""
+    shares = []
+    for seed in range(1, seeds + 1):
+        data = measure(history, seed)
+        points = random_points(history)
+        alone, whole = (build(project(history, data, each, method)) for each in (True, False))
+        kept = whole.observed().share
+        shares.append((right_share(alone, *points), right_share(whole, *points), kept))
+    alone, whole, kept = np.mean(shares, axis=0)
+    surfaces = len(history.layers)
+    return f"| {history.name} | {surfaces} | {history.holes} | {alone:.3f} | {whole:.3f} | {kept:.3f} |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--history", action="append", choices=[each.name for each in HISTORIES])
+    parser.add_argument("--method")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--write", type=Path)
+    given = parser.parse_args()
+    lines = [*HEADER]
+    for history in HISTORIES:
+        if given.history is None or history.name in given.history:
+            lines.append(row(history, given.method, given.seeds))
+            print(lines[-1], flush=True)
+    if given.write is not None:
+        page = given.write.read_text(encoding="utf-8")
+        given.write.write_text(TABLE.sub("\n".join(lines) + "\n", page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geological maps in the dialog of field data, and draped on the ground."""
+
+import bpy
+import numpy as np
+from blender_state import coordinates
+from panel_case import SAMPLES, PanelCase, ops
+from realmodel.bl import map_settings, observed_blocks, project_settings
+from realmodel.operators import boreholes
+
+VALLEY = SAMPLES / "mapped_valley"
+NAMES = "Ss = Sandstone; Sh = Shale; Ls = Limestone; Ml = Marl; Bas = Basalt"
+ORDER = ["Sandstone", "Shale", "Limestone", "Marl", "Basalt"]
+
+
+class MapImport(PanelCase):
+    def read(self, **options):
+        given = {"map_block": "FORMATION", "map_ground": str(VALLEY / "ground.asc"), "names": NAMES}
+        ops.boreholes_read(filepath=str(VALLEY / "map.geojson"), **given | options)
+
+    @property
+    def rock(self):
+        return self.model.rocks[0]
+
+    def draped(self):
+        (item,) = [item for item in self.scene.objects if item.get("realmodel_view") == "map"]
+        return item
+
+    def test_a_map_gives_surfaces_observations_and_a_ground(self):
+        self.read()
+        self.assertEqual(sorted(s.name for s in self.rock.surfaces), sorted(ORDER))
+        seen = observed_blocks.of_rock(self.rock)
+        self.assertGreater(len(seen), 500)
+        self.assertEqual(set(seen.blocks), set(ORDER))
+        self.assertTrue((seen.holes == "").all())
+        self.assertTrue(self.rock.surfaces[-1].filepath.endswith("ground.asc"))
+        item = self.draped()
+        names = [m.name for m in item.data.materials]
+        self.assertTrue(all(any(block in name for name in names) for block in ORDER), names)
+        self.assertGreater(len(item.data.polygons), 1000)
+
+    def test_it_lies_on_the_ground_in_the_colors_of_the_blocks(self):
+        self.read()
+        item = self.draped()
+        found = coordinates(item.data).astype(float) + project_settings.model_origin(self.scene)
+        draped = map_settings.of_rock(self.rock)
+        self.assertTrue(np.allclose(found[:, :2], draped.vertices[:, :2], atol=0.01))
+        lift = found[:, 2] - draped.vertices[:, 2]
+        self.assertTrue((lift > 0).all() and lift.max() < 10)
+        normals = np.array([polygon.normal[2] for polygon in item.data.polygons])
+        self.assertTrue((normals > 0).all(), "they look up")
+        seen = observed_blocks.of_rock(self.rock)
+        middles = draped.vertices[draped.triangles].mean(axis=1)[:, :2]
+        _, first, count = np.unique(seen.places, axis=0, return_index=True, return_counts=True)
+        for number in first[count == 1][::23].tolist():  # others are on borders
+            away = np.linalg.norm(middles - seen.places[number, :2], axis=1)
+            near = {draped.names[draped.unit[k]] for k in np.argsort(away)[:6]}
+            self.assertIn(seen.blocks[number], near)
+        self.model.view.show_map = False
+        self.assertFalse([item for item in self.scene.objects if item.get("realmodel_view") == "map"])
+        self.save_and_open()
+        self.assertEqual(len(map_settings.of_rock(self.rock).triangles), len(draped.triangles))
+
+    def test_several_files_at_once(self):
+        (self.folder / "map.geojson").write_text((VALLEY / "map.geojson").read_text())
+        (self.folder / "logs.csv").write_text(
+            "hole,x,y,z,from,to,block\nB1,1500,1000,400,0,50,Limestone\nB1,1500,1000,400,50,80,Shale\n"
+        )
+        files = [{"name": "map.geojson"}, {"name": "logs.csv"}]
+        given = {"map_block": "FORMATION", "map_ground": str(VALLEY / "ground.asc"), "names": NAMES}
+        first = str(self.folder / "map.geojson")
+        ops.boreholes_read(filepath=first, directory=str(self.folder), files=files, **given)
+        seen = observed_blocks.of_rock(self.rock)
+        self.assertEqual(int((seen.holes == "B1").sum()), 4)
+        self.assertGreater(int((seen.holes == "").sum()), 500)
+        self.assertEqual(boreholes.shown_kind(self.folder / "map.geojson", ""), ("map", "CHECKMARK"))
+
+    def test_the_ground_may_be_a_surface_of_the_list(self):
+        ops.surface_add(filepath=str(VALLEY / "ground.asc"), name="hills")
+        count = len(self.rock.surfaces)
+        self.read(map_ground="hills", add_surfaces=False, names="")
+        self.assertEqual(len(self.rock.surfaces), count)
+        self.assertIsNone(observed_blocks.of_rock(self.rock), "no unit is known")
+        self.assertGreater(len(self.draped().data.polygons), 1000, "it is shown all the same")
+        self.read(map_ground="", add_surfaces=False, names="Ss = hills; Sh =")
+        seen = observed_blocks.of_rock(self.rock)
+        self.assertEqual(set(seen.blocks), {"hills"})
+
+    def test_what_is_lacking_is_said(self):
+        self.refused(self.read, "which attribute names the blocks.*FORMATION", map_block="")
+        self.refused(self.read, "no attribute 'ROCK'", map_block="ROCK")
+        self.refused(self.read, "the ground of the map is not known", map_ground="")
+        self.refused(self.read, "file not found", map_ground="none.asc")
+        self.refused(self.read, "no layer 'units'", map_layer="units")
+        self.assertEqual(len(self.model.rocks), 0)
+
+    def test_the_map_of_a_project_is_shown(self):
+        ops.open_project(filepath=str(VALLEY / "project.toml"), build=False)
+        self.model.view.show_map = True
+        item = self.draped()
+        self.assertGreater(len(item.data.polygons), 1000)
+        names = {item.data.materials[p.material_index].name for p in item.data.polygons}
+        self.assertEqual(len(names), 5, names)
+        self.assertNotIn("Switched Off", names)
+
+    def test_a_map_makes_a_model_without_a_borehole(self):
+        self.read()
+        rows = self.rock.surfaces
+        while [s.name for s in rows] != ORDER:
+            for at, name in enumerate(ORDER):
+                self.rock.active_surface = rows.find(name)
+                while rows.find(name) > at:
+                    ops.surface_move(direction="DOWN")
+        for row in rows:
+            row.method = "natural_neighbour"
+        rows[-1].source, rows[-1].filepath = "POINTS_FILE", str(VALLEY / "ground.asc")
+        ops.region_around()
+        self.rock.base_elevation, self.rock.edge_length = -100.0, 150.0
+        self.model.view.show_misfits = True
+        ops.build()
+        self.assertEqual(len(self.model.results), 5)
+        self.assertEqual(len(bpy.context.scene.realmodel.misfits) > 0, self.model.view.misfit_count > 0)

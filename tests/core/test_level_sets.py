@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fields through their contacts: the nodes follow, and contacts are corners of tetrahedra."""
+
+import numpy as np
+import pytest
+from folded_rocks import contacts, recumbent
+from realmodel.core import Lattice, ScalarField
+from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.work import run
+from realmodel.core.fields import are_on, level_solids, with_contacts, within_lattice
+
+LATTICE = Lattice((-0.3, -0.4, -0.2), (0.9, 0.8, 0.85), (13, 14, 13))
+LEVELS = np.array([1.5, 3.0])
+
+
+@pytest.fixture
+def through():
+    """A field with thirty contacts of each of two surfaces, and these."""
+    field = ScalarField(LATTICE, recumbent(LATTICE.positions()), LEVELS)
+    places = np.concatenate([contacts(recumbent, level, 30, seed=4) for level in LEVELS])
+    return field, places, np.repeat([0, 1], 30)
+
+
+def test_the_field_has_its_levels_at_contacts(through):
+    field, places, surfaces = through
+    missed = np.abs(field.at(places) - LEVELS[surfaces])
+    own = with_contacts(field, places, surfaces)
+    assert missed.max() > 0.05
+    np.testing.assert_allclose(own.at(places), LEVELS[surfaces], rtol=1e-12)
+    # the nodes alone nearly do, too, and have moved no more than they had to
+    alone = ScalarField(LATTICE, own.values, LEVELS)
+    assert np.abs(alone.at(places) - LEVELS[surfaces]).max() < 1e-3 * missed.max()
+    assert np.abs(own.values - field.values).max() < 4 * missed.max()
+
+
+def test_contacts_are_vertices_of_closed_level_sets(through):
+    field, places, surfaces = through
+    own = with_contacts(field, places, surfaces)
+    solids = run(lambda work: level_solids(work, own))
+    for surface, solid in enumerate(solids):
+        level_set = within_lattice(own, solid)
+        assert are_on(places[surfaces == surface], level_set).all()
+        assert 0 < len(level_set.triangles) < len(solid.triangles)
+        edges = solid.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        assert {tuple(edge) for edge in edges.tolist()} == {tuple(edge) for edge in edges[:, ::-1].tolist()}
+        a, b, c = np.moveaxis(solid.vertices[solid.triangles], 1, 0)
+        assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
+
+
+def test_a_vertex_is_on_a_sheet_where_it_is_exactly_there():
+    sheet = Sheet(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]], np.int32))
+    near = np.array([[1.0, 0, 0], [0.5, 0, 0], [0, 1, 1e-16], [-0.0, 0, 0]])
+    assert are_on(near, sheet).tolist() == [True, False, False, True]

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of data that a model does not have as they say."""
+
+import numpy as np
+from realmodel.core import Dips, Observations, Project, Rock, Surface, build
+
+SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
+
+
+def model(observations=None, dips=None, method="plane", picks=None, points=None):
+    """A clay below 4 + x / 2, a sand below 10: of the clay five points, one of them not on the plane."""
+    if points is None:
+        points = [(x, y, 4 + x / 2) for x in (1, 9) for y in (1, 9)]
+    clay = Surface("clay", points=np.array(points, float), method=method, dips=dips)
+    sand = Surface("sand", method="constant", options={"value": 10.0})
+    rock = Rock("rock", [clay, sand], SQUARE, edge_length=2.5, base_elevation=0.0, observations=observations)
+    rock.hole_picks = picks or {}
+    return build(Project("fit", [rock]))
+
+
+def test_what_fits_is_not_listed():
+    seen = Observations([[2, 2, 3], [2, 2, 8]], ["base block", "sand"])
+    assert model(seen).misfits() == []
+
+
+def test_points_off_their_surface_come_with_their_hole():
+    points = [(1, 1, 4), (9, 1, 4), (1, 9, 4), (9, 9, 4), (5, 5, 5)]
+    picks = {"B7": (np.array([5.0, 5, 12]), [("clay", np.array([5.0, 5, 5]))])}
+    made = model(points=points, picks=picks)
+    found = made.misfits()
+    assert [each.kind for each in found] == ["point"] * 5
+    worst = found[0]
+    assert (worst.hole, worst.depth, worst.row, worst.place) == ("B7", 7.0, 4, (5.0, 5.0, 5.0))
+    assert (worst.name, worst.says) == ("clay", "5")
+    assert np.isclose(worst.by, 0.8) and worst.has == "4.2, 0.8 below"
+    assert found[1].has == "4.2, 0.2 above" and found[1].hole == ""
+    assert len(made.misfits(tolerance=0.5)) == 1
+
+
+def test_bounds_and_blocks():
+    seen = Observations([[5, 5, 8.0], [2, 2, 1]], ["base block", "sand"])
+    found = model(seen).misfits()
+    assert [each.kind for each in found] == ["bound", "bound", "block", "block"]
+    assert (found[0].says, found[0].has) == ("clay at or below 1", "4 above")
+    assert np.isclose(found[0].by, 4.0) and np.isclose(found[1].by, 1.5)
+    assert (found[2].row, found[2].says, found[2].has, found[2].by) == (0, "base block", "sand block", 0.0)
+    assert (found[3].says, found[3].has) == ("sand", "base block")
+
+
+def test_intervals_say_how_much_of_them_is_elsewhere():
+    seen = Observations(
+        [[5, 5, 10], [5, 5, 8.5], [5, 5, 8.5], [5, 5, 2]],
+        ["sand", "sand", "clay", "clay"],
+        ["B1"] * 4,
+        [0, 1.5, 1.5, 8],
+    )
+    found = [each for each in model(seen).misfits(tolerance=0.5) if each.kind == "block"]
+    assert len(found) == 1, found
+    only = found[0]
+    assert (only.hole, only.depth, only.place) == ("B1", 1.5, (5.0, 5.0, 8.5))
+    assert only.end == (5.0, 5.0, 2.0)
+    assert only.says == "clay to 8" and only.has.endswith("most in sand block")
+    assert abs(only.by - 2.0) < 0.5
+
+
+def test_dips_are_compared_with_the_surface():
+    dips = Dips([[5.0, 5.0], [2.5, 5.0], [9.0, 1.0]], [[0.5, 0.0], [-0.5, 0.0], [0.0, 0.0]]).checked()
+    made = model()  # a plane, which takes no dips; beside it these would be honored
+    made.rock_inputs[0].rock.surfaces[0].dips = dips
+    found = [each for each in made.misfits(dip_tolerance=1.0) if each.kind == "dip"]
+    assert [each.row for each in found] == [1, 2], "the first fits; the second dips to the other side"
+    assert (found[0].says, found[0].has) == ("090/27", "270/27, 53° off")
+    assert np.isclose(found[0].by, 2 * np.degrees(np.arctan(0.5)), atol=1e-6)
+    assert (found[1].says, found[1].has) == ("000/00", "270/27, 27° off")
+    assert np.isclose(found[1].place[2], 4 + 9 / 2)
+    assert [each for each in made.misfits(dip_tolerance=89.0) if each.kind == "dip"] == []
+
+
+def test_switched_off_data_are_not_listed_and_what_is_left_out_is():
+    seen = Observations([[5, 5, 8.0], [2, 2, 1]], ["base block", "gneiss"], used=[False, True])
+    found = model(seen).misfits()
+    assert [(each.kind, each.name, each.by) for each in found] == [("left_out", "gneiss", None)]
+    assert "no block, surface or body" in found[0].has
+    assert found[0].place == (2.0, 2.0, 1.0)
