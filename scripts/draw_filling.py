@@ -20,7 +20,7 @@ sys.path.insert(0, str(ROOT / "addon"))
 import realmodel  # noqa: E402
 from realmodel.bl import versions  # noqa: E402
 
-PICTURE = ROOT / "docs" / "images" / "guide" / "filled_boulder.png"
+PICTURE = ROOT / "docs" / "images" / "guide" / "filled_boulder.jpg"
 
 
 def boulder():
@@ -71,6 +71,7 @@ def main():
     scene.cycles.samples = 24
     versions.denoise(scene)
     scene.render.resolution_x, scene.render.resolution_y = 720, 560
+    scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 88
     scene.render.filepath = str(PICTURE)
     bpy.ops.render.render(write_still=True)
 
