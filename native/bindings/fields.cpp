@@ -25,13 +25,15 @@ namespace {
 /// origin, spacing, counts.
 using LatticeTuple =
     std::tuple<std::array<double, 3>, std::array<double, 3>, std::tuple<int, int, int>>;
-/// Positions, and the surface of each.
-using ContactsTuple = std::tuple<Array<double>, Indices>;
+/// How many surfaces; positions, and the surface of each.
+using ContactsTuple = std::tuple<int, Array<double>, Indices>;
 using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
 /// Positions, the surface below each and above it.
 using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
 /// Axes and ratios.
 using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
+/// Tolerance, most centers, and what is known of the anisotropy.
+using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
 
 fields::Lattice lattice_of(const LatticeTuple& of) {
     const auto& [origin, spacing, counts] = of;
@@ -39,19 +41,19 @@ fields::Lattice lattice_of(const LatticeTuple& of) {
     return {origin, spacing, {nx, ny, nz}};
 }
 
-py::dict solve(const LatticeTuple& lattice, int surfaces, const ContactsTuple& contacts,
-               const DipsAndNormals& dips, const BoundsTuple& bounds, double tolerance,
-               int most_centers, const std::optional<AnisotropyTuple>& anisotropy,
+py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
+               const DipsAndNormals& dips, const BoundsTuple& bounds, const OptionsTuple& given,
                WatchedExecution* execution) {
     fields::FieldData data;
-    data.surfaces = surfaces;
-    data.contacts = rows<3>(std::get<0>(contacts), "contacts");
-    data.contact_surfaces = view(std::get<1>(contacts));
+    data.surfaces = std::get<0>(contacts);
+    data.contacts = rows<3>(std::get<1>(contacts), "contacts");
+    data.contact_surfaces = view(std::get<2>(contacts));
     data.dips = rows<3>(std::get<0>(dips), "dips");
     data.normals = rows<3>(std::get<1>(dips), "normals");
     data.bounds = rows<3>(std::get<0>(bounds), "bounds");
     data.bound_below = view(std::get<1>(bounds));
     data.bound_above = view(std::get<2>(bounds));
+    const auto& [tolerance, most_centers, anisotropy] = given;
     std::optional<fields::Anisotropy> known;
     if (anisotropy) known = std::make_from_tuple<fields::Anisotropy>(*anisotropy);
     const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr};
@@ -93,17 +95,15 @@ std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeT
 }  // namespace
 
 void bind_fields(py::module_& module) {
-    module.def("solve_field", &solve, py::arg("lattice"), py::arg("surfaces"), py::arg("contacts"),
-               py::arg("dips"), py::arg("bounds"), py::arg("tolerance") = 0.0,
-               py::arg("most_centers") = 2500, py::arg("anisotropy") = py::none(),
-               py::arg("execution") = py::none(),
+    module.def("solve_field", &solve, py::arg("lattice"), py::arg("contacts"), py::arg("dips"),
+               py::arg("bounds"), py::arg("options"), py::arg("execution") = py::none(),
                R"(The smoothest field in space that honors the data, and the level of each surface.
 
-lattice: (origin, spacing, counts). surfaces: how many, oldest first. contacts: positions (N, 3) and the surface
-of each (N,). dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions (B, 3),
-the surface below each and above it (B,), -1: none. tolerance: the distance by which surfaces may miss contacts.
-most_centers: at most so many contacts carry the field. anisotropy: (axes, ratios) as it is returned; None: the
-most likely one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, centers, misfit, dips_missed,
+lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), and the surface of
+each (N,), 0 the oldest. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
+(B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
+at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
+one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, centers, misfit, dips_missed,
 bounds_missed. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),

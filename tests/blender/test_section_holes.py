@@ -37,7 +37,10 @@ class SectionHoles(PanelCase):
             near = np.abs(found[:, :2] - place).max(axis=1) < 1e-2
             self.assertTrue(near.any(), "the bend is at the hole")
         ops.save_section(filepath=str(self.folder / "holes.svg"), along="HOLES")
-        self.assertIn("Distance", (self.folder / "holes.svg").read_text())
+        drawn = (self.folder / "holes.svg").read_text()
+        self.assertIn("Distance", drawn)
+        for name in names:
+            self.assertIn(f">{name}<", drawn)
 
     def test_names_are_read_as_they_are_typed(self):
         self.a_model()

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Observations, Project, Rock, Surface, UsageError, build
+from realmodel.core import InputRefused, Observations, Project, Rock, Surface, UsageError, build, load_project
 from test_batch import run
 
 SQUARE = [[0, 0], [100, 0], [100, 100], [0, 100]]
@@ -102,3 +102,33 @@ def test_refusals():
         model.cross_validate_holes()
     with pytest.raises(UsageError, match="folds"):
         model_of(logs(lambda x, y: 30 + 0 * x)).cross_validate_holes(1)
+
+
+def test_tops_of_intervals_are_no_contacts_where_a_younger_surface_cuts(tmp_path):
+    # the channel lies on sand in B2 alone: the top of sand there is the base of the channel
+    rows = [
+        "B0,0,10,clay",
+        "B0,10,20,sand",
+        "B1,0,11,clay",
+        "B1,11,20,sand",
+        "B2,0,15,gravel",
+        "B2,15,20,sand",
+    ]
+    rows += ["B3,0,12,clay", "B3,12,20,sand"]
+    (tmp_path / "log.csv").write_text("\n".join(["hole,from,to,block", *rows]))
+    collars = [f"B{n},{25 * n},{(n % 2) * 50},40" for n in range(4)]
+    (tmp_path / "collars.csv").write_text("\n".join(["hole,x,y,z", *collars]))
+    surfaces = (("top of sand", "sand"), ("base of gravel", "clay"), ("ground", "gravel"))
+    (tmp_path / "p.toml").write_text(
+        'format = 1\nname = "p"\n[[rock]]\nname = "r"\nregion = [[0, 0], [80, 0], [80, 50], [0, 50]]\n'
+        "edge_length = 10.0\nbase_elevation = 0.0\n"
+        'boreholes = { collars = "collars.csv", intervals = "log.csv" }\n'
+        + "".join(
+            f'[[rock.surface]]\nname = "{name}"\nblock = "{block}"\nmethod = "natural_neighbour"\n'
+            for name, block in surfaces
+        )
+    )
+    found = build(load_project(tmp_path / "p.toml")).cross_validate_holes()
+    met = {hole.hole: [contact.surface for contact in hole.contacts] for hole in found.holes}
+    assert "top of sand" in met["B0"]
+    assert "base of gravel" in met["B2"] and "top of sand" not in met["B2"]

@@ -25,6 +25,7 @@ from .reporting import Reporting, a_model, a_section_plane, an_outline_object, p
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 
+_ON_LINE = 1e-3  # of the length of a section through boreholes: what is so near is on it
 _PIXELS = 20.0  # a borehole that is farther from the mouse is not meant
 _FLAT = "Unroll the section beside the model instead of leaving it in its place"
 
@@ -227,7 +228,8 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     )
     hole_width: FloatProperty(
         name="Holes Within",
-        description="Draw the boreholes within this distance of the section; 0: none",
+        description="Draw the boreholes within this distance of the section; 0: none, but those that it goes "
+        "through",
         min=0.0,
         subtype="DISTANCE",
     )
@@ -248,19 +250,21 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.layout.prop(self, name)
 
     def write(self, context, path):
+        width = self.hole_width
         if self.along == "PLANE":
             found = sections.by_plane(context.scene, *_plane_of(self, context))
         elif self.along == "HOLES":
             if reason := chosen_holes(context):
                 raise InputRefused(reason)
             found = sections.through(context.scene, section_holes.line(context.scene))
+            width = max(width, _ON_LINE * found.length)
         else:
             reason = an_outline_object(context)
             if reason:
                 raise InputRefused(reason)
             item = context.active_object
             found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
-        found.save(path, self.exaggeration, self.hole_width)
+        found.save(path, self.exaggeration, width)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

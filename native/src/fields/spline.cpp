@@ -2,6 +2,7 @@
 #include "fields/spline.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 

@@ -60,10 +60,7 @@ def build_joined(
     with work.phase(0.0, 1.0, "intersecting and cutting", has_steps=True), refused as native:
         joined = work.native(
             native.build_parts,
-            [
-                _part(work, inputs, structures, reach, part, cells, solids)
-                for part in range(len(structures.sides))
-            ],
+            [_part(work, structures, reach, part, cells, solids) for part in range(len(structures.sides))],
             (surfaces, structures.native()),
             divides,
             cells,
@@ -135,16 +132,11 @@ class PartPlace:
 
 
 def _part(
-    work: Work,
-    inputs: list[RockInput],
-    structures: Structures,
-    reach: Reach | None,
-    part: int,
-    cells: str,
-    solids: SolidsOfFields,
+    work: Work, structures: Structures, reach: Reach | None, part: int, cells: str, solids: SolidsOfFields
 ) -> tuple:
     """One part of space, with all rock masses as they are there, as native build_parts takes it."""
     work.check()
+    inputs = solids.inputs
     sides = structures.sides[part].tolist()
     places = [
         PartPlace(structures, part, tuple(beneath)) for beneath in itertools.product(*map(_levels, inputs))
@@ -164,7 +156,7 @@ def _part(
     if len(places) == 1:
         return sides, rocks[0], wanted, None
     compartments = [compartment_of(structures, entry, part) for entry in inputs]
-    within = [place_sides(place) for place in places]
+    within = [_sides_at(place) for place in places]
     return sides, [], wanted, (solids.of(compartments), list(zip(within, rocks, strict=True)))
 
 
@@ -178,7 +170,7 @@ def _levels(entry: RockInput) -> list[dict[int, bool]]:
     return [dict(itertools.chain(*(each.items() for each in row))) for row in itertools.product(*of_fields)]
 
 
-def place_sides(place: PartPlace) -> list[int]:
+def _sides_at(place: PartPlace) -> list[int]:
     """1 outside of each solid, -1 inside, as SolidsOfFields.of has them."""
     return [-1 if inside else 1 for beneath in place.beneath for inside in beneath.values()]
 
@@ -187,7 +179,7 @@ class SolidsOfFields:
     """The closed boundaries of where the fields of series are at most a level."""
 
     def __init__(self, work: Work, inputs: list[RockInput]):
-        self._inputs = inputs
+        self.inputs = inputs
         self._solids: dict[ScalarField, list[Sheet]] = {}
         for entry in inputs:
             for own in entry.fields:
@@ -197,8 +189,8 @@ class SolidsOfFields:
     def of(self, compartments: list[int]) -> list[tuple]:
         """Those in the compartments of each rock mass, as native build_parts takes them."""
         found = []
-        firsts = _first_surfaces(self._inputs)[:-1]
-        for entry, compartment, first in zip(self._inputs, compartments, firsts, strict=True):
+        firsts = _first_surfaces(self.inputs)[:-1]
+        for entry, compartment, first in zip(self.inputs, compartments, firsts, strict=True):
             for own in entry.fields:
                 solids = self._solids[own.fields[compartment]]
                 found += [(*solids[n - own.first].arrays, first + n) for n in own.numbers]

@@ -85,13 +85,14 @@ def solve_field(
             found = work.native(
                 native.solve_field,
                 of_lattice,
-                len(data.names),
-                (data.contacts, data.contact_surfaces),
+                (len(data.names), data.contacts, data.contact_surfaces),
                 (data.dips, data.normals),
                 (data.bounds, data.bound_below, data.bound_above),
-                tolerance,
-                MOST_CENTERS,
-                None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
+                (
+                    tolerance,
+                    MOST_CENTERS,
+                    None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
+                ),
             )
         with work.phase(0.95, 1.0, "critical points of the field"):
             nodes, _ = work.native(native.critical_points, of_lattice, found["values"])

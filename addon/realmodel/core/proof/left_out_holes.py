@@ -197,9 +197,11 @@ def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
     contacts = []
     for number, surface in enumerate(rock.surfaces):
         places = [place for place in map(tuple, surface.contact_array().tolist()) if place in sources]
+        points = set(map(tuple, surface.point_array().tolist())) if surface.interpolated else set()
         for name, place in rock.hole_picks.get(hole, (None, ()))[1]:
             picked = tuple(np.asarray(place).tolist())
-            if name == surface.name and picked not in places:
+            # the top of an interval may be on another surface than that of its block
+            if name == surface.name and picked in points and picked not in places:
                 places.append(picked)
         if not places:
             continue

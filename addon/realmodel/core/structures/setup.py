@@ -72,19 +72,22 @@ def make_surfaces(
     """
     place_level_sets(inputs)
     has_fields = any(rock.series for rock in project.rocks)
-    with work.part(0.0, _SHEETS if has_fields else 1.0):
-        structures = _make_sheets(work, project, inputs, stage, keep, flat, joins)
-    with work.part(_SHEETS if has_fields else 1.0, 1.0):
+    middle = _SHEETS if has_fields else 1.0
+    with work.part(0.0, middle):
+        if project.faults or project.bodies:
+            structures = make_structures(work, project, inputs, stage, joins, keep)
+        else:
+            _make_whole_sheets(work, inputs, stage, keep, flat)
+            structures = structures_of(project, [], [])
+    with work.part(middle, 1.0):
         make_fields(work, inputs, stage)
     return structures
 
 
-def _make_sheets(
-    work: Work, project: Project, inputs: list[RockInput], stage, keep, flat, joins
-) -> Structures:
-    """As make_surfaces, without the level sets of fields."""
-    if project.faults or project.bodies:
-        return make_structures(work, project, inputs, stage, joins, keep)
+def _make_whole_sheets(
+    work: Work, inputs: list[RockInput], stage: int | None, keep: StoreArray, flat
+) -> None:
+    """As make_surfaces, where nothing divides rock masses."""
     for entry in work.share_out(inputs):
         numbers: Collection[int] = ()
         if flat is not None:
@@ -92,7 +95,6 @@ def _make_sheets(
                 settle_methods(work, entry)
             numbers = flat(entry.rock)
         interpolate_rock(work, entry, stage, keep, numbers)
-    return structures_of(project, [], [])
 
 
 def make_structures(

@@ -27,10 +27,6 @@ class SeriesField:
         """The numbers of its surfaces in the rock mass."""
         return range(self.first, self.first + self.count)
 
-    def level(self, compartment: int, surface: int) -> float:
-        """The level of a surface, by its number in the rock mass."""
-        return float(self.fields[compartment].levels[surface - self.first])
-
     def stage(self, m: int) -> SeriesField | None:
         """With the surfaces up to m of the rock mass; None where there are none."""
         count = min(self.count, m + 1 - self.first)
