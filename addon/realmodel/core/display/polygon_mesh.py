@@ -78,18 +78,14 @@ def of_blocks(
     threads: int = 0,
     cancel: Cancel | None = None,
     compartments: Sequence[str] | None = None,
-    vertices: np.ndarray | None = None,
 ) -> list[PolygonMesh | None]:
     """For each block of a model its closed boundary, all its parts together; None where it has no cells.
 
     origin: (3,) float64, taken off the coordinates before they are rounded to 32 bits. cancel: as for
     `build`. compartments: names by which face_compartment counts; None: the model's own. Of a stage those of
-    the whole model are wanted; what these lack is counted on. vertices: (V, 3) float64, the coordinates of
-    the meshes where they are not the model's, such as those in the coordinates of an object.
-    Raises Cancelled, BuildFailed.
+    the whole model are wanted; what these lack is counted on. Raises Cancelled, BuildFailed.
     """
-    other = None if vertices is None else {"vertices": vertices}
-    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks), other)
+    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks))
     numbers = _numbers(model, compartments)
     if numbers is None:
         return [None if found is None else found[0] for found in shapes]
@@ -179,14 +175,14 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
 
 
 def _shells(
-    model, origin, shrink, threads, cancel, label, count, other=None
+    model, origin, shrink, threads, cancel, label, count
 ) -> list[tuple[PolygonMesh, np.ndarray] | None]:
     """The mesh around the cells of each label, and of each polygon the face of the model."""
 
     def task(work):
         shells = work.native(
             native_module().complex_shells,
-            {**model.native(), "cell_block": label, **(other or {})},
+            {**model.native(), "cell_block": label},
             count,
             tuple(float(value) for value in origin),
             shrink,
