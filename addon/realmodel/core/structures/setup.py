@@ -16,6 +16,7 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
+from ..settings.series import FIELD
 from ..surfaces.field_data import left_out_warnings
 from ..surfaces.prepare import interpolate_rock, mesh_again, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_input import RockInput
@@ -71,7 +72,7 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
-    has_fields = any(rock.series for rock in project.rocks)
+    has_fields = any(series.kind == FIELD for rock in project.rocks for series in rock.series)
     middle = _SHEETS if has_fields else 1.0
     with work.part(0.0, middle):
         if project.faults or project.bodies:

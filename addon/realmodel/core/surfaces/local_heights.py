@@ -212,6 +212,8 @@ def is_local(surface: Surface) -> bool:
     """Whether the heights of a surface at some nodes do not depend on others."""
     if not surface.interpolated:
         return False
+    if surface.series is not None:
+        return False  # the other sheets count, too
     method, settings = surface.method_options()
     if METHODS[method].is_constrained and (surface.known_dips() is not None or surface.has_bounds):
         return False  # how dips and bounds count depends on all of them

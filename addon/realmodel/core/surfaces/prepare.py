@@ -25,6 +25,7 @@ from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
+from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
@@ -70,7 +71,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
             for text in each.warnings
         ]
         warnings += of_picks
-        rock = replace(rock, surfaces=[each.surface for each in own])
+        rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:

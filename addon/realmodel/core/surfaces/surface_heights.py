@@ -21,6 +21,7 @@ from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, tie_data
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
+from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 
@@ -98,8 +99,10 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
+            companions = companions_of(rock, number)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            task = replace(task, dips=surface.known_dips(), bounds=surface.bounds)
+            task = replace(task, dips=surface.known_dips(), companions=companions)
+            task = replace(task, bounds=bounds_beside(surface, companions))
             result = _tied(task, give(method, task), surface)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
@@ -121,7 +124,7 @@ def _tied(task: Task, result: Interpolation, surface: Surface) -> Interpolation:
     """The heights with which a surface honors its points and bounds on the mesh of its region."""
     if not surface.ties or task.triangles is None or not len(task.triangles):
         return result
-    data = tie_data(task.points, surface.bounds)
+    data = tie_data(task.points, task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, result.z, data)
     if z is result.z:
         return replace(result, warnings=(*result.warnings, *warnings))
@@ -156,7 +159,7 @@ def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: d
             "beyond a fault"
         )
     result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
-    return _tied(task, result, surface)
+    return _tied(replace(task, bounds=surface.bounds), result, surface)
 
 
 def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> list[BuildWarning]:

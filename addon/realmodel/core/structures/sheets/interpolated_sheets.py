@@ -21,6 +21,7 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
@@ -118,7 +119,14 @@ class InterpolatedSurface:
             return True
         dips = self._own_dips(family)
         shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
+        shown = np.concatenate([shown, *self._beside_points(family)])
         return are_few(self.surface, shown, self.entry.planar_mesh().vertices, self._within(family))
+
+    def _beside_points(self, family: Family) -> list[np.ndarray]:
+        """(P, 3) the points in its compartments of each of the sheets that it is interpolated with."""
+        surfaces = self.entry.rock.surfaces
+        others = [each for each in sheets_beside(self.entry.rock, self.number) if each != self.number]
+        return [self._with_own_points(family, surfaces[each]).point_array() for each in others]
 
     def _own_dips(self, family: Family) -> Dips | None:
         return None if self.dips is None else self.dips.some(self._within(family).has(self.dip_sides))
@@ -133,7 +141,7 @@ class InterpolatedSurface:
         if self.bounds is not None:
             plan = np.ascontiguousarray(self.bounds.places[:, :2])
             bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
-        return replace(surface, dips=dips, bounds=bounds)
+        return replace(surface, dips=dips, rock_dips=None, bounds=bounds)
 
     def _that_constrain(
         self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
@@ -345,6 +353,9 @@ class InterpolatedSurface:
         surfaces[self.number] = replace(surface, points=points, tie=surface.tie and not self.ties_at_end)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
+        for other in sheets_beside(entry.rock, self.number):
+            if other != self.number:
+                surfaces[other] = self._with_own_points(family, entry.rock.surfaces[other])
         shapes: list[Sheet | None] = [None] * len(surfaces)
         for other in needed_surfaces(entry.rock, self.number):
             shapes[other] = self._as_seen(family, sides, other)
@@ -406,9 +417,13 @@ class InterpolatedSurface:
         return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
     def _with_own_points(self, family: Family, surface):
-        """Another surface with only its points in the family's compartments."""
+        """Another surface with only its points and dips in the family's compartments."""
         if surface.points is None:
             return surface
+        dips, sides = sided_dips(self.work, surface, self.entry)
+        if dips is not None:
+            dips = dips.some(self._within(family).has(sides))
+        surface = replace(surface, dips=dips, rock_dips=None)
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
         placed = point_sides(self.work, points, self.entry, self.number)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
