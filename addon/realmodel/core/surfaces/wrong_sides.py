@@ -134,7 +134,7 @@ class WrongPoints:
     @classmethod
     def of(cls, points: np.ndarray, beyond: np.ndarray, others, numbers: np.ndarray) -> WrongPoints | None:
         """None where all are right, up to the rounding of surfaces that meet at contacts of both. beyond: how
-        far each of the points (N, 3) is; others: beyond which surface, one or (N,); numbers: of the points."""
+        far each of the points (N, 3) is; others: beyond which surface, one or (N,); numbers: theirs."""
         heights = points[:, 2]
         rounding = _TIED * np.ptp(heights) + _ROUNDING * np.abs(heights).max() if len(points) else 0.0
         wrong = np.flatnonzero(beyond > rounding)
