@@ -31,20 +31,18 @@ def sides_of_sheets(structure: RockStructure, number: int, sheets: Sequence[Shee
 
 def weights_of_sheets(structure: RockStructure, mesh: Sheet, z: np.ndarray, sides: np.ndarray) -> np.ndarray:
     """(F, N) how far sheets on the two sides of each fault may differ at the nodes of a planar mesh: 0 where
-    those that only this fault parts are equal, though it does not part the rock. z: (S, N), their heights."""
+    they are equal, and no fault between them parts the rock: each dies out, or is not there beside one of
+    them. z: (S, N), their heights."""
     nodes, triangles = mesh
     ramp = median_edge(nodes, triangles)
-    found = np.ones((sides.shape[1], len(nodes)))
-    for fault, dies_out in enumerate(structure.faults.dies_out):
-        rest = np.delete(sides, fault, axis=1)
-        equal = np.zeros(len(nodes), bool)
-        for one in range(len(sides)):
-            for other in range(one + 1, len(sides)):
-                pair = sides[[one, other], fault]
-                if pair[0] != pair[1] and (dies_out or 0 in pair) and (rest[one] == rest[other]).all():
-                    equal |= z[one] == z[other]
-        found[fault] = share_of_sides(nodes, equal, ramp)
-    return found
+    dies_out = np.array(structure.faults.dies_out, bool)
+    equal = np.zeros((sides.shape[1], len(nodes)), bool)
+    for one in range(len(sides)):
+        for other in range(one + 1, len(sides)):
+            between = sides[one] != sides[other]
+            if (dies_out | (sides[one] * sides[other] == 0))[between].all():
+                equal[between] |= z[one] == z[other]
+    return np.array([share_of_sides(nodes, each, ramp) for each in equal]).reshape(equal.shape)
 
 
 def data_of_sheets(
