@@ -18,6 +18,7 @@ from ..fields import SolvedField
 from .series_data import SeriesData
 
 _STEEP = (8.0, 4.0, 2.0)  # times the usual steepness of f: steeper is a conflict; one after another is tried
+_NEAR = 1e-9  # of the range of f: bounds hold to this as the field is solved
 _ROWS = 1000  # looked at together
 
 
@@ -25,28 +26,32 @@ def without_contradictions(
     data: SeriesData, solve: Callable[[SeriesData], SolvedField]
 ) -> tuple[SolvedField, SeriesData, np.ndarray]:
     """The field that `solve` makes of data, those that it is made of, and the rows of bounds that are left
-    out: none where the first field honors all of them."""
-    field = solve(data)
-    if _honors_all(field):
-        return field, data, np.empty(0, np.int64)
-    plain = solve(data.without_bounds(np.arange(len(data.bounds))))
-    left_out = np.empty(0, np.int64)
-    for steep in _STEEP:
-        found = _in_conflict(data, plain, steep)
-        if len(found) == len(left_out):
-            continue
-        left_out = found
-        kept = data.without_bounds(left_out)
-        field = solve(kept)
-        if _honors_all(field):
-            return field, kept, left_out
-    # no way is known to have the rest: those stay that hold by themselves
-    left_out = np.flatnonzero(data.is_off(plain, 0.0))
-    return plain, data.without_bounds(left_out), left_out
+    out: none where the first field honors all of them. Where none does, that which honors most is taken: a
+    lattice may be too coarse for beds between its nodes."""
+    none = np.empty(0, np.int64)
+    tried = [(solve(data), none)]
+    if not _honors_all(tried[0][0]):
+        plain = solve(data.without_bounds(np.arange(len(data.bounds))))
+        for steep in _STEEP:
+            found = _in_conflict(data, plain, steep)
+            if len(found) > len(tried[-1][1]):
+                tried.append((solve(data.without_bounds(found)), found))
+                if _honors_all(tried[-1][0]):
+                    break
+        tried.append((plain, np.flatnonzero(data.is_off(plain, 0.0))))
+        # levels that do not rise are no field; of equal ones the first, with the fewest bounds left out
+        rising = [each for each in tried if _rises(each[0])] or tried[:1]
+        tried = [min(rising, key=lambda each: int(data.is_off(each[0], _NEAR).sum()))]
+    field, left_out = tried[0]
+    return field, data.without_bounds(left_out), left_out
+
+
+def _rises(field: SolvedField) -> bool:
+    return bool((np.diff(field.levels) > 0).all())
 
 
 def _honors_all(field: SolvedField) -> bool:
-    return not len(field.bounds_missed) and bool((np.diff(field.levels) > 0).all())
+    return not len(field.bounds_missed) and _rises(field)
 
 
 def _in_conflict(data: SeriesData, field: SolvedField, steep: float) -> np.ndarray:

@@ -52,7 +52,10 @@ def warn_of_field(
         text = f"its polarity does not hold at {len(dips)} dips, which contradict other data"
         _add(entry, series, text, "dips", dips)
     if len(off):
-        text = f"{len(off)} places of observations are on the wrong side, as other data contradict them"
+        text = (
+            f"{len(off)} places of observations are on the wrong side: other data contradict them, or a finer "
+            "resolution is needed"
+        )
         _add(entry, series, text, "observations", [data.bound_text(n) for n in off.tolist()])
 
 

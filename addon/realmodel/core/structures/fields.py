@@ -134,6 +134,7 @@ def _through_data(entry: RockInput, series: Series, data: SeriesData, field: Sol
         contacts = set(map(tuple, data.contacts.tolist()))
         kept = np.array([tuple(place) not in contacts for place in data.bounds.tolist()], bool)
         pinned = np.zeros(len(kept), bool)
+        kept[field.bounds_missed] = False
         for _ in range(_ROUNDS):
             new = kept & ~pinned & data.is_off(made, _NEAR)
             if not new.any():
