@@ -34,6 +34,11 @@ constexpr NeighborhoodTuple kNearest{16, 0, 0.0};
 /// Positions, slopes, the baseline of slopes, and how many dips count at a node.
 using DipsTuple = std::tuple<Array<double>, Array<double>, double, int>;
 
+/// The sheet of each point and of each dip, variances, the variogram of thicknesses, the sheet
+/// asked.
+using SheetsTuple =
+    std::tuple<Array<std::int32_t>, Array<std::int32_t>, Array<double>, py::dict, std::int32_t>;
+
 interpolation::Neighborhood neighborhood_of(const NeighborhoodTuple& of) {
     return std::make_from_tuple<interpolation::Neighborhood>(of);
 }
@@ -65,6 +70,18 @@ interpolation::Variogram variogram_of(const py::dict& of) {
     return variogram;
 }
 
+template <class T>
+std::span<const T> values(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// @return spans of the arrays in `of`
+interpolation::Sheets sheets_of(const std::optional<SheetsTuple>& of) {
+    if (!of) return {};
+    const auto& [points, dips, variances, thickness, asked] = *of;
+    return {values(points), values(dips), values(variances), variogram_of(thickness), asked};
+}
+
 interpolation::Drift drift_of(const std::string& name) {
     if (name == "constant") return interpolation::Drift::kConstant;
     if (name == "linear") return interpolation::Drift::kLinear;
@@ -82,12 +99,12 @@ KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
 KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
                    const py::dict& variogram, const NeighborhoodTuple& neighborhood,
                    const std::string& drift, const std::optional<DipsTuple>& dips,
-                   WatchedExecution* execution) {
+                   const std::optional<SheetsTuple>& sheets, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
-                                                dips_of(dips)};
+                                                dips_of(dips), sheets_of(sheets)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
@@ -98,11 +115,12 @@ KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
 
 KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
                             const NeighborhoodTuple& neighborhood, const std::string& drift,
-                            const std::optional<DipsTuple>& dips, WatchedExecution* execution) {
+                            const std::optional<DipsTuple>& dips,
+                            const std::optional<SheetsTuple>& sheets, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
-                                                dips_of(dips)};
+                                                dips_of(dips), sheets_of(sheets)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
@@ -225,7 +243,7 @@ void bind_estimators(py::module_& module) {
     using py::arg;
     module.def("krige", &krige, arg("points"), arg("nodes"), arg("variogram"),
                arg("neighborhood") = kNearest, arg("drift") = "constant", arg("dips") = py::none(),
-               arg("execution") = py::none(),
+               arg("sheets") = py::none(), arg("execution") = py::none(),
                R"(Kriging: ordinary, or with a drift universal.
 
 points        (P, 3) float64: x, y, z; points that repeat another count once
@@ -244,6 +262,10 @@ drift         constant, linear or quadratic
 dips          (positions (D, 2), slopes (D, 2): dz/dx and dz/dy, baseline, number), or None: along
               each axis a slope is that between the heights at the ends of the baseline; so many of
               the nearest dips count at a node, 0: all
+sheets        (sheet of each point (P,), of each dip (D,), variances (S,), variogram of thicknesses,
+              sheet asked), or None: surfaces that are estimated together. Their heights have the
+              variogram in common; of each sheet the variance of its thickness above the lowest one,
+              in units of the sill, ascends from 0
 execution     Execution, or None
 
 Returns (z (N,), variance of its error (N,) float64, number of nodes without a point within the
@@ -253,7 +275,7 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points" (items
     module.def(
         "krige_left_out", &krige_left_out, arg("points"), arg("variogram"),
         arg("neighborhood") = kNearest, arg("drift") = "constant", arg("dips") = py::none(),
-        arg("execution") = py::none(),
+        arg("sheets") = py::none(), arg("execution") = py::none(),
         R"(krige at each of the points, from all the others and the dips. Returns and raises as krige
 does.)");
     module.def("idw", &idw, arg("points"), arg("nodes"), arg("power") = 2.0,

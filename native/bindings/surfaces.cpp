@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hull_corners, hull_border, outside_hull, tin, natural_neighbour, and both of parts of points;
-// surface_heights, dsi.
+// surface_heights, dsi, ties, tied_heights, nodes_around, crowded_data.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -13,6 +13,7 @@
 #include "realmodel/interpolation/convex_hull.hpp"
 #include "realmodel/interpolation/dsi.hpp"
 #include "realmodel/interpolation/surface_heights.hpp"
+#include "realmodel/interpolation/ties.hpp"
 #include "realmodel/interpolation/triangulated.hpp"
 #include "rows.hpp"
 
@@ -145,6 +146,92 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     return out;
 }
 
+/// Heights (S, N), sides (S, F), weights (F, N).
+using SheetArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
+/// Places (C, 2), lower and upper bounds (C,), sheets (C,).
+using TieArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<std::int32_t>>;
+/// Radii (L,), positions (M, 2), sided (M, F), coefficients (L, M).
+using TermArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
+
+template <class T>
+std::span<const T> all_of(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+py::dict ties(const Array<double>& nodes, const Array<std::int32_t>& triangles,
+              const SheetArrays& sheets, const TieArrays& data, double tolerance,
+              WatchedExecution* execution) {
+    const auto& [heights, sides, weights] = sheets;
+    const auto& [places, lower, upper, numbers] = data;
+    const interpolation::TiedSheets given{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
+                                          all_of(heights), all_of(sides), all_of(weights)};
+    const interpolation::TieData asked{rows<2>(places, "places"), all_of(lower), all_of(upper),
+                                       all_of(numbers)};
+    interpolation::Ties found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = interpolation::tie(given, asked, tolerance, run(execution));
+    }
+    py::dict out;
+    out["radii"] = to_array(std::move(found.terms.radii));
+    out["positions"] = to_array(std::move(found.terms.positions));
+    out["sided"] = to_array(std::move(found.terms.sided));
+    out["coefficients"] = to_array(std::move(found.terms.coefficients));
+    out["before"] = to_array(std::move(found.before));
+    out["after"] = to_array(std::move(found.after));
+    return out;
+}
+
+Array<double> tied_heights(const Array<double>& heights, const Array<double>& nodes,
+                           const Array<double>& sided, const TermArrays& terms,
+                           WatchedExecution* execution) {
+    const auto& [radii, positions, of_centers, coefficients] = terms;
+    const auto centers = rows<2>(positions, "positions");
+    const auto to = rows<2>(nodes, "nodes");
+    const auto copy = [](const Array<double>& array) {
+        return std::vector<double>(array.data(), array.data() + array.size());
+    };
+    const interpolation::TieTerms given{
+        copy(radii), {centers.begin(), centers.end()}, copy(of_centers), copy(coefficients)};
+    std::vector<double> z;
+    {
+        const py::gil_scoped_release unlocked;
+        z = interpolation::tied_heights(all_of(heights), to, all_of(sided), given, run(execution));
+    }
+    return to_array(std::move(z));
+}
+
+Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::int32_t>& triangles,
+                                 const Array<double>& places) {
+    const auto from = rows<2>(nodes, "nodes");
+    const auto faces = rows<3>(triangles, "triangles");
+    const auto at = rows<2>(places, "places");
+    std::vector<std::int32_t> found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = interpolation::nodes_around(from, faces, at);
+    }
+    return to_array(std::move(found));
+}
+
+std::pair<Array<std::int32_t>, Array<double>> crowded_data(
+    const Array<double>& nodes, const Array<std::int32_t>& triangles,
+    const std::tuple<Array<double>, Array<double>, Array<double>>& data) {
+    const auto& [places, lower, upper] = data;
+    const std::vector<double> zeros(static_cast<std::size_t>(nodes.shape(0)), 0.0);
+    const interpolation::TiedSheets sheet{
+        rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"), zeros, {}, {}};
+    const std::vector<std::int32_t> one(static_cast<std::size_t>(places.shape(0)), 0);
+    const interpolation::TieData asked{rows<2>(places, "places"), all_of(lower), all_of(upper),
+                                       one};
+    interpolation::CrowdedData found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = interpolation::crowded_data(sheet, asked);
+    }
+    return {to_array(std::move(found.numbers)), to_array(std::move(found.room))};
+}
+
 }  // namespace
 
 void bind_surfaces(py::module_& module) {
@@ -206,6 +293,39 @@ dips_missed, as of points; bounds_missed, the number of point_bounds that are no
 converged, whether they ended because nothing was left to improve.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "bad_index", "option";
 Cancelled.)");
+    module.def(
+        "ties", &ties, arg("nodes"), arg("triangles"), arg("sheets"), arg("data"), arg("tolerance"),
+        arg("execution") = py::none(),
+        R"(A correction of sheets over a planar mesh, nodes (N, 2), triangles (T, 3), to honor data.
+
+sheets     heights (S, N), NaN where there are none; sides (S, F) of faults, -1, +1, or 0 for both;
+           weights (F, N): where 0, both sides of a fault are corrected alike, where 1 by themselves
+data       places (C, 2); lower and upper bounds (C,), equal for contacts; the sheet of each (C,)
+tolerance  heights so near to what is asked for are right
+
+Returns a dict: radii (L,), positions (M, 2), sided (M F,), coefficients (L M,), for tied_heights; before
+and after, (C,): how far the sheet lies below each datum, above it negative, NaN where it has no triangle.
+Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
+    module.def("tied_heights", &tied_heights, arg("heights"), arg("nodes"), arg("sided"),
+               arg("terms"), arg("execution") = py::none(),
+               R"(Heights (N,) of a sheet at nodes (N, 2), corrected.
+
+sided  (N, F): the sheet's sides of faults times their weights at the nodes
+terms  radii (L,), positions (M, 2), sided (M, F), coefficients (L, M), of ties
+
+Returns (N,). Those of some nodes are the same as among all, to the last bit.)");
+    module.def(
+        "nodes_around", &nodes_around, arg("nodes"), arg("triangles"), arg("places"),
+        R"(The nodes (K,) of the triangles that places (C, 2) lie in, of nodes (N, 2), triangles (T, 3).
+
+Ascending. Raises InputError: kind "not_finite", "bad_index".)");
+    module.def("crowded_data", &crowded_data, arg("nodes"), arg("triangles"), arg("data"),
+               R"(The data that a mesh, nodes (N, 2), triangles (T, 3), cannot honor beside others.
+
+data  places (C, 2); lower and upper bounds (C,), equal for contacts
+
+Returns their numbers (K,), ascending, and room (K,): how far the nearest of the data that count is.
+Raises InputError: kind "not_finite", "bad_index".)");
 }
 
 }  // namespace realmodel::bindings

@@ -166,8 +166,8 @@ def test_enough_points_are_taken_as_they_are():
     few = np.array([[600.0, 100], [900, 100], [750, 400], [600, 700], [900, 700], [700, 950]])
     few = np.column_stack([few, [1.0, 5, 2, 8, 3, 4]])
     many = points_of(lambda x, y: 50 + 0.1 * x, where=lambda x, y: x < 500)
-    (entry,) = prepared(project([Surface("S", points=np.concatenate([many, few]))], [fault("F", 500.0)]))
-    (alone,) = prepared(project([Surface("S", points=few)], [fault("F", 500.0)]))
+    surfaces = [Surface("S", points=each, tie=False) for each in (np.concatenate([many, few]), few)]
+    (entry,), (alone,) = (prepared(project([surface], [fault("F", 500.0)])) for surface in surfaces)
     at = compartment(entry, 800, 500, 0)
     assert np.array_equal(entry.structure.sheets[at][0].vertices, alone.structure.sheets[at][0].vertices)
     assert texts_of(entry, "S") == []
@@ -186,7 +186,7 @@ def test_a_plane_needs_three_points():
     few = np.array([[600.0, 100, 10], [900, 100, 70], [750, 900, 20]])
     many = points_of(lambda x, y: 50 + 0.1 * x, where=lambda x, y: x < 500)
     for count, is_own in ((3, True), (2, False)):
-        surface = Surface("S", points=np.concatenate([many, few[:count]]), method="plane")
+        surface = Surface("S", points=np.concatenate([many, few[:count]]), method="plane", tie=False)
         (entry,) = prepared(project([surface], [fault("F", 500.0)]))
         at = compartment(entry, 800, 500, 0)
         assert (texts_of(entry, "S") == []) == is_own

@@ -19,8 +19,8 @@ def on(plan, z):
 
 def of(points, name="S1", **options):
     method = options.pop("method", "kriging")
-    rule = options.pop("rule", "erosional")
-    return Surface(name=name, points=points, method=method, rule=rule, options=options)
+    rule, tie = options.pop("rule", "erosional"), options.pop("tie", True)
+    return Surface(name=name, points=points, method=method, rule=rule, tie=tie, options=options)
 
 
 def warnings(surfaces, kind, faults=(), **rock):
@@ -38,7 +38,9 @@ def layers_with_an_outlier(off, variogram, thickness=200.0):
     z = 20 * np.sin(plan[:, 0] / 200)
     z[7] += off
     older, younger = (on(wells(seed), height) for seed, height in ((2, -thickness), (3, thickness)))
-    return [of(older, "S0"), of(on(plan, z), variogram=variogram), of(younger, "S2")], on(plan, z)[7]
+    return [of(older, "S0"), of(on(plan, z), variogram=variogram, tie=False), of(younger, "S2")], on(plan, z)[
+        7
+    ]
 
 
 def test_a_point_that_a_nugget_lets_the_surface_miss_is_named():
@@ -63,8 +65,8 @@ def test_honored_points_and_small_misses_are_not_named():
 
 def test_a_miss_larger_than_the_layers_is_no_matter_of_how_the_others_fit():
     plan = wells(1, 8)
-    bent = of(on(plan, np.where(plan[:, 0] < 500, 0.0, 60.0)), method="plane")
-    surfaces = [of(bent.points - (0, 0, 5.0), "S0", method="plane"), bent]
+    bent = of(on(plan, np.where(plan[:, 0] < 500, 0.0, 60.0)), method="plane", tie=False)
+    surfaces = [of(bent.points - (0, 0, 5.0), "S0", method="plane", tie=False), bent]
     found = warnings(surfaces, "residual")
     assert len(found) == 2 and "surfaces are 5 away: check the point, the method, and" in found[0].text
 
@@ -86,7 +88,7 @@ def test_the_borehole_is_named(tmp_path):
         "hole,depth,surface\n"
         + "".join(f"W-{n},{1000 - z!r},S1\n" for n, z in enumerate(points[:, 2].tolist()))
     )
-    surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET})
+    surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET}, tie=False)
     holes = Boreholes(collars=tmp_path / "collars.csv", picks=tmp_path / "picks.csv")
     (found,) = warnings(surfaces, "residual", boreholes=holes)
     assert "of borehole 'W-7'" in found.text

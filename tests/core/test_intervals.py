@@ -311,7 +311,7 @@ def test_a_model_of_logs_alone(project, tmp_path):
 
 
 def test_what_is_left_out_is_said_with_hole_and_depth(project):
-    log = LOG + "B4,4,6,basement\nB4,6,20,clay\nB1,9,8,clay\nB1,8.5,9.5,clay\nB2,9,10,tuff\n"
+    log = LOG + "B4,4,6,basement\nB4,6,12,clay\nB1,9,8,clay\nB1,8.5,9.5,clay\nB2,9,10,tuff\n"
     model = build(load_project(project(log=log)))
     said = {warning.kind: warning.text for warning in model.warnings}
     assert "hole 'B4' at 4, 'S0': an older block lies above a younger one" in said["wrong_order"]
@@ -352,23 +352,23 @@ def test_contacts_follow_the_rules_when_these_change(project):
     assert len(surfaces[0].point_array()) == 4 and len(surfaces[1].point_array()) == 2
 
 
-def test_arrays_and_own_points_go_together():
+@pytest.mark.parametrize("tie", [False, True])
+def test_arrays_and_own_points_go_together(tie):
     square = [[0, 0], [10, 0], [10, 10], [0, 10]]
     own = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]]
     surfaces = [
-        Surface("S0", points=own, method="tin"),
-        Surface("S1", points=np.array(own) + np.array([0, 0, 5]), method="tin", block="clay"),
+        Surface("S0", points=own, method="tin", tie=tie),
+        Surface("S1", points=np.array(own) + np.array([0, 0, 5]), method="tin", block="clay", tie=tie),
     ]
     seen = Observations([[5, 5, 2], [5, 5, 8]], ["base block", "clay"])
     rock = Rock("r", surfaces, region=square, edge_length=2.0, base_elevation=-1.0, observations=seen)
     model = build(Project("p", [rock]))
     assert [len(surface.point_array()) for surface in model.project.rocks[0].surfaces] == [4, 4]
     found = model.observed()
-    assert [(each.block, each.share) for each in found.blocks] == [("base block", 0.0), ("clay", 0.0)]
-    assert [(each.surface, each.is_lower, each.by) for each in found.violated] == [
-        ("S1", True, 3.0),
-        ("S0", True, 2.0),
-    ]
+    share = float(tie)  # tin is not told of bounds, ties are
+    assert [(each.block, each.share) for each in found.blocks] == [("base block", share), ("clay", share)]
+    expected = [] if tie else [("S1", True, 3.0), ("S0", True, 2.0)]
+    assert [(each.surface, each.is_lower, each.by) for each in found.violated] == expected
 
 
 def test_a_surface_that_needs_no_points_gets_none_from_bounds():

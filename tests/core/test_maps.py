@@ -163,7 +163,7 @@ def test_contours_of_a_pyramid_are_squares():
 
 def test_contours_lie_on_the_ground(two_layers):
     lines = contours(two_layers)
-    assert {line.elevation for line in lines if not line.surface} == set(np.arange(17.0, 26.0))
+    assert {line.elevation for line in lines if not line.surface} == set(np.arange(16.0, 27.0))
     vertices, triangles = two_layers.surface(1)
     for line in lines:
         if line.surface == "ground":

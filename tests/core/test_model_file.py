@@ -237,7 +237,7 @@ def old_project():
         for k, heights in enumerate(([0, 0, 0, 0], [2, 2, 2, 2], [1, 5, 5, 1]))
     ]
     points = np.array([[1.0, 1, 6], [9, 2, 7], [5, 8, 6.5], [2, 7, 7]])
-    soil = Surface("S3", points=points, method="kriging", property=3)
+    soil = Surface("S3", points=points, method="kriging", property=3, tie=False)  # as it was made
     east = Rock("east", [*ready, soil], region=plan.tolist(), edge_length=4.0, base_elevation=-1.0)
     west = Rock("west", [level(f"T{k}", np.full(4, 10.0 + k), plan - (10.0, 0.0)) for k in range(2)])
     return Project("old", [east, west], faults=[Fault("F", *plane_fault(lean=0.2))])

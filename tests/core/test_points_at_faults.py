@@ -44,7 +44,7 @@ def built(points, method="kriging", lean=0.5):
 
 def throws(model):
     (found,) = displacements(model)
-    assert len(found.throw) > 20
+    assert len(found.throw) > 10
     return found.throw
 
 
@@ -81,7 +81,7 @@ def test_lips_do_not_change_the_throw(lips, shift, method):
 )
 def test_lips_of_other_faults_and_shapes(shape, lean, throw, expected, method):
     model = built(horizon(shape, "both", 0.0, lean, throw), method, lean)
-    assert throws(model) == pytest.approx(expected, abs=0.05 * max(abs(expected), 0.5))
+    assert throws(model) == pytest.approx(expected, abs=0.06 * max(abs(expected), 0.5))
 
 
 def are_wrong(faults, points, sides):

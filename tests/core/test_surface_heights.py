@@ -71,6 +71,14 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
     assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
 
 
+def test_points_of_surfaces_that_meet_there_are_not_on_the_wrong_side():
+    heights = np.array([123.4, 567.8, 345.6, 789.1])
+    low = Surface("low", points=points(*heights), method="tin")
+    below = points(*np.nextafter(heights, 0.0))
+    assert wrong_sides(low, Surface("high", points=below, method="tin", minimum_thickness=0.0)) == []
+    assert wrong_sides(low, Surface("high", points=below - (0, 0, 0.01), method="tin", minimum_thickness=0.0))
+
+
 def wrong_sides(*surfaces):
     return [(w.surface, w.items) for w in build(rock(*surfaces)).warnings if w.kind == "wrong_side"]
 

@@ -42,6 +42,8 @@ def project():
 
 def test_vertices_know_their_variance_and_distance():
     given = project()
+    for surface in given.rocks[0].surfaces[:3]:
+        surface.tie = False
     surfaces = build_surfaces(given)
     assert surfaces.surface_names == ["base", "part", "quick", "ready"]
     for number in (0, 1, 2):

@@ -115,6 +115,13 @@ def test_fits_that_mean_nothing_warn(method):
     assert any("go far beyond those of its points" in w for w in far), "its drift goes on for kilometers"
 
 
+def test_points_that_differ_by_rounding_are_level():
+    level = np.column_stack([np.random.default_rng(3).random((30, 2)) * 100, np.full(30, 4900.0)])
+    level[::3, 2] = np.nextafter(4900.0, 5000.0)
+    warnings = interpolate(level, np.array([[500.0, 500.0], [-400.0, 50.0]]), "universal_kriging").warnings
+    assert not any("far beyond" in text for text in warnings), warnings
+
+
 def test_semivariance_of_a_variogram():
     h = np.array([0.0, 10.0, 200.0, 5000.0])
     for variogram in (SPHERICAL, NESTED, *({**SPHERICAL, "model": m} for m in SHAPES)):

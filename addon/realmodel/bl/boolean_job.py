@@ -14,7 +14,7 @@ import numpy as np
 from ..core import BuildFailed, InputRefused
 from ..core.display.mesh_parts import MeshParts, Operand, mesh_of_parts
 from ..core.results.booleans import SURFACES, intersect_within
-from . import mesh_data, meshes, model_tree, shapes, versions
+from . import mesh_data, meshes, model_tree, placing, shapes, versions
 from .thread_job import ThreadJob
 
 DIVIDE = "DIVIDE"
@@ -178,15 +178,15 @@ class BooleanJob(ThreadJob):
         if self._keep:
             mesh.name = f"{first.name} {self._operation.title()}"
             target = bpy.data.objects.new(mesh.name, mesh)
-            _stand_at(target, first)
+            placing.stand_at(target, first)
             for collection in first.users_collection:
                 collection.objects.link(target)
         else:
             target = first
             _replace_mesh(first, mesh)
-            _hide(second)
+            placing.hide(second)
         mesh_data.write_groups(target, parts, self._layers)
-        _select([target])
+        placing.select([target])
         return target, left_out
 
     def _put_divided(self, scene, made, first, second):
@@ -210,7 +210,7 @@ class BooleanJob(ThreadJob):
                 left_out += [name for name in lost if name not in left_out]
             item = bpy.data.objects.new(entry.name, mesh)
             item[model_tree.TAG] = kind
-            _stand_at(item, first)
+            placing.stand_at(item, first)
             kinds[kind].objects.link(item)
             if kind != "loop":
                 mesh_data.write_groups(item, entry.parts, self._layers)
@@ -223,8 +223,8 @@ class BooleanJob(ThreadJob):
                 bpy.data.collections.remove(collection)
         if not self._keep:
             for item in (first, second):
-                _hide(item)
-        _select(top.all_objects)
+                placing.hide(item)
+        placing.select(top.all_objects)
         return top, left_out
 
     def _new_mesh(self, template, parts):
@@ -318,19 +318,6 @@ def _loop_mesh(loop, matrix):
     return meshes.line_mesh(loop.name, places, edges)
 
 
-def _stand_at(item, other):
-    """An object stands where another one does, exactly: a matrix could not be taken apart so."""
-    item.rotation_mode = other.rotation_mode
-    for name in (
-        *("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"),
-        *("delta_location", "delta_rotation_euler", "delta_rotation_quaternion", "delta_scale"),
-        *("parent", "parent_type", "parent_bone", "parent_vertices", "matrix_parent_inverse"),
-    ):
-        setattr(item, name, getattr(other, name))
-    for constraint in other.constraints:
-        item.constraints.copy(constraint)
-
-
 def _require_own(item):
     """Refuses an object of a model, whose mesh the next build would replace. Raises InputRefused."""
     if item.get(model_tree.TAG) in model_tree.OBJECT_KINDS:
@@ -339,21 +326,3 @@ def _require_own(item):
             item=item.name,
             advice="choose Keep Operands, so that the result is an object of its own",
         )
-
-
-def _hide(item):
-    if item.name in bpy.context.view_layer.objects:
-        item.hide_set(True)
-    item.hide_render = True
-
-
-def _select(items):
-    layer = bpy.context.view_layer
-    layer.update()  # or it would not know new objects
-    items = [item for item in items if item.name in layer.objects]
-    for item in layer.objects:
-        item.select_set(False)
-    for item in items:
-        item.select_set(True)
-    if items:
-        layer.objects.active = items[0]

@@ -39,7 +39,7 @@ from . import (
 )
 from .origin import KEY as ORIGIN_KEY
 
-_OF_INTERPOLATED = ("minimum_thickness", "correlation")  # of surfaces; a ready mesh has none
+_OF_INTERPOLATED = ("minimum_thickness", "tie", "correlation")  # of surfaces; a ready mesh has none
 
 
 @dataclass
@@ -200,7 +200,7 @@ def _shape(source, composed, place, surface, row):
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
                 surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
                 for key in _OF_INTERPOLATED:
-                    setattr(surface, key, None)
+                    setattr(surface, key, SURFACE[key].default)
             base = _made_of(source.scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)

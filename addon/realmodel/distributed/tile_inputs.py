@@ -19,7 +19,7 @@ from ..core.base.errors import naming
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
-from ..core.project.project import Project, surface_item
+from ..core.project.project import Project, Surface, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.surfaces.rock_input import RockInput
 from ..core.surfaces.surface_heights import interpolation_order
@@ -107,6 +107,9 @@ def prepared(
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
         for k in (k for k in interpolation_order(entry.rock) if k in fitted):
             found, near[r, k], texts = fitted[k]
+            if entry.rock.surfaces[k].ties and len(entry.rock.surfaces[k].point_array()):
+                found, of_ties = _tied(found, entry.rock.surfaces[k], near[r, k], entry, cancel)
+                texts = [*texts, *of_ties]
             local[r, k] = linked(found, entry.rock, k)
             warnings += [
                 BuildWarning(text, "points", entry.rock.name, entry.rock.surfaces[k].name) for text in texts
@@ -155,6 +158,15 @@ def _fitted(
     ):
         found[k] = local, arrays.opened(points), texts
     return found
+
+
+def _tied(
+    found: LocalHeights, surface: Surface, points: np.ndarray, entry: RockInput, cancel
+) -> tuple[LocalHeights, list[str]]:
+    """A surface that tiles interpolate, tied to its points, and warnings."""
+    mesh = Sheet(*map(np.ascontiguousarray, entry.planar_mesh()))
+    given, points = map(np.ascontiguousarray, (surface.point_array(), points))
+    return run(lambda work: found.tied(work, given, points, mesh), cancel=cancel)
 
 
 def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, list[str]]:
@@ -272,7 +284,9 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
         for array in entry.region or ():
             digest.update(np.ascontiguousarray(array))
         for surface in entry.rock.surfaces:
-            how = (surface.method_options(), surface.minimum_thickness) if surface.interpolated else None
+            how = None
+            if surface.interpolated:
+                how = (surface.method_options(), surface.minimum_thickness, surface.tie)
             digest.update(repr((entry.rock.base_elevation, surface.rule, how)).encode())
             if surface.bounds is not None:
                 for array in (surface.contact_array(), surface.bounds.places, surface.bounds.is_lower):

@@ -76,6 +76,7 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield None
         for operation, name, *_ in OPERATIONS:
             yield "boolean", f"Boolean: {name}", {"operation": operation}
+        yield "fill_with_strata", "Fill with Strata...", {}
 
 
 class REALMODEL_MT_view(_Menu, bpy.types.Menu):

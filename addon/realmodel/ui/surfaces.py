@@ -84,6 +84,7 @@ def _draw_surface(layout, context, surface):
     elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+        setting_rows.draw(layout, surface, "tie", SURFACE)
         setting_rows.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:
             _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")

@@ -41,7 +41,8 @@ std::vector<double> DataPoints::for_given(std::span<const double> found) const {
     return out;
 }
 
-DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
+DataPoints prepare_points(std::span<const std::array<double, 3>> points,
+                          std::span<const std::int32_t> sheets) {
     if (points.empty()) throw InputError("no_points", "there are no points to interpolate from");
     require_countable(points.size(), "points");
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -52,14 +53,17 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
     }
     std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto key = [&](std::int32_t i) { return std::tuple(points[i][0], points[i][1], i); };
+    const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
+    const auto key = [&](std::int32_t i) {
+        return std::tuple(points[i][0], points[i][1], sheet(i), i);
+    };
     std::sort(order.begin(), order.end(),
               [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
     std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its position
     std::int32_t first = order[0];
     for (const std::int32_t i : order) {
         const auto &a = points[first], &b = points[i];
-        if (a[0] != b[0] || a[1] != b[1]) {
+        if (a[0] != b[0] || a[1] != b[1] || sheet(first) != sheet(i)) {
             first = i;
         } else if (a[2] != b[2]) {
             refuse_contradiction(points, first, i);
@@ -77,6 +81,7 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
         data.number_of[i] = static_cast<std::int32_t>(data.local.size());
         data.local.push_back(data.to_local({points[i][0], points[i][1]}));
         data.values.push_back(points[i][2]);
+        if (!sheets.empty()) data.sheets.push_back(sheets[i]);
     }
     return data;
 }

@@ -12,13 +12,14 @@ namespace realmodel::interpolation {
 
 using Position = spatial::PlanPosition;
 
-/// Points of which no two lie at one position. Their coordinates are relative to an origin among
-/// them: at UTM coordinates differences keep all their digits.
+/// Points of which no two lie at one position on one sheet. Their coordinates are relative to an
+/// origin among them: at UTM coordinates differences keep all their digits.
 struct DataPoints {
     std::vector<Position> local;  ///< in order of appearance
     std::vector<double> values;
     std::vector<std::int32_t> number_of;  ///< for each point that was given, its number here
     Position origin{};
+    std::vector<std::int32_t> sheets{};  ///< that each is on; empty: there is one
 
     Position to_local(const Position& position) const {
         return {position[0] - origin[0], position[1] - origin[1]};
@@ -31,7 +32,9 @@ struct DataPoints {
 /// @throws InputError kind "no_points", "not_finite" (items: the point), "contradicting_points"
 /// (two
 ///         values at one position; items: both points; place), "too_large"
-DataPoints prepare_points(std::span<const std::array<double, 3>> points);
+/// @param sheets  that each is on; empty: there is one
+DataPoints prepare_points(std::span<const std::array<double, 3>> points,
+                          std::span<const std::int32_t> sheets = {});
 
 /// Whether a number can be squared.
 bool usable(double number);

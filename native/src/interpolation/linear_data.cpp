@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "realmodel/base/errors.hpp"
 
@@ -33,16 +34,21 @@ void check_dips(const Dips& dips) {
 }
 
 LinearData::LinearData(const DataPoints& points, const Dips& dips,
-                       const std::array<double, 2>& scales)
-    : points_(points) {
+                       std::span<const std::array<double, 2>> scales, std::vector<double> units,
+                       std::span<const std::int32_t> of_dips)
+    : points_(points), units_(std::move(units)) {
     check_dips(dips);
     require_countable(points.local.size() + 2 * dips.positions.size(), "points and slopes");
     const double half = dips.baseline / 2;
     for (std::size_t i = 0; i < dips.positions.size(); ++i) {
         const Position at = points.to_local(dips.positions[i]);
         dips_.push_back(at);
+        const std::int32_t sheet = has_sheets() ? of_dips[i] : 0;
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            Difference d{at, at, scales[axis], scales[axis] * dips.baseline * dips.slopes[i][axis]};
+            const double scale = scales[sheet][axis];
+            // kernels of sheets have heights in the units of these, and so has the scale
+            const double rise = dips.baseline * dips.slopes[i][axis] / unit(sheet);
+            Difference d{at, at, scale, scale * rise, sheet};
             d.to[axis] += half;
             d.from[axis] -= half;
             differences_.push_back(d);

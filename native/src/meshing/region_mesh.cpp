@@ -224,6 +224,7 @@ private:
 
     BandedMesh first_mesh(SizeField& size, double finest, const Check& cutting,
                           const Check& placing, const Check& joining) const;
+    double room_at_loners(const FlatMesh& flat) const;
     PlanarMesh mesh(SizeField size, double begin, double end) const;
     PlanarMesh run_for_count();
 
@@ -293,6 +294,26 @@ BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutt
     return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
 }
 
+/// How near to points of constraints other vertices and fixed edges are: angles there are improved
+/// down to that, since these points were asked for, and not drawn with an outline.
+double Meshing::room_at_loners(const FlatMesh& flat) const {
+    std::vector<bool> is_loner(flat.points.size(), false);
+    for (const std::int32_t v : graph_.loners)
+        is_loner[v] = true;
+    double least = HUGE_VAL;
+    flat.for_each_edge([&](HalfEdge edge) {
+        const PlanPoint &a = flat.origin_point(edge), &b = flat.target_point(edge),
+                        &c = flat.apex_point(edge);
+        if (is_loner[flat.from(edge)] || is_loner[flat.to(edge)])
+            least = std::min(least, squared_distance(a, b));
+        if (is_loner[flat.apex(edge)] && flat.is_fixed(edge)) {
+            const double area = twice_area(a, b, c);
+            least = std::min(least, area * area / squared_distance(a, b));
+        }
+    });
+    return std::sqrt(least);
+}
+
 PlanarMesh Meshing::mesh(SizeField size, double begin, double end) const {
     const auto part = [&](double from, double to, const char* text) {
         return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
@@ -308,8 +329,9 @@ PlanarMesh Meshing::mesh(SizeField size, double begin, double end) const {
         advance_front(flat, size, banded.first_of_band, most_vertices(),
                       part(0.5, 0.75, "filling"));
     }
+    const double shortest = std::max(finest_length(), std::min(finest, room_at_loners(flat) / 2));
     const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
-                                  is_grid ? kLongestGridEdge : kLongestEdge, finest,
+                                  is_grid ? kLongestGridEdge : kLongestEdge, shortest,
                                   most_vertices()};
     refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
            part(0.75, 0.8, "improving the border"));

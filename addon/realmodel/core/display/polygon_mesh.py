@@ -78,14 +78,18 @@ def of_blocks(
     threads: int = 0,
     cancel: Cancel | None = None,
     compartments: Sequence[str] | None = None,
+    vertices: np.ndarray | None = None,
 ) -> list[PolygonMesh | None]:
     """For each block of a model its closed boundary, all its parts together; None where it has no cells.
 
     origin: (3,) float64, taken off the coordinates before they are rounded to 32 bits. cancel: as for
     `build`. compartments: names by which face_compartment counts; None: the model's own. Of a stage those of
-    the whole model are wanted; what these lack is counted on. Raises Cancelled, BuildFailed.
+    the whole model are wanted; what these lack is counted on. vertices: (V, 3) float64, the coordinates of
+    the meshes where they are not the model's, such as those in the coordinates of an object.
+    Raises Cancelled, BuildFailed.
     """
-    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks))
+    other = None if vertices is None else {"vertices": vertices}
+    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks), other)
     numbers = _numbers(model, compartments)
     if numbers is None:
         return [None if found is None else found[0] for found in shapes]
@@ -175,14 +179,14 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
 
 
 def _shells(
-    model, origin, shrink, threads, cancel, label, count
+    model, origin, shrink, threads, cancel, label, count, other=None
 ) -> list[tuple[PolygonMesh, np.ndarray] | None]:
     """The mesh around the cells of each label, and of each polygon the face of the model."""
 
     def task(work):
         shells = work.native(
             native_module().complex_shells,
-            {**model.native(), "cell_block": label},
+            {**model.native(), "cell_block": label, **(other or {})},
             count,
             tuple(float(value) for value in origin),
             shrink,

@@ -6,9 +6,19 @@ and a `Model` whose blocks are the beds and together are the mesh.
 """
 
 from .beds import Beds, lay_beds
-from .fill import fill_with_strata
-from .palettes import PALETTES
-from .solid import closed_mesh
+from .fill import fill_with_strata, fill_within
+from .palettes import PALETTES, rocks_of_beds
+from .solid import ITEM, closed_mesh
 from .strata import Strata
 
-__all__ = ["PALETTES", "Beds", "Strata", "closed_mesh", "fill_with_strata", "lay_beds"]
+__all__ = [
+    "ITEM",
+    "PALETTES",
+    "Beds",
+    "Strata",
+    "closed_mesh",
+    "fill_with_strata",
+    "fill_within",
+    "lay_beds",
+    "rocks_of_beds",
+]

@@ -52,7 +52,7 @@ def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata)
     """`fill_with_strata` of a closed mesh, as a job."""
     beds = lay_beds(strata, mesh[0])
     solid = solid_within(work, mesh, _SOLID)
-    library, rocks = rocks_of_beds(beds.count, strata.palette, np.random.default_rng(strata.seed))
+    library, rocks = rocks_of_beds(beds.count, strata.palette, strata.seed)
     surfaces = sheets_of(beds, rocks)
     project = Project("strata", [Rock("strata", surfaces)], library=library)
     with work.part(_SOLID, _STACK):

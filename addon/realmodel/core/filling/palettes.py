@@ -7,8 +7,7 @@ import numpy as np
 
 from ..project.library import Library, Property
 
-# Of each palette: the name of a rock, which its look follows from, and its color. The last is the youngest's
-# where a succession ends with it.
+# Of each palette: the name of a rock, which its look follows from, and its color.
 PALETTES: dict[str, tuple[tuple[str, str], ...]] = {
     "canyon": (
         ("Red Sandstone", "#b5653f"),
@@ -48,12 +47,13 @@ PALETTES: dict[str, tuple[tuple[str, str], ...]] = {
 }
 
 
-def rocks_of_beds(count: int, palette: str, random: np.random.Generator) -> tuple[Library, list[int]]:
-    """The library of a palette, and the number in it of each bed's rock: no two neighbors are alike."""
+def rocks_of_beds(count: int, palette: str, seed: int) -> tuple[Library, list[int]]:
+    """The library of a palette, and the number in it of each bed's rock: unlike those of the two beds
+    beneath."""
     entries = PALETTES[palette]
     library = Library([Property(n, name, color=color) for n, (name, color) in enumerate(entries, 1)])
     numbers: list[int] = []
-    for chance in random.random(count).tolist():
-        free = [n for n in range(1, len(entries) + 1) if not numbers or n != numbers[-1]]
+    for chance in np.random.default_rng(seed).random(count).tolist():
+        free = [n for n in range(1, len(entries) + 1) if n not in numbers[-2:]]
         numbers.append(free[int(chance * len(free))])
     return library, numbers

@@ -75,7 +75,8 @@ class Draw:
             z = heights(own.method, free).z
         drawn = np.column_stack([free.points[:, :2], at_points])
         interpolated = heights(
-            own.method, replace(free, points=drawn, dips=self._drawn_dips(free, field, own))
+            own.method,
+            replace(free, points=drawn, dips=self._drawn_dips(free, field, own), companions=None),
         )
         z = z + (at_nodes - interpolated.z)
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
@@ -95,7 +96,7 @@ class Draw:
         def drawn(each: Task) -> Result:
             at_data = np.concatenate([at_points, field_at(each.points[count:, :2])])
             data = np.column_stack([each.points[:, :2], at_data])
-            error = field_at(each.nodes) - run(replace(each, points=data, dips=dips)).z
+            error = field_at(each.nodes) - run(replace(each, points=data, dips=dips, companions=None)).z
             return Result(run(each).z + error)
 
         return active_bounds(free.work, free.points, given, Heights(free, drawn, False))

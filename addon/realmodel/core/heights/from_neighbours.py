@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +12,18 @@ from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
 from ..settings.variogram import Variogram, fit_warnings
+from .companions import (
+    MOST_AT_ONCE,
+    MOST_NEIGHBOURS,
+    ROUNDS,
+    Companions,
+    JointData,
+    SheetModel,
+    first_offsets,
+    pooled,
+    thickness_model,
+    without_thickness,
+)
 from .interpolation import Result, Task
 
 
@@ -60,17 +73,21 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 
 @dataclass(frozen=True)
 class Structure:
-    """The variogram of kriging, its number of neighbours, how dips count, and warnings."""
+    """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
+    that are kriged together."""
 
     variogram: Variogram
     neighbours: int
     dips: DipUse
     warnings: tuple[str, ...] = ()
+    sheets: SheetModel | None = None
 
 
 def structure(task: Task, are_apart: bool = False) -> Structure:
     """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
     they may be in a file."""
+    if task.companions is not None:
+        return _joint_structure(task, task.companions)
     settings = task.settings
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
@@ -95,6 +112,76 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
 
 
+def _joint_structure(task: Task, companions: Companions) -> Structure:
+    """structure of the sheets of a series: of all their points around what they lie apart, which is estimated
+    from all data. Once this is known the variogram is fitted again."""
+    points, dips = companions.data(task.points, task.dips)
+    alone = replace(task, companions=None, bounds=None)
+    data = JointData.of(points, dips, np.zeros(len(points)), companions.own)
+    alone = replace(alone, dips=None if data.dips is None else data.dips.merged()[0])
+    count = len(data.points) + 2 * len(data.of_dips)
+    offsets = first_offsets(task.work, points)
+    for _ in range(ROUNDS):
+        found = structure(replace(alone, points=pooled(points, offsets)))
+        model = thickness_model(task.work, points, found.variogram, offsets, task.settings["anisotropy"])
+        neighbours, use = found.neighbours, found.dips
+        if task.settings["neighbours"] is None:
+            neighbours = 0 if count <= MOST_AT_ONCE else min(neighbours * len(points), MOST_NEIGHBOURS)
+            use = replace(use, neighbours=min(use.neighbours * len(points), neighbours))
+        variogram = without_thickness(found.variogram, model)
+        found = replace(found, variogram=variogram, neighbours=neighbours, dips=use, sheets=model)
+        offsets = _offsets(alone, found, points, dips)
+    return replace(found, sheets=replace(model, offsets=offsets))
+
+
+def _offsets(
+    task: Task, known: Structure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
+) -> np.ndarray:
+    """(S,) what each sheet lies above that with the most points: by how much it differs from what the others
+    let expect at its points, on average; those with the smaller variance count more."""
+    assert known.sheets is not None
+    offsets, base = known.sheets.offsets.copy(), int(np.argmax([len(each) for each in points]))
+    for number, own in enumerate(points):
+        if number == base or not len(own):
+            continue
+        others = [each if n != number else each[:0] for n, each in enumerate(points)]
+        data = JointData.of(others, dips, offsets, number)
+        plan = np.ascontiguousarray(own[:, :2])
+        arguments = _joint_arguments(task, known, data, number)
+        z, variance, _ = task.run(native_module().krige, data.points, plan, *arguments)
+        weight = 1 / np.maximum(variance, 1e-6 * known.variogram.sill)
+        offsets[number] = np.average(own[:, 2] - z, weights=weight)
+    return offsets
+
+
+def _joint_arguments(task: Task, known: Structure, data: JointData, sheet: int) -> tuple:
+    settings = task.settings
+    assert known.sheets is not None
+    return (
+        known.variogram.native(settings["anisotropy"]),
+        _neighborhood(settings, known.neighbours),
+        settings.get("drift", "constant"),
+        known.dips.native(data.dips),
+        known.sheets.native(data.sheets, data.of_dips, sheet, settings["anisotropy"]),
+    )
+
+
+def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.ndarray, np.ndarray, int]:
+    """Heights of one sheet at the nodes, or at its own points, each left out; their variances, and how many
+    have no point within the radius."""
+    assert known.sheets is not None
+    points, dips = companions.data(task.points, task.dips)
+    own, offset = companions.own, known.sheets.offsets[companions.own]
+    data = JointData.of(points, dips, known.sheets.offsets, own)
+    arguments = _joint_arguments(task, known, data, own)
+    native = native_module()
+    if task.left_out:
+        z, variance, alone = task.run(native.krige_left_out, data.points, *arguments)
+        return z[: len(task.points)] + offset, variance[: len(task.points)], alone
+    z, variance, alone = task.run(native.krige, data.points, task.nodes, *arguments)
+    return z + offset, variance, alone
+
+
 def krige(task: Task, known: Structure | None = None) -> Result:
     """Ordinary kriging; universal kriging where the settings have a drift. known: the result of
     `structure`."""
@@ -103,6 +190,10 @@ def krige(task: Task, known: Structure | None = None) -> Result:
     if known is None:
         known = structure(task)
     warnings = list(known.warnings)
+    if task.companions is not None:
+        z, variance, alone = _cokrige(task, task.companions, known)
+        warnings += without_near_points(alone, len(z))
+        return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
     arguments = (
         known.variogram.native(settings["anisotropy"]),
         _neighborhood(settings, known.neighbours),

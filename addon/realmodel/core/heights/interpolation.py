@@ -17,6 +17,7 @@ from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
+from .companions import Companions
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,7 +46,8 @@ class Task:
     """The input of a method: points (P, 3) without contradictions, nodes (N, 2), the complete settings of the
     method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be estimated from
     the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3)). dips:
-    of the surface, no two at one position, or None. bounds: heights that it lies above or below, or None."""
+    of the surface, no two at one position, or None. bounds: heights that it lies above or below, or None.
+    companions: the sheets of its series, with which it is kriged together, or None."""
 
     work: Work
     points: np.ndarray
@@ -56,6 +58,7 @@ class Task:
     surfaces: Mapping[str, Sheet] = field(default_factory=dict)
     dips: Dips | None = None
     bounds: Bounds | None = None
+    companions: Companions | None = None
 
     def run(
         self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs

@@ -117,13 +117,15 @@ def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
 
 
 def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
-    """A warning if heights go far beyond those of the points, by more than twice their range."""
+    """A warning if heights go far beyond those of the points, by more than twice their range. Points that
+    differ by rounding alone are level, and have none."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
     low, high = points[:, 2].min(), points[:, 2].max()
     lowest, highest = np.nanmin(z), np.nanmax(z)
-    if not max(low - lowest, highest - high) > 2 * (high - low) > 0:
+    rounding = 1e-12 * max(abs(low), abs(high))
+    if not max(low - lowest, highest - high) > 2 * (high - low) > rounding:
         return []
     return [
         f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "

@@ -56,6 +56,7 @@ from .series import Series, check_level_set, check_names_series, check_series, m
 from .structure_checks import check_structures
 from .structure_entries import Body, Fault, Shaped
 
+MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
 BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
 
 
@@ -69,7 +70,9 @@ class Surface(Shaped):
     Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3)
     are points that are not used: those of its file, or its array, at these places, model units. With
     `minimum_thickness` an interpolated surface stays so far above the
-    older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
+    older one; unless `tie` is false, it passes through its points and keeps its bounds also
+    within triangles; `correlation` is that of the errors of its heights with those of the older one, in
+    ensembles.
     `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
     and is a level set of that field (`is_level_set`, which its rock mass says).
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
@@ -95,6 +98,7 @@ class Surface(Shaped):
     left_out: np.ndarray | Sequence | None = None
     series: str | None = None
     minimum_thickness: float | None = None
+    tie: bool = True
     correlation: float | None = None
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
@@ -121,6 +125,14 @@ class Surface(Shaped):
         """Whether its method makes nothing without points. Raises OptionRefused."""
         method, settings = self.method_options()
         return METHODS[method].needs_points(settings)
+
+    @builtins.property  # a field of this class is called property
+    def ties(self) -> bool:
+        """Whether a surface that is read is made to pass through its points. A grid is not, nor are so many
+        points that they are a survey of the surface: both are finer than a planar mesh should be."""
+        if not (self.tie and self.interpolated and METHODS[self.method_options()[0]].has_contacts):
+            return False
+        return len(self.point_array()) <= MOST_CONTACTS
 
     @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
@@ -423,7 +435,9 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     else:
         _check_shape(rock, surface, refuse, bool(project.faults))
         _check_dips(surface, refuse)
-    check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
+    check_values(
+        surface, SURFACE, ("minimum_thickness", "tie", "correlation", "rule", "property", "block"), refuse
+    )
     check_property(project.library, surface.property, refuse)
 
 
@@ -445,6 +459,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
         given = [] if continues else given
         of_points = ("minimum_thickness", "correlation", "left_out")
         given += [key for key in of_points if getattr(surface, key) is not None]
+        given += [] if surface.tie else ["tie"]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         if continues:

@@ -12,7 +12,7 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.dips import DipFile, Dips, SpaceDips, dip_file_of
 from ..settings.schema import SERIES
-from ..settings.series import AUTO, FIELD
+from ..settings.series import AUTO, FIELD, SHEET_METHODS
 from .entry import Entry, Refuse, check_file, check_values, named_once, refused_by
 
 # What a level set of a field cannot have, as it is not interpolated on the planar mesh.
@@ -24,8 +24,9 @@ class Series(Entry):
     """Consecutive surfaces of a rock mass that name it as their `series`.
 
     name: unique in the rock mass. kind: "field": its surfaces are level sets of one scalar field in space,
-    which rises from older to younger. dips: of the bedding, a file, a DipFile or SpaceDips. resolution: edge
-    length of the lattice of the field, in model units, or "auto".
+    which rises from older to younger; "sheets": they have one height at each position, and are interpolated
+    together. Of a field, dips: of the bedding, a file, a DipFile or SpaceDips. resolution: edge
+    length of its lattice, in model units, or "auto".
     """
 
     name: str
@@ -66,10 +67,8 @@ def check_series(rock) -> None:
     for series in named_once(rock.series, "series"):
         refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
         check_values(series, SERIES, ("kind", "resolution"), refuse)
-        if series.kind != FIELD:
-            what = f"series of kind '{series.kind}' cannot be built yet"
-            raise refuse(what, "kind", f'use kind = "{FIELD}"')
-        _check_dips(series, refuse)
+        if series.kind == FIELD:
+            _check_dips(series, refuse)
         own = members(rock, series)
         if not own:
             advice = f'write series = "{series.name}" in its surfaces'
@@ -79,7 +78,23 @@ def check_series(rock) -> None:
                 between = rock.surfaces[one + 1]
                 what = f"its surfaces are not consecutive: '{between.name}' is between them"
                 raise refuse(what, "name", "give this surface the same series, or use two series")
-        _check_field(rock, series, refuse)
+        if series.kind == FIELD:
+            _check_field(rock, series, refuse)
+        else:
+            _check_sheets(rock, series, own, refuse)
+
+
+def _check_sheets(rock, series: Series, own: list[int], refuse: Refuse) -> None:
+    if series.dips is not None:
+        raise refuse("sheets have no dips of their series", "dips", "give them to its rock mass or surfaces")
+    if series.resolution != AUTO:
+        raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
+    for number in own:
+        surface = rock.surfaces[number]
+        if not surface.interpolated or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
+            how = f"has method '{surface.method}'" if surface.interpolated else "is a mesh"
+            what = f"its surfaces are kriged together, and '{surface.name}' {how}"
+            raise refuse(what, "name", f"methods of sheets are {' and '.join(SHEET_METHODS)}")
 
 
 def _check_dips(series: Series, refuse: Refuse) -> None:

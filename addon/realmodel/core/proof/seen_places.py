@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.triangles import median_edge
 from ..base.work import Work
 from ..cells.model_data import ModelData
 from ..readers.tables.observations import Observations
@@ -91,7 +90,7 @@ def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray)
         return places[:, 2]
     above = places[:, 2] - form.youngest_heights(work, places)
     return np.where(
-        (above > 0) & (above < _OFF_GROUND * median_edge(*entry.region.arrays)),
+        (above > 0) & (above < _OFF_GROUND * entry.median_edge()),
         places[:, 2] - above,
         places[:, 2],
     )

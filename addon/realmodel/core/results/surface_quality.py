@@ -14,6 +14,7 @@ from ..heights.cross_validation import CrossValidation, distinct_points, validat
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
 from ..settings.variogram import Variogram
+from ..surfaces.observed.sheet_series import companions_of
 
 DEFAULT_FOLDS = 10
 
@@ -87,11 +88,21 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
         triangles if on_mesh else None,
         dips=surface.known_dips(),
         bounds=surface.bounds,
+        companions=_companions(model, number),
     )
     try:
         return validate(method, task, DEFAULT_FOLDS), ""
     except InputRefused as error:
         return None, str(error)
+
+
+def _companions(model, number: int):
+    """The sheets with which a surface was interpolated, by its number in the model."""
+    for rock in model.project.rocks:
+        if number < len(rock.surfaces):
+            return companions_of(rock, number)
+        number -= len(rock.surfaces)
+    return None
 
 
 def _deviation(vertices, triangles, variance) -> tuple[float | None, float | None]:

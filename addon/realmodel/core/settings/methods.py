@@ -33,8 +33,9 @@ class Method:
     the nodes. leaves_one_out: it estimates each point from the others in one run. is_local: its heights at a
     node do not depend on the other nodes, and it is cheap. is_triangulated: it works on the triangulation of
     the points. spreads_thickness: `parallel` may use it. is_constrained: it uses dips and bounds. has_shape:
-    one or two points are too few for its surface. tamed_by: the advice where its heights go far beyond those
-    of the points.
+    one or two points are too few for its surface. has_contacts: its points are contacts, to which the surface
+    is tied, and not the surface itself. tamed_by: the advice where its heights go far beyond those of the
+    points.
     """
 
     label: str
@@ -49,6 +50,7 @@ class Method:
     spreads_thickness: bool = False
     is_constrained: bool = False
     has_shape: bool = True
+    has_contacts: bool = True
     tamed_by: str | None = None
 
     def needs_points(self, settings: Mapping) -> bool:
@@ -315,6 +317,7 @@ METHODS: dict[str, Method] = {
         "regular_grid.bilinear",
         _EXTRAPOLATE,
         is_local=True,
+        has_contacts=False,
     ),
     "plane": Method(
         "Plane",

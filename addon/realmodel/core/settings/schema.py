@@ -231,6 +231,14 @@ SURFACE = {
         more="For interpolated surfaces; points that contradict it are listed",
         switch=("Minimum Thickness", "Keep the surface at least this far above the next older one"),
     ),
+    "tie": Setting(
+        True,
+        kind="truth",
+        label="Tie",
+        tip="The surface passes through all its points, also within the triangles of the planar mesh",
+        more="Default `true`, for interpolated surfaces; see [ties](methods.md#ties). `false` leaves the "
+        "elevations as the method interpolates them",
+    ),
     "correlation": Setting(
         label="Correlation",
         tip="Correlation of the errors of its elevations with those of the next older surface, in ensembles",

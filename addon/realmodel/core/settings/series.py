@@ -15,6 +15,8 @@ KINDS = {
     SHEETS: ("Sheets", "Sheets with one elevation at each position, interpolated together"),
 }
 
+SHEET_METHODS = ("kriging", "universal_kriging")  # by which sheets are interpolated together
+
 
 def resolution_fault(resolution) -> str | None:
     """The error in a resolution, "auto" included, or None."""

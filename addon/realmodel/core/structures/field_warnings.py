@@ -52,10 +52,8 @@ def warn_of_field(
         text = f"its polarity does not hold at {len(dips)} dips, which contradict other data"
         _add(entry, series, text, "dips", dips)
     if len(off):
-        text = (
-            f"{len(off)} places of observations are on the wrong side: other data contradict them, or a finer "
-            "resolution is needed"
-        )
+        count = "a place is" if len(off) == 1 else f"{len(off)} places are"
+        text = f"{count} on the wrong side: other data contradict it, or a finer resolution is needed"
         _add(entry, series, text, "observations", [data.bound_text(n) for n in off.tolist()])
 
 

@@ -78,9 +78,10 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
 def spacing(entry: RockInput) -> float:
     """The smallest edge length of the lattices of the fields of a rock mass that is read; infinite where it
     has none."""
-    top = _top(entry) if entry.rock.series else 0.0
+    given = [series for series in entry.rock.series if series.kind == FIELD]
+    top = _top(entry) if given else 0.0
     found = [math.inf]
-    for series in entry.rock.series:
+    for series in given:
         places = SeriesData.of(entry, series, members(entry.rock, series)).positions()
         found.append(_lattice(entry, series, places, top).spacing[0])
     return min(found)

@@ -62,7 +62,10 @@ _Conditions = dict[str, Callable[[np.ndarray], np.ndarray]]
 
 
 def edge_length(entry: RockInput) -> float:
-    """The median edge of the planar mesh of a RockInput; where it has none, of its surfaces, in plan."""
+    """The median edge of the planar mesh of a RockInput, but for what contacts make it finer; where it has
+    none, of its surfaces, in plan."""
+    if entry.edge is not None:
+        return entry.edge
     meshes = [entry.region] if entry.region is not None and entry.rock.interpolates else []
     meshes = meshes or [shape for shape in entry.surfaces if shape is not None]
     lengths = []
@@ -150,6 +153,8 @@ class _Around:
             return fault, []
         chosen = np.zeros(len(border.edges), bool)
         chosen[samples.edge] = True
+        # also those beside them: where they cross the end of the rock near a vertex no place may show it
+        chosen |= np.isin(border.edges, border.edges[chosen]).any(axis=1)
         try:
             vertices, triangles = continued(*fault.triangulation(), border.some(chosen), self.width)
         except InputRefused:  # it is not known where to: it ends where it ends

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.sheet import Sheet
-from ..base.triangles import median_edge
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Observations
 from ..surfaces.field_data import apply_observations
@@ -43,8 +42,7 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
 
         places, parted = observations.places, None
         if entry.region is not None:
-            is_meshed = entry.rock.interpolates
-            reach = _NEAR * (median_edge(*entry.planar_mesh().arrays) if is_meshed else spacing(entry))
+            reach = _NEAR * (entry.median_edge() if entry.rock.interpolates else spacing(entry))
             parted = _parted(observations, reach, sides)
             places = _off_structures(observations, reach, sides)
         of_faults, within = sides(places)

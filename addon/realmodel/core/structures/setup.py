@@ -16,8 +16,9 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
+from ..settings.series import FIELD
 from ..surfaces.field_data import left_out_warnings
-from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
+from ..surfaces.prepare import interpolate_rock, mesh_again, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
@@ -71,7 +72,7 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
-    has_fields = any(rock.series for rock in project.rocks)
+    has_fields = any(series.kind == FIELD for rock in project.rocks for series in rock.series)
     middle = _SHEETS if has_fields else 1.0
     with work.part(0.0, middle):
         if project.faults or project.bodies:
@@ -120,8 +121,7 @@ def make_structures(
         structures = divide(work, structures, box)
     is_closed = False
     for _ in range(_ROUNDS):
-        add_compartments(structures, inputs)
-        apply_in_compartments(work, structures, inputs)
+        _divide_inputs(work, structures, inputs, keep)
         tops = [tops_of_faults(structures, number, entry.rock) for number, entry in enumerate(inputs)]
         share = sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
         middle = _DIVIDED + (1.0 - _DIVIDED) * share
@@ -132,8 +132,7 @@ def make_structures(
             closed = _without_gaps(work, structures, inputs, box, has_sheets=True)
             if closed is not structures:
                 structures = divide(work, closed, box)
-                add_compartments(structures, inputs)
-                apply_in_compartments(work, structures, inputs)
+                _divide_inputs(work, structures, inputs, keep)
                 with work.part(_DIVIDED, middle):
                     _make_all(work, inputs, tops, stage, keep)
         with work.part(middle, 1.0):
@@ -164,6 +163,14 @@ def make_structures(
                 if structure.is_made(number):  # not younger than the stage
                     entry.surfaces[number] = joined(structure.distinct(number))
     return structures
+
+
+def _divide_inputs(work: Work, structures: Structures, inputs: list[RockInput], keep: StoreArray) -> None:
+    """Gives each rock mass its compartments, and its surfaces what observations say there."""
+    add_compartments(structures, inputs)
+    apply_in_compartments(work, structures, inputs)
+    for entry in inputs:
+        mesh_again(work, entry, keep)
 
 
 def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage, keep) -> None:

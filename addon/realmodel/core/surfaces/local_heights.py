@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.mapped_arrays import MappedArrays, in_memory
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module, refused_as
 from ..heights import from_neighbours
 from ..heights.extrapolation import hull_border, hull_corners, outside_hull, replace_extrapolated
@@ -19,6 +20,7 @@ from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height
 from ..heights.run import elsewhere, few_points, refused_points, runs_away
+from ..heights.ties import Terms, correction, missed_warnings, tie_data, tied_heights
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
 from .rock_input import named_surfaces
@@ -41,6 +43,7 @@ class LocalHeights:
     height. hull: the corners of the points' hull, where extrapolation differs from the method. border: for
     triangulations, the points on the border of the hull, and the box around all. over: the number of the
     surface that this one is parallel to, or a height. least: the minimum thickness above the older surface.
+    terms: the correction with which it honors its points.
     """
 
     method: str
@@ -58,6 +61,7 @@ class LocalHeights:
     border: tuple[np.ndarray, Box] | None = None
     over: int | float | None = None
     least: float | None = None
+    terms: Terms | None = None
 
     @property
     def takes_points(self) -> bool:
@@ -82,7 +86,7 @@ class LocalHeights:
             else:
                 below = np.full(len(nodes), self.over)
             return below + self.settings["thickness"]
-        return self._extrapolated(task, self._result(task)).z
+        return self._tied(task, self._extrapolated(task, self._result(task)).z)
 
     def certain_heights(
         self, work: Work, points: np.ndarray, nodes: np.ndarray, window: Box
@@ -95,7 +99,25 @@ class LocalHeights:
         of_part = getattr(native_module(), f"{self.method}_of_part")
         task = self._task(work, points, nodes)
         z, certain = task.run(of_part, points, nodes, (border, box, window, is_whole))
-        return self._extrapolated(task, Result(z)).z, certain
+        return self._tied(task, self._extrapolated(task, Result(z)).z), certain
+
+    def _tied(self, task: Task, z: np.ndarray) -> np.ndarray:
+        return z if self.terms is None else tied_heights(task.work, z, task.nodes, self.terms)
+
+    def tied(
+        self, work: Work, given: np.ndarray, points: np.ndarray, mesh: Sheet
+    ) -> tuple[LocalHeights, list[str]]:
+        """The same, tied to its points, `given`, on a planar mesh, and warnings. points: as of heights."""
+        data = tie_data(given, None)
+        around = native_module().nodes_around(*mesh.arrays, data.places)
+        nodes = np.ascontiguousarray(mesh.vertices[around])
+        z = np.full(len(mesh.vertices), np.nan)
+        if self.border is None:
+            z[around] = self.heights(work, points, nodes)
+        else:
+            z[around], _ = self.certain_heights(work, points, nodes, self.border[1])
+        terms, after = correction(work, *mesh.arrays, z, data)
+        return replace(self, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
         outside = result.outside
@@ -190,13 +212,15 @@ def is_local(surface: Surface) -> bool:
     """Whether the heights of a surface at some nodes do not depend on others."""
     if not surface.interpolated:
         return False
+    if surface.series is not None:
+        return False  # the other sheets count, too
     method, settings = surface.method_options()
     if METHODS[method].is_constrained and (surface.known_dips() is not None or surface.has_bounds):
         return False  # how dips and bounds count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if method == "parallel":
-        return settings["thickness"] is not None
+        return settings["thickness"] is not None and not (surface.ties and len(surface.point_array()))
     if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False
     if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left

@@ -9,10 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
+from ..base.sheet import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
+from ..heights.ties import tie_data
 from ..project.region_rings import numbered_ring, region_rings
 from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
 from ..settings.meshers import DEFAULT_MESHER
+from .rock_input import RockInput
+
+_SAME = 1e-9  # of the extent: nearer places are one
+_LOOKED_AT = 8  # places around one
+_BESIDE = 0.25  # of the distance to another datum of the same surface: the vertex of another one serves, too
 
 
 @dataclass(frozen=True)
@@ -173,3 +180,32 @@ def refused_region(error) -> InputRefused:
     if place is not None and "(" not in what:
         what = f"{what} at {place_text(place)}"
     return InputRefused(what, item="region", place=place)
+
+
+def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray) -> np.ndarray:
+    """(K, 2) places that should become vertices of a planar mesh beside known ones (N, 2): of contacts that
+    it cannot honor beside others of their surface, but with large corrections, and of bounds. Those nearest
+    to other data of their surface come first; of several surfaces' places close together only one is taken,
+    for the others may get by with its vertex."""
+    nearest = native_module().nearest_points
+    places, rooms = [known], [np.zeros(len(known))]
+    for surface in entry.rock.surfaces:
+        if not surface.ties:
+            continue
+        work.check()
+        data = tie_data(surface.point_array(), surface.bounds)
+        asked = (data.places, data.lower, data.upper)
+        numbers, away = native_module().crowded_data(*mesh.arrays, asked)
+        places.append(data.places[numbers])
+        rooms.append(away)
+    every, room = np.concatenate(places), np.concatenate(rooms)
+    if len(every) == len(known):
+        return np.empty((0, 2))
+    least = _SAME * float(np.ptp(mesh.vertices, axis=0).max())
+    beside, away = nearest(every, every, _LOOKED_AT)
+    is_near = away <= np.maximum(least, _BESIDE * room)[:, None]
+    taken = np.arange(len(every)) < len(known)
+    for number in np.argsort(room[len(known) :], kind="stable") + len(known):
+        others = beside[number][is_near[number]]
+        taken[number] = not taken[others[others >= 0]].any()
+    return every[len(known) :][taken[len(known) :]]

@@ -15,6 +15,7 @@ from ..base.errors import InputRefused, naming, number_list
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.text import no_step
+from ..base.triangles import median_edge
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock, surface_item
@@ -24,7 +25,8 @@ from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
-from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
+from .observed.sheet_series import with_least_thickness
+from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order, settle_method
@@ -39,6 +41,8 @@ _EDGE_LENGTH_KINDS = (
     "density",
     "too_large",
 )  # kinds of errors of native meshing that the edge length causes
+
+_REFINEMENTS = 8  # a vertex more moves those around it, so that other contacts may be crowded
 
 
 def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
@@ -67,7 +71,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
             for text in each.warnings
         ]
         warnings += of_picks
-        rock = replace(rock, surfaces=[each.surface for each in own])
+        rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:
@@ -161,19 +165,9 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
     if rock.region is None:
         return
     try:
-        if rock.interpolates:
-            options = MeshOptions(
-                rock.edge_length,
-                rock.mesher,
-                rock.triangles,
-                rock.size,
-                rock.constraint_lines(),
-                rock.constraint_points(),
-                _density_points(rock) if rock.edge_length == AUTO else None,
-            )
-            entry.region = Sheet(*mesh_rings(work, rock.rings(), options))
-        else:
-            entry.region = Sheet(*triangulate_rings(rock.rings()))
+        entry.region = (
+            _planar_mesh(work, entry) if rock.interpolates else Sheet(*triangulate_rings(rock.rings()))
+        )
     except InputRefused as error:
         kind = getattr(error.__cause__, "kind", "")
         file, line = (
@@ -182,6 +176,50 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         if kind.startswith("constraint") and rock.source is not None:
             file, line = rock.place_of("constraints")
         raise error.within(rock.item, file=file, line=line) from error
+
+
+def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> None:
+    """Meshes the region of a rock mass anew where observations gave its surfaces other contacts since, which
+    its mesh cannot tell apart. keep: as of mesh_inputs."""
+    if entry.region is None or entry.rock.observed is None or not entry.rock.interpolates:
+        return
+    if len(crowded_places(work, entry, entry.region, np.empty((0, 2)))):
+        mesh_rock(work, entry)
+        entry.region = Sheet(*map(keep, entry.region))
+
+
+def _planar_mesh(work: Work, entry: RockInput) -> Sheet:
+    """The planar mesh of a rock mass; contacts that it could not tell apart are vertices."""
+    rock, points = entry.rock, entry.rock.constraint_points()
+    options = MeshOptions(
+        rock.edge_length,
+        rock.mesher,
+        rock.triangles,
+        rock.size,
+        rock.constraint_lines(),
+        points,
+        _density_points(rock) if rock.edge_length == AUTO else None,
+    )
+    mesh = Sheet(*mesh_rings(work, rock.rings(), options))
+    known = np.empty((0, 2)) if points is None else points
+    given, outside, entry.edge = len(known), np.empty((0, 2)), None
+    for _ in range(_REFINEMENTS):
+        crowded = crowded_places(work, entry, mesh, np.concatenate([known, outside]))
+        if not len(crowded):
+            break
+        entry.edge = entry.edge or median_edge(*mesh)
+        known = np.concatenate([known, crowded])
+        while len(known) > given:
+            try:
+                mesh = Sheet(*mesh_rings(work, rock.rings(), replace(options, constraint_points=known)))
+                break
+            except InputRefused as error:
+                at = getattr(error.__cause__, "items", [-1])[0]
+                if getattr(error.__cause__, "kind", "") != "constraint_outside" or at < given:
+                    raise
+                outside = np.vstack([outside, known[at]])  # on the outline, but for rounding
+                known = np.delete(known, at, axis=0)
+    return mesh
 
 
 def _density_points(rock: Rock) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
+from ..base.triangles import median_edge
 from ..heights import Interpolation
 from ..heights.draws import Draw
 from ..project.project import Rock
@@ -33,6 +34,7 @@ class RockInput:
     all its sheets. overlapping: by number, the error of a surface whose triangles overlap in a sheet
     because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
+    edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     fields: of series whose surfaces are level sets; such a surface is a level set, in each compartment of its
     field.
     """
@@ -49,6 +51,7 @@ class RockInput:
     draws: list[Draw] | None = field(default=None, metadata=NOT_STORED)
     left_out: list[LeftOut] = field(default_factory=list)
     used: np.ndarray | None = None
+    edge: float | None = None
     fields: list[SeriesField] = field(default_factory=list)
 
     def surface(self, number: int) -> Sheet:
@@ -61,6 +64,10 @@ class RockInput:
         """The triangulation of the region of a rock mass that has one and is meshed."""
         assert self.region is not None
         return self.region
+
+    def median_edge(self) -> float:
+        """The median length of the edges of the planar mesh, but for what contacts make it finer."""
+        return median_edge(*self.planar_mesh()) if self.edge is None else self.edge
 
     def interpolation(self, number: int) -> Interpolation:
         """The result for a surface that is interpolated."""
@@ -116,6 +123,7 @@ class RockInput:
             self.overlapping,
             left_out=self.left_out,
             used=self.used,
+            edge=self.edge,
             fields=[kept for each in self.fields if (kept := each.stage(m)) is not None],
         )
 

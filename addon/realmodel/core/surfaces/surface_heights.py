@@ -18,8 +18,10 @@ from ..heights.mis_ties import without_mis_ties
 from ..heights.on_mesh import within_bounds
 from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
-from ..project.project import Rock, surface_item
+from ..heights.ties import corrected, tie_data
+from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
+from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 
@@ -97,8 +99,11 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
+            companions = companions_of(rock, number)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            result = give(method, replace(task, dips=surface.known_dips(), bounds=surface.bounds))
+            task = replace(task, dips=surface.known_dips(), companions=companions)
+            task = replace(task, bounds=bounds_beside(surface, companions))
+            result = _tied(task, give(method, task), surface)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
@@ -113,6 +118,18 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     entry.interpolations[number] = result
     entry.attributes[number] = attributes
     entry.warnings += warnings
+
+
+def _tied(task: Task, result: Interpolation, surface: Surface) -> Interpolation:
+    """The heights with which a surface honors its points and bounds on the mesh of its region."""
+    if not surface.ties or task.triangles is None or not len(task.triangles):
+        return result
+    data = tie_data(task.points, task.bounds)
+    z, warnings = corrected(task.work, task.nodes, task.triangles, result.z, data)
+    if z is result.z:
+        return replace(result, warnings=(*result.warnings, *warnings))
+    z = within_bounds(task, z, result.z)
+    return replace(result, z=z, warnings=(*result.warnings, *warnings))
 
 
 def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: dict) -> Interpolation:
@@ -141,7 +158,8 @@ def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: d
             f"its {len(dips)} dips have no effect where its points are few: there it follows the surface "
             "beyond a fault"
         )
-    return replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
+    result = replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
+    return _tied(replace(task, bounds=surface.bounds), result, surface)
 
 
 def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> list[BuildWarning]:

@@ -16,6 +16,9 @@ from ..project.project import Rock
 from ..settings.rules import RULES
 from .rock_input import RockInput
 
+_TIED = 1e-9  # of the range of its points: how near to them a surface is
+_ROUNDING = 1e-15  # of a height
+
 
 def heights_at(work: Work, shape: Sheet, plan: np.ndarray) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
@@ -130,9 +133,11 @@ class WrongPoints:
 
     @classmethod
     def of(cls, points: np.ndarray, beyond: np.ndarray, others, numbers: np.ndarray) -> WrongPoints | None:
-        """None where all are right. beyond: how far each of the points (N, 3) is; others: beyond which
-        surface, one or (N,); numbers: of the points."""
-        wrong = np.flatnonzero(beyond > 0)
+        """None where all are right, up to the rounding of surfaces that meet at contacts of both. beyond: how
+        far each of the points (N, 3) is; others: beyond which surface, one or (N,); numbers: theirs."""
+        heights = points[:, 2]
+        rounding = _TIED * np.ptp(heights) + _ROUNDING * np.abs(heights).max() if len(points) else 0.0
+        wrong = np.flatnonzero(beyond > rounding)
         if not len(wrong):
             return None
         surfaces = np.unique(np.broadcast_to(others, beyond.shape)[wrong])

@@ -10,6 +10,7 @@
 #include "realmodel/interpolation/dips.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/neighborhood.hpp"
+#include "realmodel/interpolation/sheets.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel::interpolation {
@@ -18,6 +19,7 @@ struct KrigingOptions {
     Neighborhood neighborhood;  ///< all points are factored once
     Drift drift = Drift::kConstant;
     Dips dips{};
+    Sheets sheets{};  ///< with several, repeated points count once in each
 };
 
 struct Kriged {
@@ -35,6 +37,7 @@ struct Kriged {
 /// So is a term of the drift that the points do not distinguish from the terms before it: points in
 /// one line have no slope across it, two points have a line, one point a constant.
 /// With octants the points are chosen among the nearest 64 times as many.
+/// With sheets it is cokriging: all points and dips count for the one that is asked for.
 /// @param points  x, y, z; repeated points count once
 /// @param nodes   x, y
 /// @return        the same bytes for any number of threads

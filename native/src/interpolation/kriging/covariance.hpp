@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "interpolation/data_points.hpp"
 #include "interpolation/kriging/decay.hpp"
+#include "realmodel/interpolation/sheets.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel::interpolation {
@@ -53,28 +55,46 @@ inline Number covariance_of(const CovariancePart& part, Number dx, Number dy, co
 /// data is positive definite (Chiles and Delfiner 2012, section 3.4).
 class Covariance {
 public:
-    explicit Covariance(const Variogram& variogram);
+    /// @param sheets  with several the covariances of heights in their units
+    explicit Covariance(const Variogram& variogram, const Sheets& sheets = {});
 
     /// Between two different positions. (At one position it is 1, whatever the nugget.)
-    double operator()(const Position& a, const Position& b) const {
-        const auto root = [](double v) { return std::sqrt(v); };
-        const double dx = a[0] - b[0], dy = a[1] - b[1];
-        double sum = covariance_of(parts_[0], dx, dy, root);
-        for (std::size_t part = 1; part < parts_.size(); ++part)
-            sum += covariance_of(parts_[part], dx, dy, root);
-        return sum;
+    double operator()(const Position& a, const Position& b) const { return sum_of(parts_, a, b); }
+
+    /// Between different positions, or different sheets.
+    double operator()(const Position& a, std::int32_t on_a, const Position& b,
+                      std::int32_t on_b) const {
+        if (units_.empty()) return (*this)(a, b);
+        const double shared = (*this)(a, b);
+        const double under_both = variances_[std::min(on_a, on_b)];
+        const double more = under_both > 0 ? under_both * sum_of(thickness_, a, b) : 0;
+        return (shared + more) / (units_[on_a] * units_[on_b]);
     }
+
+    /// Of the heights of each sheet, in units of the root of the sill; none where there is one.
+    const std::vector<double>& units() const { return units_; }
 
     /// Scales of the differences of dips, along x and along y: each gets the variance 1. They are
     /// differences of the surface without its nugget, which is about points; 0 where nothing else
     /// is left.
-    std::array<double, 2> scales_over(double baseline) const;
+    std::array<double, 2> scales_over(double baseline, std::int32_t sheet = 0) const;
 
     /// At least one.
     const std::vector<CovariancePart>& parts() const { return parts_; }
 
 private:
-    std::vector<CovariancePart> parts_;
+    static double sum_of(const std::vector<CovariancePart>& parts, const Position& a,
+                         const Position& b) {
+        const auto root = [](double v) { return std::sqrt(v); };
+        const double dx = a[0] - b[0], dy = a[1] - b[1];
+        double sum = covariance_of(parts[0], dx, dy, root);
+        for (std::size_t part = 1; part < parts.size(); ++part)
+            sum += covariance_of(parts[part], dx, dy, root);
+        return sum;
+    }
+
+    std::vector<CovariancePart> parts_, thickness_;
+    std::vector<double> variances_, units_;
 };
 
 }  // namespace realmodel::interpolation

@@ -12,6 +12,11 @@ struct EstimateOf {
 };
 using Estimate = EstimateOf<double>;
 
+/// What was estimated less a base and in units, in heights.
+inline Estimate in_heights(double base, double unit, const Estimate& estimate) {
+    return {base + unit * estimate.value, unit * unit * estimate.variance};
+}
+
 /// A point is left out of a system where the others determine its value with a variance below this
 /// share of the sill: the system stays well-conditioned. Without a nugget the Gaussian model soon
 /// comes here; the others only where points nearly coincide.

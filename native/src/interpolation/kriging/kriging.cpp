@@ -9,6 +9,7 @@
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/kriging/unique_neighborhood.hpp"
 #include "interpolation/node_loop.hpp"
+#include "realmodel/base/errors.hpp"
 #include "spatial/hilbert_order.hpp"
 
 namespace realmodel::interpolation {
@@ -41,12 +42,13 @@ void krige_one_by_one(const KrigingTask& task) {
         [&](Scratch& own, std::size_t i) {
             const Position node = task.node(i);
             if (!own.search.find(node, own.near, task.left_out(i))) ++alone;
+            const std::int32_t sheet = task.sheet(i), there = task.point_there(own.near, sheet);
             if (own.near.empty()) {
                 task.set(i, unknown(task.data.points().values[i]));
-            } else if (own.near[0].squared_distance == 0) {
-                task.set(i, {task.data.points().values[own.near[0].point], 0});
+            } else if (there != NeighborSearch::kNobody) {
+                task.set(i, {task.data.points().values[there], 0});
             } else {
-                task.set(i, own.kriging.at(node, own.near, task.execution.progress));
+                task.set(i, own.kriging.at(node, own.near, sheet, task.execution.progress));
             }
         });
     task.out.alone = alone;
@@ -104,7 +106,7 @@ void krige_in_lanes(const KrigingTask& task) {
                     [&](std::uint32_t i) {
                         own.search.find(positions[i], own.near, task.left_out(first + i));
                         task.set(first + i,
-                                 own.single.at(positions[i], own.near, task.execution.progress));
+                                 own.single.at(positions[i], own.near, 0, task.execution.progress));
                     });
             });
     }
@@ -135,8 +137,13 @@ Kriged krige_nodes(const DataPoints& points, std::span<const Position> nodes, bo
                    const Variogram& variogram, const KrigingOptions& options,
                    const Execution& execution) {
     const spatial::NearestPoints tree(points.local);
-    const Covariance covariance(variogram);
-    const LinearData data(points, options.dips, covariance.scales_over(options.dips.baseline));
+    const Covariance covariance(variogram, options.sheets);
+    std::vector<std::array<double, 2>> scales;
+    for (std::size_t sheet = 0; sheet == 0 || sheet < covariance.units().size(); ++sheet) {
+        scales.push_back(
+            covariance.scales_over(options.dips.baseline, static_cast<std::int32_t>(sheet)));
+    }
+    const LinearData data(points, options.dips, scales, covariance.units(), options.sheets.of_dips);
     Kriged out;
     const KrigingTask task{data,       tree,           covariance, options, nodes,
                            leaves_out, variogram.sill, execution,  out};
@@ -147,7 +154,8 @@ Kriged krige_nodes(const DataPoints& points, std::span<const Position> nodes, bo
     const bool all = neighbors >= data.point_count() && data.uses_all_dips();
     if (plain && (neighbors == 0 || all)) {
         krige_from_all(task);
-    } else if (plain && neighbors + 2 * data.dips_at_node() <= LaneKriging::kMostNeighbors &&
+    } else if (plain && !data.has_sheets() &&
+               neighbors + 2 * data.dips_at_node() <= LaneKriging::kMostNeighbors &&
                data.point_count() > 1) {
         krige_in_lanes(task);
     } else {
@@ -161,6 +169,26 @@ void check_options(const Variogram& variogram, const KrigingOptions& options) {
     check_neighborhood(options.neighborhood);
 }
 
+/// @throws InputError kind "option" where sheets do not fit the points and dips
+void check_sheets(const Sheets& sheets, std::size_t points, std::size_t dips) {
+    if (sheets.variances.empty()) return;
+    check_variogram(sheets.thickness);
+    const auto count = static_cast<std::int32_t>(sheets.variances.size());
+    const auto is_sheet = [&](std::int32_t sheet) { return sheet >= 0 && sheet < count; };
+    if (sheets.of_points.size() != points || sheets.of_dips.size() != dips)
+        throw InputError("option", "each point and each dip must be on one of the sheets");
+    if (!is_sheet(sheets.asked) ||
+        !std::all_of(sheets.of_points.begin(), sheets.of_points.end(), is_sheet) ||
+        !std::all_of(sheets.of_dips.begin(), sheets.of_dips.end(), is_sheet))
+        throw InputError("option", "there is no such sheet");
+    double before = 0;
+    for (const double variance : sheets.variances) {
+        if (!(variance >= before) || !usable(variance))
+            throw InputError("option", "variances of sheets must be finite, and ascend from 0");
+        before = variance;
+    }
+}
+
 }  // namespace
 
 Kriged krige(std::span<const std::array<double, 3>> points,
@@ -168,7 +196,8 @@ Kriged krige(std::span<const std::array<double, 3>> points,
              const KrigingOptions& options, const Execution& execution) {
     check_options(variogram, options);
     require_finite_nodes(nodes);
-    const DataPoints data = prepare_points(points);
+    check_sheets(options.sheets, points.size(), options.dips.positions.size());
+    const DataPoints data = prepare_points(points, options.sheets.of_points);
     if (nodes.empty()) return {};
     return krige_nodes(data, nodes, false, variogram, options, execution);
 }
@@ -176,7 +205,8 @@ Kriged krige(std::span<const std::array<double, 3>> points,
 Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
                       const KrigingOptions& options, const Execution& execution) {
     check_options(variogram, options);
-    const DataPoints data = prepare_points(points);
+    check_sheets(options.sheets, points.size(), options.dips.positions.size());
+    const DataPoints data = prepare_points(points, options.sheets.of_points);
     const Kriged found = krige_nodes(data, {}, true, variogram, options, execution);
     return {data.for_given(found.z), data.for_given(found.variance), found.alone};
 }

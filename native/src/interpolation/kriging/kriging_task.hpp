@@ -32,6 +32,17 @@ struct KrigingTask {
     std::int32_t left_out(std::size_t i) const {
         return leaves_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;
     }
+    std::int32_t sheet(std::size_t i) const {
+        return leaves_out ? data.sheet(static_cast<std::int32_t>(i)) : options.sheets.asked;
+    }
+    /// The point of a sheet at a position, if there is one among the nearest points; else kNobody.
+    std::int32_t point_there(std::span<const spatial::Neighbor> nearest, std::int32_t sheet) const {
+        for (const spatial::Neighbor& near : nearest) {
+            if (near.squared_distance > 0 || !data.is_point(near.point)) break;
+            if (data.sheet(near.point) == sheet) return near.point;
+        }
+        return NeighborSearch::kNobody;
+    }
     void set(std::size_t node, const Estimate& estimate) const {
         out.z[node] = estimate.value;
         out.variance[node] = estimate.variance * sill;

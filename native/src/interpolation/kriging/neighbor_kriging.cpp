@@ -17,7 +17,8 @@ Estimate universal_kriging(double base, double uu, double ut, const DriftBasis& 
     return {base + ut + open.dot(qt), variance > 0 ? variance : 0};
 }
 
-void NeighborKriging::assemble(const Position& node, std::span<const spatial::Neighbor> neighbors,
+void NeighborKriging::assemble(const Position& node, std::int32_t sheet,
+                               std::span<const spatial::Neighbor> neighbors,
                                const DriftFrame& frame) {
     const Eigen::Index terms = drift_terms(drift_);
     rows_ = count_ + 2 + static_cast<std::size_t>(terms);
@@ -30,7 +31,7 @@ void NeighborKriging::assemble(const Position& node, std::span<const spatial::Ne
         to[k] = 1;
         for (std::size_t i = k + 1; i < count_; ++i)
             to[i] = data_.between(neighbors[i].point, datum, covariance_);
-        to[count_] = data_.with_height(node, datum, covariance_);
+        to[count_] = data_.with_height(node, datum, covariance_, sheet);
         to[count_ + 1] = data_.value(datum, base);
         const auto row = static_cast<Eigen::Index>(k);
         plain_.row(row) = data_.terms(datum, frame);
@@ -64,17 +65,17 @@ bool NeighborKriging::eliminate(Progress* progress) {
 }
 
 Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neighbor> neighbors,
-                             Progress* progress) {
+                             std::int32_t sheet, Progress* progress) {
     assert(!neighbors.empty());
     count_ = neighbors.size();
     positions_.clear();
     for (const spatial::Neighbor& neighbor : neighbors)
         positions_.push_back(data_.position(neighbor.point));
     const DriftFrame frame(positions_, drift_);
-    assemble(node, neighbors, frame);
+    assemble(node, sheet, neighbors, frame);
     if (!eliminate(progress)) return {};
     const double base = data_.points().values[neighbors[0].point];
-    if (drift_ == Drift::kConstant) {
+    if (drift_ == Drift::kConstant && !data_.has_sheets()) {
         double uu = 0, us = 0, ut = 0, ss = 0, st = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             const double* const of = column(k) + count_;
@@ -94,8 +95,12 @@ Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neig
     t_ = matrix.row(count + 1).transpose();
     whitened_ = matrix.bottomRows(rows - count - 2).transpose();
     basis_.make(plain_, whitened_);
-    return universal_kriging(base, u_.squaredNorm(), u_.dot(t_), basis_, frame.terms(node),
-                             basis_.project(u_), basis_.project(t_));
+    const auto estimate = [&](double from) {
+        return universal_kriging(from, u_.squaredNorm(), u_.dot(t_), basis_,
+                                 data_.terms(node, sheet, frame), basis_.project(u_),
+                                 basis_.project(t_));
+    };
+    return data_.has_sheets() ? in_heights(base, data_.unit(sheet), estimate(0)) : estimate(base);
 }
 
 }  // namespace realmodel::interpolation

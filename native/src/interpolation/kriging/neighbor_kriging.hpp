@@ -28,15 +28,17 @@ public:
         : data_(data), covariance_(covariance), drift_(drift) {}
 
     /// @param node       in local coordinates
-    /// @param neighbors  numbers of data; the nearest point first, and none at the node itself
+    /// @param neighbors  numbers of data; the nearest point first, and none at the node
+    ///                   itself on its sheet
     /// @return           means nothing once the caller has cancelled
+    /// @param sheet      that the node is on
     Estimate at(const Position& node, std::span<const spatial::Neighbor> neighbors,
-                Progress* progress = nullptr);
+                std::int32_t sheet = 0, Progress* progress = nullptr);
 
 private:
     double* column(std::size_t k) { return matrix_.data() + k * rows_; }
-    void assemble(const Position& node, std::span<const spatial::Neighbor> neighbors,
-                  const DriftFrame& frame);
+    void assemble(const Position& node, std::int32_t sheet,
+                  std::span<const spatial::Neighbor> neighbors, const DriftFrame& frame);
     bool eliminate(Progress* progress);
 
     const LinearData& data_;

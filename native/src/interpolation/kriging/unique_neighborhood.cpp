@@ -56,22 +56,30 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
         const Position node = task_.node(i);
         const auto column = static_cast<Eigen::Index>(i - begin);
         for (Eigen::Index p = 0; p < count_; ++p)
-            u(p, column) = task_.data.with_height(node, number(p), task_.covariance);
+            u(p, column) =
+                task_.data.with_height(node, number(p), task_.covariance, task_.sheet(i));
         if (cancelled(task_.execution.progress)) return;
     }
     factor_.solve(u, task_.execution.progress);
     for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
         const Position node = task_.node(i);
-        task_.tree.find(node, 1, scratch.near);
-        const spatial::Neighbor& nearest = scratch.near[0];
-        if (nearest.squared_distance == 0) {
-            task_.set(i, {task_.data.points().values[nearest.point], 0});
+        const std::int32_t sheet = task_.sheet(i);
+        task_.tree.find(node, task_.data.sheet_count(), scratch.near);
+        const std::int32_t there = task_.point_there(scratch.near, sheet);
+        if (there != NeighborSearch::kNobody) {
+            task_.set(i, {task_.data.points().values[there], 0});
             continue;
         }
         Eigen::VectorXd& column = scratch.column;
         column = u.col(static_cast<Eigen::Index>(i - begin));
-        task_.set(i, universal_kriging(base_, column.squaredNorm(), column.dot(t_), basis_,
-                                       frame_.terms(node), basis_.project(column), qt_));
+        const auto estimate = [&](double from) {
+            return universal_kriging(from, column.squaredNorm(), column.dot(t_), basis_,
+                                     task_.data.terms(node, sheet, frame_), basis_.project(column),
+                                     qt_);
+        };
+        task_.set(i, task_.data.has_sheets()
+                         ? in_heights(base_, task_.data.unit(sheet), estimate(0))
+                         : estimate(base_));
     }
 }
 
@@ -88,16 +96,18 @@ void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end, Scratch& 
         const DriftBasis::Coefficients qu = basis_.project(column);
         const double whole = column.squaredNorm(), b = whole - qu.squaredNorm();
         const double value = task_.data.points().values[i];
+        const double unit = task_.data.unit(task_.sheet(i));
         if (b > 1e-9 * whole) {
-            task_.set(i, {value - (column.dot(t_) - qu.dot(qt_)) / b, 1 / b});
+            task_.set(i, {value - unit * (column.dot(t_) - qu.dot(qt_)) / b, unit * unit / b});
             continue;
         }
         // The point alone determines a term of the drift, or others determine the point.
         DataSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
         search.find(task_.node(i), scratch.near, task_.left_out(i));
-        task_.set(i, scratch.near.empty() ? unknown(value)
-                                          : scratch.others.at(task_.node(i), scratch.near,
-                                                              task_.execution.progress));
+        task_.set(i, scratch.near.empty()
+                         ? unknown(value)
+                         : scratch.others.at(task_.node(i), scratch.near, task_.sheet(i),
+                                             task_.execution.progress));
     }
 }
 

@@ -144,7 +144,7 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
             for (std::size_t i = 0; i < neighbors_; ++i)
                 own.near[i].point = others_[k * neighbors_ + i];
             const Estimate found =
-                own.kriging.at(data_.local[point], own.near, execution_.progress);
+                own.kriging.at(data_.local[point], own.near, 0, execution_.progress);
             out.errors[k] = found.value - data_.values[point];
             out.variances[k] = found.variance;
         });

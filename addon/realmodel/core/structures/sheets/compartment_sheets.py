@@ -150,7 +150,18 @@ class CompartmentSheets:
             drawn = _drawn_together(self.surface, together, sheets)
             for compartment, sides in together.members.items():
                 structure.sheets[compartment][number] = drawn[sides]
+        self._tie()
         self.surface.finish(structure.distinct(number))
+
+    def _tie(self) -> None:
+        """Ties the sheets to their data together, where they are not tied one by one."""
+        structure, number = self.entry.divided(), self.number
+        if not (isinstance(self.surface, InterpolatedSurface) and self.surface.ties_at_end):
+            return
+        before = structure.distinct(number)
+        tied = dict(zip(before, self.surface.tied(before), strict=True))
+        for compartment, sheets in enumerate(structure.sheets):
+            sheets[number] = tied[structure.sheet(compartment, number)]
 
     def _is_ready(self, others: Iterable[int] | None = None) -> bool:
         """Whether the surfaces that this one needs, or some others, are finished."""

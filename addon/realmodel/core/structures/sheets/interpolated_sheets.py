@@ -12,7 +12,6 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.sheet import Sheet
-from ...base.triangles import median_edge
 from ...base.work import Work
 from ...heights import Interpolation
 from ...heights.mis_ties import contradictions, mean_heights
@@ -22,6 +21,7 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
@@ -32,9 +32,9 @@ from .families import Family, keys_of
 from .few_points import are_few, of_residuals
 from .lips import Lip, beyond_lips
 from .near_rows import near_rows
-from .points_at_faults import placed_warning, point_sides
-from .sided_dips import at_height, sided_dips
+from .points_at_faults import at_height, placed_warning, point_sides, sided_dips
 from .throws import Sheets
+from .tied_sheets import data_of_sheets, sides_of_sheets, tied_sheets, weights_of_sheets
 from .tips import shared, trace_of, with_equal_ends
 from .within import Within
 
@@ -119,7 +119,14 @@ class InterpolatedSurface:
             return True
         dips = self._own_dips(family)
         shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
+        shown = np.concatenate([shown, *self._beside_points(family)])
         return are_few(self.surface, shown, self.entry.planar_mesh().vertices, self._within(family))
+
+    def _beside_points(self, family: Family) -> list[np.ndarray]:
+        """(P, 3) the points in its compartments of each of the sheets that it is interpolated with."""
+        surfaces = self.entry.rock.surfaces
+        others = [each for each in sheets_beside(self.entry.rock, self.number) if each != self.number]
+        return [self._with_own_points(family, surfaces[each]).point_array() for each in others]
 
     def _own_dips(self, family: Family) -> Dips | None:
         return None if self.dips is None else self.dips.some(self._within(family).has(self.dip_sides))
@@ -134,7 +141,7 @@ class InterpolatedSurface:
         if self.bounds is not None:
             plan = np.ascontiguousarray(self.bounds.places[:, :2])
             bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
-        return replace(surface, dips=dips, bounds=bounds)
+        return replace(surface, dips=dips, rock_dips=None, bounds=bounds)
 
     def _that_constrain(
         self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
@@ -293,7 +300,7 @@ class InterpolatedSurface:
         nodes, triangles = self.entry.planar_mesh()
         shapes = self.entry.divided().faults.shapes
         faults = [family.dying[number] for number in some]
-        ramp = _RAMP * median_edge(nodes, triangles)
+        ramp = _RAMP * self.entry.median_edge()
         equal = with_equal_ends(
             self.work,
             nodes,
@@ -343,9 +350,12 @@ class InterpolatedSurface:
         """The RockInput with the surface from points (P, 3) on the mesh of a region, and warnings."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
-        surfaces[self.number] = replace(surface, points=points)
+        surfaces[self.number] = replace(surface, points=points, tie=surface.tie and not self.ties_at_end)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
+        for other in sheets_beside(entry.rock, self.number):
+            if other != self.number:
+                surfaces[other] = self._with_own_points(family, entry.rock.surfaces[other])
         shapes: list[Sheet | None] = [None] * len(surfaces)
         for other in needed_surfaces(entry.rock, self.number):
             shapes[other] = self._as_seen(family, sides, other)
@@ -407,9 +417,13 @@ class InterpolatedSurface:
         return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
     def _with_own_points(self, family: Family, surface):
-        """Another surface with only its points in the family's compartments."""
+        """Another surface with only its points and dips in the family's compartments."""
         if surface.points is None:
             return surface
+        dips, sides = sided_dips(self.work, surface, self.entry)
+        if dips is not None:
+            dips = dips.some(self._within(family).has(sides))
+        surface = replace(surface, dips=dips, rock_dips=None)
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
         placed = point_sides(self.work, points, self.entry, self.number)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
@@ -448,6 +462,50 @@ class InterpolatedSurface:
 
     def _within(self, family: Family) -> Within:
         return Within(self.work, self.entry.divided(), self.number, family)
+
+    @property
+    def ties_at_end(self) -> bool:
+        """Whether its sheets are tied to their data together, once all are made: where sheets on the two
+        sides of a fault are one beyond its ends. What keeps it off other surfaces comes before its points."""
+        faults, settings = self.entry.divided().faults, self.surface.method_options()[1]
+        is_free = self.surface.minimum_thickness is None and all(
+            settings.get(option) is None for option in BOUNDS
+        )
+        dies_out = faults.active(self.number) & np.array(faults.dies_out, bool)
+        return self.surface.ties and is_free and bool(dies_out.any())
+
+    def tied(self, sheets: list[Sheet]) -> list[Sheet]:
+        """Its different sheets, tied to the data in their compartments; the same objects where they were."""
+        structure, mesh = self.entry.divided(), self.entry.planar_mesh()
+        active = structure.faults.active(self.number)
+        numbers = [sheets.index(structure.sheet(n, self.number)) for n in range(len(structure.sheets))]
+
+        def sheet_of(sides: np.ndarray) -> np.ndarray:
+            found = np.full(len(sides), -1)
+            for row, number in zip(structure.compartments, numbers, strict=True):
+                found[((sides == row) | ~active).all(axis=1)] = number
+            return found
+
+        z = np.array([self._on_nodes(sheet) for sheet in sheets])
+        sides = sides_of_sheets(structure, self.number, sheets)
+        of_points = np.where(self.counts, sheet_of(self.placed.sides), -1)
+        of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
+        data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
+        sided = sides, weights_of_sheets(structure, mesh, z, sides)
+        tied, warnings = tied_sheets(self.work, mesh, z, sided, data)
+        every = list(range(len(structure.compartments)))
+        name, rock = self.surface.name, self.entry.rock.name
+        structure.warnings += [(every, BuildWarning(text, "points", rock, name)) for text in warnings]
+        found = []
+        for sheet, before, after in zip(sheets, z, tied, strict=True):
+            new = (
+                sheet
+                if np.array_equal(before, after, equal_nan=True)
+                else where_known(mesh.vertices, mesh.triangles, after)
+            )
+            self.made[new] = self.made[sheet]
+            found.append(new)
+        return found
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex

@@ -3,6 +3,7 @@
 
 Horizons come with points where faults cut them off, on the fault up to the digits of a file. Their side by
 position is that of the last bit, and a point on the wrong side bends the sheet there by the throw.
+And the sides of dips.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
-from ...base.triangles import median_edge
 from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
+from ...project.project import Surface
+from ...settings.dips import Dips
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import FaultShape, sides_of
 
@@ -57,7 +59,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     active = faults.active(number)
     away = np.full(sides.shape, np.inf)
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
-    reach, away[:, active] = distances(points, median_edge(*entry.planar_mesh().arrays), shapes)
+    reach, away[:, active] = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
     agreement = _Agreement(
         work=work,
@@ -257,3 +259,29 @@ def _spacing(points: np.ndarray) -> float:
     """The mean spacing in plan; of points on a line that along it."""
     along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)
     return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)
+
+
+def at_height(dips: Dips, height) -> np.ndarray:
+    """(D, 3) the places of dips; heights, or one, of those that have none."""
+    own = np.full(len(dips), np.nan) if dips.z is None else dips.z
+    return np.column_stack([dips.positions, np.where(np.isfinite(own), own, height)])
+
+
+def sided_dips(work: Work, surface: Surface, entry: RockInput) -> tuple[Dips | None, np.ndarray]:
+    """The dips of a surface and, for each, its sides (D, F) of the faults. A dip without a height has that of
+    the nearest point of the surface."""
+    dips, faults = surface.known_dips(), entry.divided().faults
+    if dips is None or not len(dips):
+        return None, np.zeros((0, len(faults)), np.int8)
+    height = np.zeros(len(dips))
+    points = surface.point_array()
+    if len(points):
+        nearest = (1, 0, 0.0)
+        positions = np.ascontiguousarray(dips.positions)
+        height = work.native(native_module().idw, _one_at_each_place(points), positions, neighborhood=nearest)
+    return dips, sides_of(work, at_height(dips, height), faults)
+
+
+def _one_at_each_place(points: np.ndarray) -> np.ndarray:
+    _, first = np.unique(points[:, :2], axis=0, return_index=True)
+    return np.ascontiguousarray(points[np.sort(first)])

@@ -358,7 +358,7 @@ class _Drawn:
         settled = True
         for number, (equal, ramp) in enumerate(zip(self.equal, self.ramps, strict=True)):
             if (equal & (self.weights[number] > 0)).any():
-                self.weights[number] = _weight(self.plan, equal, ramp)
+                self.weights[number] = share_of_sides(self.plan, equal, ramp)
                 settled = False
         return settled
 
@@ -554,7 +554,8 @@ def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.
     return found
 
 
-def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
+def share_of_sides(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
+    """(N,) from 0 at nodes beyond the ends of a fault, (N,) bool, to 1 where these are a ramp away."""
     if not beyond.any():
         return np.ones(len(plan))
     if ramp <= 0:

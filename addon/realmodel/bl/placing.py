@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that an operation makes beside another or from it: where they stand, and what is selected."""
+
+import bpy
+
+
+def stand_at(item, other):
+    """An object stands where another one does, exactly: a matrix could not be taken apart so."""
+    item.rotation_mode = other.rotation_mode
+    for name in (
+        *("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"),
+        *("delta_location", "delta_rotation_euler", "delta_rotation_quaternion", "delta_scale"),
+        *("parent", "parent_type", "parent_bone", "parent_vertices", "matrix_parent_inverse"),
+    ):
+        setattr(item, name, getattr(other, name))
+    for constraint in other.constraints:
+        item.constraints.copy(constraint)
+
+
+def hide(item):
+    if item.name in bpy.context.view_layer.objects:
+        item.hide_set(True)
+    item.hide_render = True
+
+
+def select(items):
+    layer = bpy.context.view_layer
+    layer.update()  # or it would not know new objects
+    items = [item for item in items if item.name in layer.objects]
+    for item in layer.objects:
+        item.select_set(False)
+    for item in items:
+        item.select_set(True)
+    if items:
+        layer.objects.active = items[0]

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ties: the heights at the nodes of a mesh are corrected so that the surface passes through its contacts,
+also within triangles, and keeps its bounds there (native/include/realmodel/interpolation/ties.hpp)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.errors import place_text
+from ..base.work import Work, native_module
+from ..readers.tables.observations import Bounds
+from .bounded import consistent
+from .mis_ties import contradictions, without_mis_ties
+
+_TOLERANCE = 1e-10  # of the height range of the data: nearer is right
+_DIGITS = 4  # of the last digits of heights, if that is more
+_MISSED = 10  # tolerances: what is farther off is listed
+
+
+class Terms(NamedTuple):
+    """A correction, as native tied_heights takes it."""
+
+    radii: np.ndarray
+    positions: np.ndarray
+    sided: np.ndarray
+    coefficients: np.ndarray
+
+
+@dataclass(frozen=True)
+class TieData:
+    """What a surface is to honor: places (C, 2), no two equal, and lower and upper (C,), equal at contacts,
+    infinite where there is no bound; contacts: their number, which come first; left_out: the number of
+    points that contradict others at their place. tolerance: of heights."""
+
+    places: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    contacts: int
+    left_out: int
+    tolerance: float
+
+
+def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
+    """What points (P, 3) and bounds ask of a surface. Where points at one place differ by a mis-tie, their
+    mean counts; those that contradict one another do not."""
+    points, _ = without_mis_ties(points)
+    wrong = contradictions(points) if len(points) else np.zeros(0, bool)
+    kept = points[~wrong]
+    _, first = np.unique(kept[:, :2] + 0.0, axis=0, return_index=True)
+    kept = kept[np.sort(first)]
+    places, lower, upper, heights = kept[:, :2], kept[:, 2], kept[:, 2], [points[:, 2]]
+    if bounds is not None and len(bounds):
+        given = consistent(kept, bounds)
+        places = np.concatenate([places, given.positions])
+        lower, upper = np.concatenate([lower, given.lower]), np.concatenate([upper, given.upper])
+        heights.append(bounds.places[:, 2])
+    every = np.concatenate(heights)
+    tolerance = 0.0
+    if len(every):
+        digits = float(np.spacing(np.abs(every).max()))
+        tolerance = max(_TOLERANCE * float(np.ptp(every)), _DIGITS * digits)
+    return TieData(np.ascontiguousarray(places), lower, upper, len(kept), int(wrong.sum()), tolerance)
+
+
+def corrected(
+    work: Work, nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray, data: TieData
+) -> tuple[np.ndarray, list[str]]:
+    """Heights (N,) at the nodes of a planar mesh with which the surface honors the data: those that it has
+    where it does already. And warnings about data that it cannot honor."""
+    terms, after = correction(work, nodes, triangles, z, data)
+    if len(terms.radii):
+        z = tied_heights(work, z, nodes, terms)
+    return z, missed_warnings(data, after)
+
+
+def correction(
+    work: Work, nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray, data: TieData
+) -> tuple[Terms, np.ndarray]:
+    """The correction of heights (N,) at nodes, which are asked for only at the corners of triangles with
+    data; and how far the surface lies below each of the data then, (C,), NaN where it has no triangle."""
+    one = (z, np.empty((1, 0)), np.empty((0, len(nodes))))
+    return correction_of_sheets(work, nodes, triangles, one, data, np.zeros(len(data.places), np.int32))
+
+
+def correction_of_sheets(
+    work: Work, nodes: np.ndarray, triangles: np.ndarray, sheets: tuple, data: TieData, of_sheet: np.ndarray
+) -> tuple[Terms, np.ndarray]:
+    """The correction of several sheets, as native ties takes them. of_sheet: (C,) int32, to which of them
+    each of the data counts."""
+    asked = (data.places, data.lower, data.upper, of_sheet)
+    found = work.native(native_module().ties, nodes, triangles, sheets, asked, data.tolerance)
+    faults = sheets[1].shape[1]
+    count = len(found["positions"])
+    terms = Terms(
+        found["radii"],
+        found["positions"].reshape(-1, 2),
+        found["sided"].reshape(count, faults),
+        found["coefficients"].reshape(len(found["radii"]), count),
+    )
+    return terms, found["after"]
+
+
+def tied_heights(
+    work: Work, z: np.ndarray, nodes: np.ndarray, terms: Terms, sided: np.ndarray | None = None
+) -> np.ndarray:
+    """Heights (N,) of a sheet at nodes, corrected; the same bits for some nodes as for all. sided: (N, F),
+    the sheet's sides of faults times their weights at the nodes."""
+    sided = np.empty((len(nodes), 0)) if sided is None else sided
+    as_given = (terms.radii, terms.positions, terms.sided, terms.coefficients)
+    return work.native(native_module().tied_heights, z, np.ascontiguousarray(nodes), sided, as_given)
+
+
+def missed_warnings(data: TieData, after: np.ndarray) -> list[str]:
+    """The warnings about data that a surface does not honor. after: as of correction."""
+    warnings = []
+    if data.left_out:
+        warnings.append(
+            f"{data.left_out} of its points contradict others at their position and are not fitted"
+        )
+    off = np.nan_to_num(after)
+    missed = np.abs(off) > _MISSED * data.tolerance
+    for which, name in ((slice(None, data.contacts), "points"), (slice(data.contacts, None), "bounds")):
+        if missed[which].any():
+            own = np.abs(off[which])
+            worst = int(own.argmax())
+            place = place_text(data.places[which][worst].tolist())
+            warnings.append(
+                f"{int(missed[which].sum())} of {len(own)} {name} cannot be honored beside others: the "
+                f"surface misses one at {place} by {own[worst]:.4g}"
+            )
+    return warnings

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Series of sheets: what the surfaces of one know of the others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...heights.companions import Companions
+from ...project.project import Rock, Surface
+from ...project.series import members
+from ...readers.tables.observations import Bounds
+from ...settings.series import SHEETS
+
+
+def sheets_beside(rock: Rock, number: int) -> list[int]:
+    """The surfaces of the series of sheets of one, itself included, oldest first; none where it is in
+    none."""
+    name = rock.surfaces[number].series
+    for series in rock.series:
+        if series.kind == SHEETS and series.name == name:
+            return members(rock, series)
+    return []
+
+
+def with_least_thickness(rock: Rock) -> Rock:
+    """A rock mass whose sheets of a series do not lie below the older one of it."""
+    surfaces = list(rock.surfaces)
+    for number, surface in enumerate(surfaces):
+        beside = sheets_beside(rock, number)
+        if beside and number > beside[0] and surface.minimum_thickness is None:
+            surfaces[number] = replace(surface, minimum_thickness=0.0)
+    return replace(rock, surfaces=surfaces)
+
+
+def companions_of(rock: Rock, number: int) -> Companions | None:
+    """The sheets with which a surface is interpolated; None where none of the others has points."""
+    beside = sheets_beside(rock, number)
+    points = [np.ascontiguousarray(rock.surfaces[each].point_array()) for each in beside]
+    if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
+        return None
+    return Companions(beside.index(number), points, [rock.surfaces[each].known_dips() for each in beside])
+
+
+def bounds_beside(surface: Surface, companions: Companions | None) -> Bounds | None:
+    """The bounds of a surface and those by the contacts of the other sheets: it lies at or above the older
+    ones, and at or below the younger ones."""
+    if companions is None:
+        return surface.bounds
+    parts = [] if surface.bounds is None else [surface.bounds]
+    for other, points in enumerate(companions.points):
+        if other != companions.own and len(points):
+            older, none = np.full(len(points), other < companions.own), np.full(len(points), "")
+            parts.append(Bounds(points, older, none, np.full(len(points), np.nan)))
+    names = ("places", "is_lower", "holes", "depths")
+    return Bounds(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))

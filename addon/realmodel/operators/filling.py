@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Strata in any mesh object, with a preview while values are dragged."""
+
+import math
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ..bl.fill_job import FilledShape, FillJob
+from ..bl.fill_preview import FillPreview
+from ..core import RealModelError, Strata
+from ..core.filling import PALETTES
+from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, STEEPEST
+from .background import InBackground
+from .reporting import not_building, object_mode
+
+_PLAIN = {
+    "beds": 12,
+    "thickness": 0.0,
+    "variation": 0.5,
+    "dip": 0.0,
+    "fold_amplitude": 0.0,
+    "fold_wavelength": 0.5,
+    "faults": 0,
+    "throw": 0.1,
+    "unconformity": 0.0,
+}
+# What a preset sets, beside _PLAIN
+_PRESETS = {
+    "CLIFF": ("Cliff", {"beds": 14, "dip": math.radians(6), "palette": "CLIFF"}),
+    "CANYON": ("Canyon", {"beds": 24, "variation": 0.9, "dip": math.radians(2), "palette": "CANYON"}),
+    "ISLAND": ("Island", {"beds": 9, "dip": math.radians(18), "unconformity": 0.6, "palette": "VOLCANIC"}),
+    "FOLDED": (
+        "Folded",
+        {"beds": 16, "dip": math.radians(10), "fold_amplitude": 0.15, "palette": "DESERT"},
+    ),
+    "FAULTED": (
+        "Faulted",
+        {"beds": 14, "dip": math.radians(12), "faults": 3, "throw": 0.12, "palette": "COAL"},
+    ),
+}
+
+
+def _set_preset(self, _context):
+    values = _PRESETS.get(self.preset)
+    if values is not None:
+        for name, value in (_PLAIN | values[1]).items():
+            setattr(self, name, value)
+
+
+def _a_mesh(context):
+    item = context.active_object
+    if item is None or item.type != "MESH":
+        return "the active object is no mesh; make the object that is to be filled active"
+    return None
+
+
+def _share(name, description, default=0.0, most=10.0, soft=1.0):
+    return FloatProperty(
+        name=name, description=description, default=default, min=0.0, max=most, soft_max=soft, precision=3
+    )
+
+
+def _azimuth(name, description, default=0.0):
+    return FloatProperty(
+        name=name,
+        description=f"{description}, clockwise from north, the Y axis",
+        subtype="ANGLE",
+        default=math.radians(default),
+        min=-2 * math.pi,
+        max=2 * math.pi,
+    )
+
+
+class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
+    """Fill the active mesh with strata: each bed a closed object with a rock of its own, together exactly the
+    mesh, which is hidden. An open mesh with one height everywhere is filled down to a base. Esc cancels"""
+
+    bl_label = "Fill with Strata"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
+    needs = (not_building, object_mode, _a_mesh)
+
+    preset: EnumProperty(
+        name="Preset",
+        description="Values to begin with; a choice replaces those below",
+        items=(
+            ("NONE", "None", "The values below"),
+            *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in _PRESETS.items()),
+        ),
+        default="NONE",
+        update=_set_preset,
+        options={"SKIP_SAVE"},
+    )
+    beds: IntProperty(name="Beds", description="How many", default=12, min=2, max=MOST_BEDS, soft_max=60)
+    thickness: _share(
+        "Thickness",
+        "Of a bed on average, as a share of the height of the mesh; 0: the beds fill it. Otherwise the "
+        "lowest and the highest bed take the rest",
+    )
+    variation: FloatProperty(
+        name="Variation",
+        description="How much the beds differ in thickness",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+    )
+    dip: FloatProperty(
+        name="Dip",
+        description="Of the beds, before they are folded",
+        subtype="ANGLE",
+        default=math.radians(10),
+        min=0.0,
+        max=math.radians(STEEPEST),
+    )
+    dip_direction: _azimuth("Dip Direction", "Where the beds dip to", 120.0)
+    fold_amplitude: _share("Fold Amplitude", "As a share of the height of the mesh; 0: no folds", soft=0.5)
+    fold_wavelength: _share("Fold Wavelength", "As a share of the width of the mesh; 0: no folds", 0.5)
+    fold_axis: _azimuth("Fold Axis", "Direction of the fold axes", 30.0)
+    faults: IntProperty(name="Faults", description="How many", default=0, min=0, max=MOST_FAULTS, soft_max=10)
+    throw: _share("Throw", "Of each fault, as a share of the height of the mesh", 0.1, soft=0.5)
+    fault_strike: _azimuth("Fault Strike", "Direction of the faults, which are vertical", 20.0)
+    unconformity: FloatProperty(
+        name="Unconformity",
+        description="Share of the height, from below, at which level beds cover eroded ones; 0: none",
+        subtype="FACTOR",
+        default=0.0,
+        min=0.0,
+        max=0.95,
+    )
+    base_depth: _share(
+        "Base Depth",
+        "Of an open mesh: depth of the base beneath its lowest point, as a share of its height or of a tenth "
+        "of its width",
+        0.5,
+    )
+    palette: EnumProperty(
+        name="Palette",
+        description="Rocks of the beds",
+        items=tuple(
+            (key.upper(), key.title(), ", ".join(name for name, _ in rocks))
+            for key, rocks in PALETTES.items()
+        ),
+    )
+    rock_looks: BoolProperty(
+        name="Rock Looks",
+        description="Give the rocks procedural textures; otherwise their colors alone",
+        default=True,
+    )
+    masks: BoolProperty(
+        name="Bed Masks",
+        description="Add a hidden copy of the mesh whose vertices have the number of their bed and a mask, 0 "
+        "or 1, of each bed, as attributes",
+    )
+    seed: IntProperty(name="Seed", description="Other thicknesses, rocks, folds and faults", min=0)
+
+    _preview = None
+    _shape = None
+    _is_asked = False
+    _problem = ""
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        item = context.active_object
+        try:
+            self._shape = FilledShape.of(item, context.evaluated_depsgraph_get())
+            self._shape.closed(self.base_depth)
+            self._preview = FillPreview(item, self._shape)
+            self._show()
+        except RealModelError as error:
+            self._end_preview()
+            return self._refused(context, error)
+        self._is_asked = True
+        return context.window_manager.invoke_props_dialog(self, width=360)
+
+    def check(self, _context):
+        if self._preview is not None:
+            self._show()
+        return True
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        groups = (
+            ("preset", "palette", "rock_looks", "seed"),
+            ("beds", "thickness", "variation", "dip", "dip_direction"),
+            ("fold_amplitude", "fold_wavelength", "fold_axis"),
+            ("faults", "throw", "fault_strike"),
+            ("unconformity", "base_depth", "masks"),
+        )
+        for names in groups:
+            column = layout.column(align=True)
+            for name in names:
+                column.prop(self, name)
+        if self._problem:
+            layout.label(text=self._problem, icon="ERROR")
+
+    def execute(self, context):
+        self._end_preview()
+        if self._is_asked:
+            self._is_asked = False
+            return super().invoke(context, None)
+        return super().execute(context)
+
+    def cancel(self, context):
+        self._end_preview()
+        if self._job is not None:
+            super().cancel(context)
+
+    def begin(self, context):
+        shape = self._shape
+        self._shape = None
+        if shape is None:
+            shape = FilledShape.of(context.active_object, context.evaluated_depsgraph_get())
+        strata = self._strata(shape.closed(self.base_depth)[0])
+        return FillJob(context.scene, shape, strata, self.base_depth, self.rock_looks, self.masks)
+
+    def tell_done(self, result):
+        beds = sum("realmodel_volume" in item for item in result.objects)
+        self.report({"INFO"}, f"{beds} beds: see {result.name}")
+
+    def _show(self):
+        """Shows the strata, or says why they cannot be made."""
+        self._problem = ""
+        try:
+            vertices, _ = self._shape.closed(self.base_depth)
+            self._preview.show(self._strata(vertices), self.base_depth)
+        except RealModelError as error:
+            self._problem = str(error)
+
+    def _end_preview(self):
+        if self._preview is not None:
+            self._preview.remove()
+            self._preview = None
+
+    def _strata(self, vertices):
+        """core.Strata for a mesh of this size."""
+        size = np.ptp(vertices, axis=0)
+        height, width = float(size[2]), float(size[:2].max())
+        return Strata(
+            beds=self.beds,
+            thickness=self.thickness * height,
+            variation=self.variation,
+            dip=min(math.degrees(self.dip), STEEPEST),
+            dip_direction=_degrees(self.dip_direction),
+            fold_amplitude=self.fold_amplitude * height,
+            fold_wavelength=self.fold_wavelength * width,
+            fold_axis=_degrees(self.fold_axis),
+            faults=self.faults,
+            throw=self.throw * height,
+            fault_strike=_degrees(self.fault_strike),
+            unconformity=self.unconformity,
+            palette=self.palette.lower(),
+            seed=self.seed,
+        )
+
+
+def _degrees(angle):
+    """An azimuth, which Blender has in radians of 32 bits."""
+    return round(math.degrees(angle), 4) % 360.0

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/ties.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include "interpolation/node_loop.hpp"
+#include "interpolation/ties/tie_rows.hpp"
+#include "interpolation/ties/tie_system.hpp"
+#include "spatial/nearest_points.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+using Members = std::vector<std::int32_t>;
+
+constexpr double kRadius = 2.5;  // of a kernel: times as far as the data of its level are apart
+constexpr std::size_t kMostLevels = 24;
+constexpr int kMostPasses = 6;       // over the last level, until what is left is rounding
+constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
+constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
+constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
+constexpr double kCrowded = 0.05;    // of a row's square: less left by others needs a finer mesh
+constexpr double kMostCrowded = 0.02;  // as much less than that as the order of rows may matter
+
+constexpr double kSteep = 4;
+constexpr std::size_t kLookedAt = 32;  // data around an inequality
+
+/// Rows that are apart by a distance, or across a fault: those that come first are taken.
+class Thinning {
+public:
+    Thinning(const TieRows& rows, double distance) : rows_(rows), distance_(distance) {}
+
+    bool take(std::int32_t row) {
+        const SheetNode own = center(row);
+        const auto [column, line] = cell(own.position);
+        for (std::int64_t dx = -1; dx <= 1; ++dx) {
+            for (std::int64_t dy = -1; dy <= 1; ++dy) {
+                const auto found = taken_.find(key(column + dx, line + dy));
+                if (found == taken_.end()) continue;
+                for (const std::int32_t other : found->second)
+                    if (tie_kernel(own, center(other), distance_) > 0) return false;
+            }
+        }
+        taken_[key(column, line)].push_back(row);
+        return true;
+    }
+
+private:
+    /// The corner that counts most for a row.
+    SheetNode center(std::int32_t row) const {
+        const auto& weights = rows_.rows[row].weights;
+        const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
+        return rows_.center(rows_.rows[row].corners[static_cast<std::size_t>(most)]);
+    }
+    std::pair<std::int64_t, std::int64_t> cell(const Position& p) const {
+        return {static_cast<std::int64_t>(std::floor((p[0] - rows_.positions[0][0]) / distance_)),
+                static_cast<std::int64_t>(std::floor((p[1] - rows_.positions[0][1]) / distance_))};
+    }
+    static std::uint64_t key(std::int64_t column, std::int64_t line) {
+        return static_cast<std::uint64_t>(column) * 0x9E3779B97F4A7C15u ^
+               static_cast<std::uint64_t>(line) * 0xC2B2AE3D27D4EB4Fu;
+    }
+
+    const TieRows& rows_;
+    double distance_;
+    std::unordered_map<std::uint64_t, Members> taken_;
+};
+
+class Tying {
+public:
+    Tying(const TieRows& rows, double tolerance, const Execution& execution)
+        : rows_(rows), tolerance_(tolerance), execution_(execution), z_(rows.heights) {
+        state_.assign(rows.rows.size(), State::kIdle);
+    }
+
+    void run() {
+        Members wrong = beyond();
+        if (wrong.empty()) return;
+        for (std::size_t i = 0; i < rows_.rows.size(); ++i) {
+            if (!rows_.rows[i].is_known || !rows_.rows[i].is_contact()) continue;
+            state_[i] = State::kActive;
+            active_.push_back(static_cast<std::int32_t>(i));
+        }
+        std::size_t count = active_.size();
+        for (const std::int32_t row : wrong)
+            count += rows_.rows[row].is_contact() ? 0 : 1;
+        spacing_ = std::sqrt(rows_.area / static_cast<double>(count));
+        if (active_.empty()) activate_some(wrong);
+        do {
+            leave_out_crowded();
+            meet_active();
+        } while (activate_some(beyond()));
+    }
+
+    /// By how much the sheet lies below what a row asks for; above it negative.
+    double missing(std::size_t i) const {
+        const TieRow& row = rows_.rows[i];
+        const double z = row.value(z_);
+        if (z < row.lower) return row.lower - z;
+        return z > row.upper ? row.upper - z : 0;
+    }
+
+    TieTerms terms() && {
+        TieTerms found{std::move(radii_), rows_.positions, rows_.sided, {}};
+        for (const auto& of_level : coefficients_)
+            found.coefficients.insert(found.coefficients.end(), of_level.begin(), of_level.end());
+        if (found.radii.empty()) return {};
+        return found;
+    }
+
+private:
+    enum class State : std::uint8_t { kIdle, kActive, kGivenUp };
+
+    /// The rows that do not hold and could, the worst first.
+    Members beyond() const {
+        std::vector<std::pair<double, std::int32_t>> found;
+        for (std::size_t i = 0; i < rows_.rows.size(); ++i) {
+            if (!rows_.rows[i].is_known || state_[i] != State::kIdle) continue;
+            const double by = std::abs(missing(i));
+            if (by > tolerance_) found.emplace_back(-by, static_cast<std::int32_t>(i));
+        }
+        std::sort(found.begin(), found.end());
+        Members numbers;
+        for (const auto& each : found)
+            numbers.push_back(each.second);
+        return numbers;
+    }
+
+    /// Makes contacts of inequalities that do not hold, of near ones only the first. Whether there
+    /// were any.
+    bool activate_some(const Members& wrong) {
+        Thinning apart(rows_, spacing_ / 2);
+        for (const std::int32_t row : wrong) {
+            if (!apart.take(row)) continue;
+            state_[row] = State::kActive;
+            target_[row] = missing(static_cast<std::size_t>(row)) > 0 ? rows_.rows[row].lower
+                                                                      : rows_.rows[row].upper;
+            active_.push_back(row);
+        }
+        return !wrong.empty();
+    }
+
+    double residual(std::int32_t row) const {
+        const auto found = target_.find(row);
+        const double target = found == target_.end() ? rows_.rows[row].lower : found->second;
+        return target - rows_.rows[row].value(z_);
+    }
+
+    /// Gives up active rows that nodes cannot honor beside others.
+    void leave_out_crowded() {
+        while (!active_.empty()) {
+            const Members crowded = crowded_members(rows_, active_, kMostCrowded);
+            if (crowded.empty()) return;
+            give_up(TieSystem(rows_, active_, DBL_MIN, kRounding), crowded);
+        }
+    }
+
+    /// Corrects the heights so that all active rows are met, level by level.
+    void meet_active() {
+        double narrowest = HUGE_VAL;
+        for (const std::int32_t row : active_)
+            narrowest = std::min(narrowest, rows_.rows[row].shortest_edge);
+        Members members;
+        for (std::size_t level = 0;; ++level) {
+            if (execution_.progress != nullptr) execution_.progress->check();
+            const double distance = std::ldexp(spacing_, -static_cast<int>(level));
+            if (radii_.size() == level) add_level(kRadius * distance);
+            const bool is_last = level + 1 == kMostLevels || radii_[level] < 0.5 * narrowest;
+            members = is_last ? active_ : thinned(members, distance);
+            if (members.size() == active_.size()) return meet_all(level);
+            meet_some(level, std::move(members), members);
+        }
+    }
+
+    void add_level(double radius) {
+        radii_.push_back(radius);
+        coefficients_.emplace_back(z_.size(), 0.0);
+        corrections_.emplace_back(z_.size(), 0.0);
+    }
+
+    /// Active rows that are apart: those that are so already, and more.
+    Members thinned(const Members& before, double distance) const {
+        Thinning apart(rows_, distance);
+        Members found;
+        for (const Members* rows : {&before, &active_})
+            for (const std::int32_t row : *rows)
+                if (apart.take(row)) found.push_back(row);
+        return found;
+    }
+
+    Eigen::VectorXd residuals(const Members& members) const {
+        Eigen::VectorXd found(static_cast<Eigen::Index>(members.size()));
+        for (std::size_t i = 0; i < members.size(); ++i)
+            found[static_cast<Eigen::Index>(i)] = residual(members[i]);
+        return found;
+    }
+
+    /// One level of several: rows that others leave no room for wait for narrower kernels.
+    void meet_some(std::size_t level, Members some, Members& members) {
+        members = some;
+        while (!some.empty()) {
+            const Eigen::VectorXd right = residuals(some);
+            if (right.cwiseAbs().maxCoeff() <= tolerance_) return;
+            const TieSystem system(rows_, some, radii_[level], kRounding);
+            const Members dependent = system.dependent(kDependent);
+            if (dependent.empty()) return correct(level, some, system.solve(right));
+            remove(some, dependent);
+        }
+    }
+
+    /// The last level: what is left is rounding.
+    void meet_all(std::size_t level) {
+        while (!active_.empty()) {
+            if (residuals(active_).cwiseAbs().maxCoeff() <= 0) return;
+            const TieSystem system(rows_, active_, radii_[level], kRounding);
+            const Members dependent = system.dependent(kDependent);
+            if (dependent.empty()) return meet_with(system, level);
+            give_up(system, dependent);
+        }
+    }
+
+    void meet_with(const TieSystem& system, std::size_t level) {
+        double before = HUGE_VAL;
+        for (int pass = 0; pass < kMostPasses; ++pass) {
+            const Eigen::VectorXd right = residuals(active_);
+            const double worst = right.cwiseAbs().maxCoeff();
+            if (!(worst < 0.5 * before) || worst <= 0.01 * tolerance_) return;
+            before = worst;
+            correct(level, active_, system.solve(right));
+        }
+    }
+
+    /// Leaves rows out that others leave no room for, or inequalities in their place.
+    void give_up(const TieSystem& system, const Members& dependent) {
+        Members victims;
+        for (const std::int32_t at : dependent) {
+            std::int32_t victim = at;
+            double most = kAlike;
+            if (rows_.rows[active_[at]].is_contact()) {
+                for (const std::int32_t other : system.related(at)) {
+                    const double likeness = system.likeness(at, other);
+                    if (rows_.rows[active_[other]].is_contact() || likeness <= most) continue;
+                    victim = other;
+                    most = likeness;
+                }
+            }
+            victims.push_back(victim);
+        }
+        std::sort(victims.begin(), victims.end());
+        victims.erase(std::unique(victims.begin(), victims.end()), victims.end());
+        for (const std::int32_t victim : victims)
+            state_[active_[victim]] = State::kGivenUp;
+        remove(active_, victims);
+    }
+
+    static void remove(Members& from, const Members& places) {
+        for (auto place = places.rbegin(); place != places.rend(); ++place)
+            from.erase(from.begin() + *place);
+    }
+
+    void correct(std::size_t level, const Members& members, const Eigen::VectorXd& amounts) {
+        auto& coefficients = coefficients_[level];
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            const TieRow& row = rows_.rows[members[i]];
+            for (std::size_t k = 0; k < 3; ++k)
+                coefficients[row.corners[k]] +=
+                    row.weights[k] * amounts[static_cast<Eigen::Index>(i)];
+        }
+        const KernelSum sum(rows_.positions, rows_.sided, rows_.faults, coefficients,
+                            radii_[level]);
+        const NodeLoop loop{z_.size(), 256, execution_};
+        loop.over_nodes([] { return 0; },
+                        [&](int, std::size_t i) {
+                            const auto number = static_cast<std::int32_t>(i);
+                            corrections_[level][i] = sum.at(rows_.center(number));
+                            double correction = 0;
+                            for (const auto& of_level : corrections_)
+                                correction += of_level[i];
+                            z_[i] = rows_.heights[i] + correction;
+                        });
+    }
+
+    const TieRows& rows_;
+    double tolerance_;
+    Execution execution_;
+    std::vector<double> z_;  // at the centers, corrected
+    std::vector<State> state_;
+    Members active_;
+    std::unordered_map<std::int32_t, double> target_;  // of active inequalities
+    double spacing_ = 0;
+    std::vector<double> radii_;
+    std::vector<std::vector<double>> coefficients_, corrections_;  // of each level
+};
+
+/// Whether an inequality holds beside near data only if the surface is steeper than `slope`, and no
+/// contact so near that it holds there, too, implies it.
+bool is_steep(const TieData& data, std::size_t i, std::span<const spatial::Neighbor> near,
+              double slope) {
+    double steepest = 0, implied = 0;
+    for (const spatial::Neighbor& other : near) {
+        const auto j = static_cast<std::size_t>(other.point);
+        if (j == i) continue;
+        const double away = std::sqrt(other.squared_distance);
+        const double rise = std::max(data.lower[i] - data.upper[j], data.lower[j] - data.upper[i]);
+        steepest = std::max(steepest, rise / away);
+        if (data.lower[j] == data.upper[j]) implied = std::max(implied, -rise / away);
+    }
+    return steepest > slope && !(implied > kSteep * steepest);
+}
+
+/// The inequalities that hold beside the data around only if the surface is steep: steeper by
+/// `kSteep` than the data are on the whole.
+std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> nodes) {
+    std::vector<bool> found(data.places.size(), false);
+    if (data.places.empty()) return found;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        for (const double z : {data.lower[i], data.upper[i]}) {
+            if (std::isinf(z)) continue;
+            low = std::min(low, z);
+            high = std::max(high, z);
+        }
+    }
+    const spatial::PlanBox box = spatial::box_around(nodes);
+    const double slope = kSteep * (high - low) / std::max(box.width(), box.height());
+    const spatial::NearestPoints tree(data.places);
+    std::vector<spatial::Neighbor> near;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (data.lower[i] == data.upper[i]) continue;
+        tree.find(data.places[i], kLookedAt, near);
+        found[i] = is_steep(data, i, near, slope);
+    }
+    return found;
+}
+
+}  // namespace
+
+Ties tie(const TiedSheets& sheets, const TieData& data, double tolerance,
+         const Execution& execution) {
+    const TieRows rows(sheets, data);
+    Tying tying(rows, tolerance, execution);
+    const auto missing = [&] {
+        std::vector<double> found(rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (rows.rows[i].is_known) found[i] = tying.missing(i);
+        return found;
+    };
+    Ties ties;
+    ties.before = missing();
+    tying.run();
+    ties.after = missing();
+    ties.terms = std::move(tying).terms();
+    return ties;
+}
+
+CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data) {
+    const TieRows rows(sheet, data);
+    const std::vector<bool> contradicts = steep_bounds(data, sheet.nodes);
+    Members members;
+    std::vector<Position> places;
+    for (std::size_t i = 0; i < rows.rows.size(); ++i) {
+        if (!rows.rows[i].is_known || !(rows.rows[i].is_contact() || contradicts[i])) continue;
+        members.push_back(static_cast<std::int32_t>(i));
+        places.push_back(data.places[i]);
+    }
+    CrowdedData crowded;
+    const spatial::NearestPoints tree(places);
+    std::vector<spatial::Neighbor> near;
+    for (const std::int32_t at : crowded_members(rows, members, kCrowded)) {
+        crowded.numbers.push_back(members[at]);
+        tree.find(places[at], 2, near);
+        crowded.room.push_back(std::sqrt(near.back().squared_distance));
+    }
+    return crowded;
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fill with Strata: beds as objects, where they stand, materials, masks, the preview, and what is refused."""
+
+import math
+from itertools import pairwise
+
+import bpy
+import numpy as np
+from blender_state import coordinates, inventory, open_edges, volume
+from boolean_case import ball, cube
+from panel_case import PanelCase, ops, select, sheet
+from realmodel.bl.fill_job import FilledShape, FillJob
+from realmodel.bl.fill_preview import FillPreview
+from realmodel.core import Cancelled, Strata
+
+
+def shape_of(item):
+    return FilledShape.of(item, bpy.context.evaluated_depsgraph_get())
+
+
+class Filling(PanelCase):
+    def filled(self, item, **settings):
+        select(item)
+        ops.fill_with_strata(**settings)
+        found = bpy.data.collections[f"{item.name} Strata"]
+        return [bed for bed in found.objects if "realmodel_volume" in bed]
+
+    def test_beds_are_closed_and_together_the_mesh(self):
+        item = ball("A", 2.0, (5.0, 1.0, -3.0))
+        item.scale, item.rotation_euler = (1.0, -2.0, 0.5), (0.3, 0.1, -0.4)
+        bpy.context.view_layer.update()
+        before = coordinates(item.data)
+        beds = self.filled(item, beds=7, faults=2, fold_amplitude=0.1, unconformity=0.7)
+        self.assertEqual([bed.name for bed in beds], [f"A Bed {n}" for n in range(1, 8)])
+        for bed in beds:
+            self.assertFalse(bed.data.validate(verbose=True), bed.name)
+            self.assertEqual(open_edges(bed.data), 0)
+            self.assertEqual(bed.matrix_world, item.matrix_world)
+            self.assertAlmostEqual(bed["realmodel_volume"], volume(bed.data), delta=1e-5)
+        self.assertAlmostEqual(sum(volume(bed.data) for bed in beds), volume(item.data), places=4)
+        kept = {tuple(place) for bed in beds for place in coordinates(bed.data).tolist()}
+        self.assertTrue(kept.issuperset(map(tuple, before.tolist())))
+        self.assertEqual(coordinates(item.data).tobytes(), before.tobytes())
+        self.assertTrue(item.hide_get() and item.hide_render)
+        self.assertEqual(set(bpy.context.selected_objects), set(beds))
+
+    def test_rocks_of_a_palette(self):
+        beds = self.filled(cube("A"), beds=20, palette="COAL", rock_looks=False)
+        used = [bed.material_slots[0].material for bed in beds]
+        names = {"Gray Sandstone", "Coal", "Gray Mudstone", "Brown Siltstone", "Pale Limestone"}
+        self.assertEqual({material.name for material in used}, names)
+        self.assertTrue(all(a != b for a, b in pairwise(used)))
+        self.assertFalse(any("realmodel_look" in material for material in used))
+
+    def test_looks_follow_the_rock(self):
+        beds = self.filled(cube("A"), beds=20, palette="COAL")
+        looks = {bed.material_slots[0].material.name: bed.material_slots[0].material for bed in beds}
+        self.assertEqual(looks["Coal"]["realmodel_look"], "COAL")
+        self.assertEqual(looks["Brown Siltstone"]["realmodel_look"], "SHALE")
+        self.assertIn("realmodel_thickness", beds[3].data.attributes)
+
+    def test_presets_set_values_that_others_override(self):
+        for preset, count in (("CLIFF", 14), ("CANYON", 24), ("ISLAND", 9), ("FOLDED", 16), ("FAULTED", 14)):
+            item = cube(preset)
+            self.assertEqual(len(self.filled(item, preset=preset, rock_looks=False)), count)
+        self.assertEqual(len(self.filled(cube("Other"), preset="CLIFF", beds=5, rock_looks=False)), 5)
+
+    def test_modifiers_count_and_the_object_keeps_them(self):
+        item = cube("A")
+        array = item.modifiers.new("Array", "ARRAY")
+        array.relative_offset_displace = (2.0, 0.0, 0.0)
+        beds = self.filled(item, beds=3, dip=0.0)
+        self.assertAlmostEqual(sum(bed["realmodel_volume"] for bed in beds), 16.0)
+        self.assertEqual(len(item.modifiers), 1)
+
+    def test_a_terrain_down_to_a_base(self):
+        item = sheet("Hills", lambda x, y: 10 + 5 * math.sin(x / 9) * math.cos(y / 11), n=16)
+        low = coordinates(item.data)[:, 2]
+        beds = self.filled(item, beds=6, dip=0.1, base_depth=1.0)
+        floor = min(coordinates(bed.data)[:, 2].min() for bed in beds)
+        self.assertAlmostEqual(floor, low.min() - max(np.ptp(low), 10.0), places=4)
+        self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+
+    def test_masks_of_beds(self):
+        item = ball("A", 2.0)
+        self.filled(item, beds=4, masks=True, dip=0.0)
+        copy = bpy.data.objects["A Bed Masks"]
+        self.assertTrue(copy.hide_get() and copy.hide_render)
+        self.assertEqual(coordinates(copy.data).tobytes(), coordinates(item.data).tobytes())
+        number = np.empty(len(copy.data.vertices), np.int32)
+        copy.data.attributes["realmodel_bed"].data.foreach_get("value", number)
+        self.assertEqual(set(number.tolist()), {1, 2, 3, 4})
+        for bed in range(1, 5):
+            mask = np.empty(len(number), np.float32)
+            copy.data.attributes[f"Bed {bed}"].data.foreach_get("value", mask)
+            self.assertEqual(mask.tolist(), (number == bed).astype(float).tolist())
+        height = coordinates(copy.data)[:, 2]
+        self.assertLess(height[number == 1].max(), height[number == 2].max())
+
+    def test_vertical_exaggeration_does_not_count(self):
+        item = cube("A")
+        select(item)
+        plain = FilledShape.of(item, bpy.context.evaluated_depsgraph_get()).vertices
+        empty = bpy.data.objects.new("Vertical Exaggeration", None)
+        empty["realmodel_exaggeration"] = True
+        empty.scale.z = 3.0
+        bpy.context.collection.objects.link(empty)
+        item.parent = empty
+        bpy.context.view_layer.update()
+        self.assertEqual(shape_of(item).vertices.tobytes(), plain.tobytes())
+
+    def test_the_preview_leaves_nothing(self):
+        item = ball("A")
+        select(item)
+        before = inventory()
+        shape = shape_of(item)
+        preview = FillPreview(item, shape)
+        preview.show(Strata(beds=6, dip=20), 0.5)
+        copy = bpy.data.objects["Strata Preview"]
+        rows = {polygon.material_index for polygon in copy.data.polygons}
+        self.assertGreater(len(rows), 2)
+        self.assertTrue(item.hide_get())
+        preview.show(Strata(beds=6, dip=20, palette="cliff"), 0.5)
+        preview.remove()
+        self.assertEqual(inventory(), before)
+        self.assertFalse(item.hide_get())
+        self.assertTrue(item.select_get())
+
+    def test_cancelled_and_refused_work_leaves_everything_as_it_was(self):
+        item = ball("A", n=64)
+        select(item)
+        before = inventory()
+        job = FillJob(self.scene, shape_of(item), Strata(beds=40, dip=20), 0.5)
+        job.start()
+        job.cancel()
+        job.wait()
+        with self.assertRaises(Cancelled):
+            job.finish()
+        self.refused(ops.fill_with_strata, "too narrow", fold_amplitude=0.1, fold_wavelength=1e-5)
+        self.assertEqual(inventory(), before)
+        opened = cube("Open")
+        opened.data.clear_geometry()
+        opened.data.from_pydata([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)], [], [(0, 1, 2, 3)])
+        select(opened)
+        self.refused(ops.fill_with_strata, "Open: it is open, for example near .* close it")
+        empty = bpy.data.objects.new("Empty", None)
+        bpy.context.collection.objects.link(empty)
+        select(empty)
+        self.refused(ops.fill_with_strata, "the active object is no mesh")

@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Series of sheets: surfaces that are kriged together, against dense linear algebra and closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from realmodel.core import (
+    Dips,
+    Fault,
+    InputRefused,
+    Project,
+    Rock,
+    Surface,
+    build,
+    load_project,
+)
+from realmodel.core.base.work import Work, native_module
+from realmodel.core.ensembles.realization import Realizer
+from realmodel.core.heights.companions import Companions
+from realmodel.core.heights.cross_validation import validate
+from realmodel.core.heights.from_neighbours import structure
+from realmodel.core.heights.interpolation import Task
+from realmodel.core.project.project_writer import save_project
+from realmodel.core.project.series import Series
+from realmodel.core.results.surface_quality import surface_quality
+from realmodel.core.settings.methods import checked_options
+from structure_cases import heights_at
+
+RANGE, BASELINE = 400.0, 2.0
+VARIOGRAM = {
+    "model": "cubic",
+    "range": RANGE,
+    "sill": 300.0,
+    "nugget": 0.0,
+    "anisotropy_ratio": 1.0,
+    "anisotropy_azimuth": 0.0,
+    "further": [],
+}
+THICKNESS = {**VARIOGRAM, "model": "spherical", "range": 250.0, "sill": 1.0}
+VARIANCES = np.array([0.0, 0.1, 0.15])
+REGION = np.array([[0.0, 0], [1000, 0], [1000, 1000], [0, 1000]])
+
+
+def cubic(t):
+    return np.where(t < 1, 1 - 7 * t**2 + 8.75 * t**3 - 3.5 * t**5 + 0.75 * t**7, 0.0)
+
+
+def spherical(t):
+    return np.where(t < 1, 1 - 1.5 * t + 0.5 * t**3, 0.0)
+
+
+def covariance(a, on_a, b, on_b):
+    away = np.hypot(*(a[:, None] - b[None]).transpose(2, 0, 1))
+    under = np.minimum(VARIANCES[on_a][:, None], VARIANCES[on_b][None])
+    return VARIOGRAM["sill"] * (cubic(away / RANGE) + under * spherical(away / 250.0))
+
+
+def dense(points, sheets, dips, of_dips, nodes, sheet):
+    """Ordinary cokriging of a sheet at nodes: heights and variances."""
+    places, on = [points[:, :2]], [sheets]
+    values = [points[:, 2]]
+    for axis in (0, 1):
+        half = BASELINE / 2 * np.eye(2)[axis]
+        places += [dips.positions + half, dips.positions - half]
+        on += [of_dips, of_dips]
+        values.append(BASELINE * dips.gradients[:, axis])
+    places, on = np.concatenate(places), np.concatenate(on)
+    count, slopes = len(points), len(of_dips)
+    to_data = np.zeros((count + 2 * slopes, len(places)))
+    to_data[:count, :count] = np.eye(count)
+    for axis in (0, 1):
+        for k in range(slopes):
+            row, first = count + axis * slopes + k, count + 2 * axis * slopes
+            to_data[row, first + k], to_data[row, first + slopes + k] = 1, -1
+    c = to_data @ covariance(places, on, places, on) @ to_data.T
+    drift = to_data @ np.ones(len(places))
+    system = np.block([[c, drift[:, None]], [drift[None], np.zeros((1, 1))]])
+    right = to_data @ covariance(places, on, nodes, np.full(len(nodes), sheet))
+    right = np.vstack([right, np.ones(len(nodes))])
+    weights = np.linalg.solve(system, right)
+    own = VARIOGRAM["sill"] * (1 + VARIANCES[sheet])
+    return weights[:-1].T @ np.concatenate(values), own - (weights * right).sum(axis=0)
+
+
+def joint_data(seed=3):
+    random = np.random.default_rng(seed)
+    plan = random.uniform(0, 1000, (24, 2))
+    plan[12:16] = plan[:4]  # holes that meet two sheets
+    sheets = np.repeat([0, 1, 2], [12, 9, 3]).astype(np.int32)
+    z = 20 * np.sin(plan[:, 0] / 120) + 15.0 * sheets + random.normal(0, 1, 24)
+    dips = Dips(random.uniform(0, 1000, (5, 2)), random.normal(0, 0.1, (5, 2)))
+    return np.column_stack([plan, z]), sheets, dips, np.array([0, 2, 1, 2, 0], np.int32)
+
+
+@pytest.mark.parametrize("sheet", [0, 1, 2])
+@pytest.mark.parametrize("neighbors", [0, 24])
+def test_cokriging_as_in_the_textbook(sheet, neighbors):
+    points, sheets, dips, of_dips = joint_data()
+    nodes = np.random.default_rng(9).uniform(0, 1000, (30, 2))
+    given = (dips.positions, dips.gradients, BASELINE, 0)
+    near = (neighbors, 0, 0.0 if neighbors == 0 else 1e6)  # with a radius systems are made one by one
+    joint = (sheets, of_dips, VARIANCES, THICKNESS, sheet)
+    z, variance, _ = native_module().krige(points, nodes, VARIOGRAM, near, "constant", given, joint)
+    expected = dense(points, sheets, dips, of_dips, nodes, sheet)
+    np.testing.assert_allclose(z, expected[0], atol=1e-6)
+    np.testing.assert_allclose(variance, expected[1], atol=1e-5)
+    own = points[sheets == sheet]
+    at, zero, _ = native_module().krige(
+        points, np.ascontiguousarray(own[:, :2]), VARIOGRAM, near, "constant", given, joint
+    )
+    assert np.array_equal(at, own[:, 2])
+    assert not zero.any()
+
+
+@pytest.mark.parametrize("neighbors", [0, 23])
+def test_each_point_from_the_others_of_all_sheets(neighbors):
+    points, sheets, dips, of_dips = joint_data()
+    given = (dips.positions, dips.gradients, BASELINE, 0)
+    near = (neighbors, 0, 0.0 if neighbors == 0 else 1e6)
+    joint = (sheets, of_dips, VARIANCES, THICKNESS, 0)
+    z, variance, _ = native_module().krige_left_out(points, VARIOGRAM, near, "constant", given, joint)
+    for row in (0, 5, 13, 22):
+        rest = np.arange(len(points)) != row
+        expected = dense(points[rest], sheets[rest], dips, of_dips, points[row : row + 1, :2], sheets[row])
+        assert z[row] == pytest.approx(expected[0][0], abs=1e-6)
+        assert variance[row] == pytest.approx(expected[1][0], abs=1e-5)
+
+
+def test_sheets_that_make_no_sense_are_refused():
+    points, sheets, *_ = joint_data()
+    nodes, none = points[:2, :2].copy(), np.zeros(0, np.int32)
+    for joint, said in (
+        ((sheets[1:], none, VARIANCES, THICKNESS, 0), "each point"),
+        ((sheets, none, VARIANCES, THICKNESS, 3), "no such sheet"),
+        ((sheets, none, VARIANCES[::-1].copy(), THICKNESS, 0), "ascend"),
+    ):
+        with pytest.raises(native_module().InputError, match=said):
+            native_module().krige(points, nodes, VARIOGRAM, (0, 0, 0.0), "constant", None, joint)
+
+
+def fold(plan):
+    return 60 * np.sin(plan[:, 0] / 75) + 0.05 * plan[:, 1]
+
+
+THICK = 25.0
+
+
+def height(k, plan):
+    return fold(plan) + k * THICK * (1 + 0.1 * np.sin(plan[:, 1] / 150))
+
+
+def surfaces_of(counts, seed=1, **more):
+    random = np.random.default_rng(seed)
+    found = []
+    for k, count in enumerate(counts):
+        plan = random.uniform(0, 1000, (count, 2))
+        points = np.column_stack([plan, height(k, plan)])
+        found.append(Surface(f"S{k}", points=points, rule="conformable", series="J", **more))
+    return found
+
+
+def rock_of(surfaces, **more):
+    series = [Series("J", "sheets")] if any(each.series for each in surfaces) else []
+    given = {"edge_length": 60.0, "base_elevation": -500.0, "series": series, **more}
+    return Rock("R", surfaces, REGION, **given)
+
+
+def error(model, number):
+    vertices = model.surface(number)[0]
+    return float(np.sqrt(np.mean((vertices[:, 2] - height(number, vertices[:, :2])) ** 2)))
+
+
+def alone(surfaces):
+    return [replace(each, series=None) for each in surfaces]
+
+
+def test_a_surface_with_two_contacts_follows_its_neighbors():
+    surfaces = surfaces_of([40, 2, 40])
+    together = build(Project("p", [rock_of(surfaces)]))
+    apart = build(Project("p", [rock_of(alone(surfaces))]))
+    assert error(apart, 1) > 20
+    assert error(together, 1) < 0.4 * error(apart, 1)
+    for number in (0, 2):
+        assert error(together, number) < 0.3 * error(apart, 1)
+
+
+def test_dips_of_one_sheet_count_for_all():
+    surfaces = surfaces_of([8, 8, 8])
+    plan = np.random.default_rng(4).uniform(0, 1000, (40, 2))
+    slope = np.column_stack([0.8 * np.cos(plan[:, 0] / 75), np.full(40, 0.05)])
+    surfaces[0].dips = Dips(plan, slope)
+    together = build(Project("p", [rock_of(surfaces)]))
+    surfaces[0].dips = None
+    without = build(Project("p", [rock_of(surfaces)]))
+    assert error(together, 2) < 0.6 * error(without, 2)
+
+
+def test_thicknesses_are_never_negative_and_contacts_are_met():
+    surfaces = surfaces_of([30, 6, 30])
+    for k, surface in enumerate(surfaces):
+        surface.points[:, 2] -= k * (THICK - 2.0) * (surface.points[:, 0] > 500)  # thin in the east
+    model = build(Project("p", [rock_of(surfaces)]))
+    sheets = [model.surface(k)[0][:, 2] for k in range(3)]
+    assert (np.diff(sheets, axis=0) >= 0).all()
+    nodes = model.surface(0)[0][:, :2]
+    corner = surfaces_of([30])
+    assert len(corner[0].points) == 30
+    held = Surface("S1", points=np.array([[*nodes[7], sheets[0][7] + 40.0]]), rule="conformable", series="J")
+    again = build(Project("p", [rock_of([surfaces[0], held, surfaces[2]])]))
+    assert again.surface(1)[0][7, 2] == pytest.approx(held.points[0, 2], abs=1e-9)
+
+
+def test_contacts_of_others_bound_a_sheet():
+    """At a contact of an older sheet, the younger one lies at it or above."""
+    surfaces = surfaces_of([25, 25])
+    surfaces[1].points[:, 2] = height(0, surfaces[1].points[:, :2]) + 1.0
+    model = build(Project("p", [rock_of(surfaces, edge_length=30.0)]))
+    z = heights_at(np.ascontiguousarray(surfaces[0].points[:, :2]), *model.surface(1))
+    assert (z >= surfaces[0].points[:, 2] - 3.0).all()
+
+
+def test_variances_know_of_the_other_sheets():
+    surfaces = surfaces_of([40, 4, 40])
+    together = build(Project("p", [rock_of(surfaces)]))
+    apart = build(Project("p", [rock_of(alone(surfaces))]))
+    variance = [np.median(model.rock_inputs[0].attributes[1]["variance"]) for model in (together, apart)]
+    assert 0 < variance[0] < variance[1]
+
+
+def test_cross_validation_knows_of_the_other_sheets():
+    surfaces = surfaces_of([30, 10, 30])
+    points = [surface.points for surface in surfaces]
+    task = Task(Work(), points[1], np.empty((0, 2)), checked_options("kriging", {}))
+    joint = replace(task, companions=Companions(1, points, [None] * 3))
+    found, plain = (validate("kriging", each, 10) for each in (joint, task))
+    assert found.rmse < 0.5 * plain.rmse
+    model = build(Project("p", [rock_of(surfaces)]))
+    assert surface_quality(model, 1).cross_validation.rmse == pytest.approx(found.rmse)
+
+
+def test_the_model_of_sheets():
+    points = [surface.points for surface in surfaces_of([60, 60, 60])]
+    task = Task(Work(), points[2], np.empty((0, 2)), checked_options("kriging", {}))
+    found = structure(replace(task, companions=Companions(2, points, [None] * 3)))
+    offsets = found.sheets.offsets
+    np.testing.assert_allclose(np.diff(offsets), THICK, atol=4)
+    assert (np.diff(found.sheets.variances) > 0).all(), "thicknesses vary"
+    assert found.sheets.variances[-1] < 0.2, "less than heights"
+
+
+def test_each_compartment_has_its_sheets():
+    surfaces = surfaces_of([40, 6, 40])
+    for surface in surfaces:
+        surface.points[:, 2] += 80.0 * (surface.points[:, 0] > 500)
+    fault = Fault("F", trace=[[500, -100], [500, 1100]], dip=90, elevation=0.0)
+    together, apart = (
+        build(Project("p", [rock_of(given)], faults=[fault])) for given in (surfaces, alone(surfaces))
+    )
+    errors = []
+    for model in (together, apart):
+        vertices = model.surface(1)[0]
+        east = vertices[:, 0] > 501
+        west = vertices[:, 0] < 499
+        off = vertices[:, 2] - height(1, vertices[:, :2])
+        errors.append(np.sqrt(np.mean(np.concatenate([off[west], off[east] - 80.0]) ** 2)))
+    assert errors[0] < 0.7 * errors[1]
+
+
+def test_realizations_go_through_the_contacts():
+    surfaces = surfaces_of([30, 5, 30])
+    nodes = build(Project("p", [rock_of(surfaces)])).surface(0)[0][:, :2]
+    surfaces[1].points = np.column_stack([nodes[[9, 60]], height(1, nodes[[9, 60]])])
+    model = build(Project("p", [rock_of(surfaces)]))
+    drawn = Realizer(model, seed=5).realization(0)
+    assert np.abs(drawn.surface(1)[0][[9, 60], 2] - surfaces[1].points[:, 2]).max() < 1e-6
+    assert not np.array_equal(drawn.surface(1)[0], model.surface(1)[0])
+
+
+PROJECT = """format = 1
+name = "p"
+[[rock]]
+name = "R"
+region = [[0, 0], [1000, 0], [1000, 1000], [0, 1000]]
+edge_length = 100
+base_elevation = -500
+[[rock.series]]
+name = "J"
+kind = "sheets"
+{more}
+[[rock.surface]]
+name = "S0"
+points = "p0.csv"
+series = "J"
+{first}
+[[rock.surface]]
+name = "S1"
+points = "p1.csv"
+series = "J"
+"""
+
+
+def test_a_project_file_with_sheets(tmp_path):
+    for k, surface in enumerate(surfaces_of([20, 3])):
+        rows = "\n".join(",".join(map(repr, row)) for row in surface.points.tolist())
+        (tmp_path / f"p{k}.csv").write_text("x,y,z\n" + rows + "\n")
+    file = tmp_path / "p.toml"
+    file.write_text(PROJECT.format(more="", first=""))
+    model = build(load_project(file))
+    save_project(model.project, tmp_path / "again.toml")
+    again = build(load_project(tmp_path / "again.toml"))
+    assert np.array_equal(again.surface(1)[0], model.surface(1)[0])
+    for more, first, said in (
+        ('dips = "p0.csv"', "", "sheets have no dips of their series"),
+        ("resolution = 5.0", "", "'resolution' has no effect"),
+        ("", 'method = "spline"', "'S0' has method 'spline'"),
+    ):
+        file.write_text(PROJECT.format(more=more, first=first))
+        with pytest.raises(InputRefused, match=said):
+            load_project(file)

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ties: surfaces pass through their contacts and keep their bounds, also within triangles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from realmodel.core import Observations, Project, Rock, Surface, build, load_project
+from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.work import run
+from realmodel.core.heights.ties import tie_data
+from realmodel.core.results.residuals import residuals
+from realmodel.core.settings.meshers import MESHERS
+from realmodel.core.settings.methods import METHODS
+from realmodel.core.surfaces.planar_mesh import crowded_places
+from realmodel.core.surfaces.rock_input import RockInput
+from sample_scripts import SAMPLES
+
+SIZE = 100.0
+REGION = np.array([[0, 0], [SIZE, 0], [SIZE, SIZE], [0, SIZE]], float)
+NUGGET = {"variogram": {"model": "spherical", "range": 40.0, "sill": 30.0, "nugget": 15.0}}
+OPTIONS = {
+    "kriging": NUGGET,
+    "universal_kriging": NUGGET,
+    "spline": {"smoothing": 1.0},
+    "dsi": {"weight": 0.1},
+}
+TIED = [name for name, method in METHODS.items() if method.has_contacts and name != "parallel"]
+
+
+def noisy(seed=1, count=60):
+    random = np.random.default_rng(seed)
+    plan = random.uniform(3, SIZE - 3, (count, 2))
+    return np.column_stack([plan, 20 * np.sin(plan[:, 0] / 15) + random.normal(0, 3, count)])
+
+
+def model_of(points, method="kriging", tie=True, edge_length=5.0, mesher="delaunay", **options):
+    surface = Surface("top", points=points, method=method, options=options, tie=tie)
+    rock = Rock("r", [surface], region=REGION, edge_length=edge_length, mesher=mesher, base_elevation=-1000.0)
+    return build(Project("p", [rock]))
+
+
+def worst_share(model):
+    """Of the height range of a surface's points, how far the farthest of them is from it."""
+    return max(float(np.abs(each.values).max() / np.ptp(each.points[:, 2])) for each in residuals(model))
+
+
+def least_angle(mesh):
+    corners = mesh.vertices[mesh.triangles][:, :, :2]
+    found = []
+    for k in range(3):
+        a, b = (corners[:, (k + n) % 3] - corners[:, k] for n in (1, 2))
+        cosine = (a * b).sum(axis=1) / np.linalg.norm(a, axis=1) / np.linalg.norm(b, axis=1)
+        found.append(np.degrees(np.arccos(cosine)).min())
+    return min(found)
+
+
+@pytest.mark.parametrize("method", TIED)
+def test_every_method_passes_through_points_in_triangles(method):
+    options = OPTIONS.get(method, {})
+    assert worst_share(model_of(noisy(), method, tie=False, **options)) > 1e-6
+    assert worst_share(model_of(noisy(), method, **options)) <= 1e-9
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_points_closer_than_the_mesh_can_tell_become_vertices(mesher):
+    points = np.vstack(
+        [
+            noisy(),
+            [
+                [50, 50, 9],
+                [50.004, 50, -9],
+                [50.1, 50.1, 3],
+                [20, 20, 5],
+                [20, 20.3, 6],
+                [0, 30, 3],
+                [0, 30.2, 1],
+            ],
+        ]
+    )
+    model = model_of(points, edge_length=8.0, mesher=mesher)
+    assert worst_share(model) <= 1e-9
+    assert least_angle(model.rock_inputs[0].planar_mesh()) >= 20 - 1e-9
+
+
+def test_fewer_nodes_than_points():
+    assert worst_share(model_of(noisy(count=300), edge_length=30.0)) <= 1e-9
+
+
+def test_a_nugget_makes_no_spikes():
+    points = noisy()
+    free, tied = (model_of(points, tie=tie, **NUGGET).surface(0)[0] for tie in (False, True))
+    most = np.abs(residuals(model_of(points, tie=False, **NUGGET))[0].values).max()
+    assert np.abs(tied - free).max() < 1.5 * most
+
+
+def test_a_surface_that_honors_its_points_keeps_its_heights():
+    plan = noisy()[:, :2]
+    points = np.column_stack([plan, 0.5 * plan[:, 0] - plan[:, 1]])
+    free, tied = (model_of(points, "plane", tie=tie).surface(0)[0] for tie in (False, True))
+    assert np.array_equal(free, tied)
+
+
+def test_without_a_tie_the_planar_mesh_stays_too():
+    points = np.vstack([noisy(), [[50, 50, 9], [50.004, 50, -9]]])
+    plain = model_of(noisy(), tie=False)
+    assert np.array_equal(
+        model_of(points, tie=False).rock_inputs[0].planar_mesh().vertices,
+        plain.rock_inputs[0].planar_mesh().vertices,
+    )
+
+
+def test_points_that_contradict_at_one_position_are_listed_and_not_fitted():
+    points = np.vstack([noisy(), [[50, 50, 40], [50, 50, -40]]])
+    model = model_of(points, "plane")
+    assert any("2 of its points contradict" in warning.text for warning in model.warnings)
+    off = np.abs(residuals(model)[0].values)
+    assert (off > 1e-6).sum() == 2
+
+
+def observed_model(edge_length=12.0, tie=True):
+    """Two layers, and places in them between sparse contacts."""
+    random = np.random.default_rng(4)
+    plan = random.uniform(4, SIZE - 4, (150, 2))
+    at = 8 * np.sin(plan[:, 0] / 9) * np.cos(plan[:, 1] / 11)
+    z = at + random.choice([-1, 1], 150) * random.uniform(0.3, 3, 150)
+    blocks = np.where(z > at, "upper", "lower")
+    contacts = np.column_stack([plan[:25], at[:25]])
+    surfaces = [
+        Surface("boundary", points=contacts, method="kriging", block="lower", tie=tie),
+        Surface("ground", points=None, method="constant", options={"value": 60.0}, block="upper"),
+    ]
+    observations = Observations(np.column_stack([plan, z])[25:], blocks[25:])
+    rock = Rock(
+        "r",
+        surfaces,
+        region=REGION,
+        edge_length=edge_length,
+        base_elevation=-100.0,
+        observations=observations,
+    )
+    return build(Project("p", [rock]))
+
+
+def test_bounds_hold_within_triangles():
+    assert observed_model(tie=False).observed().share < 1
+    assert observed_model().observed().share == 1
+
+
+@pytest.mark.parametrize("name", ["fault_blocks", "rift_basin"])
+def test_sheets_beside_faults_pass_through_their_points(name):
+    model = build(load_project(SAMPLES / name / "project.toml"))
+    for each in residuals(model):
+        off = np.abs(each.values) / np.ptp(each.points[:, 2])
+        # at a tip of a fault a few points of its two sides lie at one position of one sheet
+        assert (off > 1e-9).sum() <= 2
+
+
+def test_ties_of_rasters_and_surveys_are_not_asked_for():
+    grid = np.array([[x, y, np.sin(x)] for x in np.arange(0, 101, 10.0) for y in np.arange(0, 101, 10.0)])
+    free, tied = (model_of(grid, "grid", tie=tie).surface(0)[0] for tie in (False, True))
+    assert np.array_equal(free, tied)
+    many = np.random.default_rng(1).uniform(0, 1, (10_001, 3))
+    assert not Surface("top", points=many).ties and Surface("top", points=many[1:]).ties
+
+
+def test_data_of_one_position_count_once():
+    points = np.array([[0, 0, 1.0], [0, 0, 1.0], [5, 5, 2.0], [5, 5, 90.0], [9, 9, 100.0]])
+    data = tie_data(points, None)
+    assert data.places.tolist() == [[0, 0], [9, 9]] and data.contacts == 2 and data.left_out == 2
+
+
+def test_of_close_places_of_several_surfaces_one_becomes_a_vertex_at_a_time():
+    hole = np.array([[50.0, 50, 1], [50.2, 50, 9]])
+    surfaces = [Surface(name, points=hole + np.array([0.001 * n, 0, n])) for n, name in enumerate("ab")]
+    rock = Rock("r", surfaces, region=REGION, edge_length=20.0)
+    entry = RockInput(rock, [None, None])
+    mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
+    found = run(lambda work: crowded_places(work, entry, mesh, np.empty((0, 2))))
+    assert len(found) == 1

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fill with Strata: the dialog with its preview, Esc, OK, and one step of undo."""
+
+import bpy
+import numpy as np
+from realmodel.bl import meshes
+from steps_1_panel import idle
+from steps_3_import import invoked
+
+
+def _boulder(n=48):
+    """A bumpy ball, the active object."""
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(2 * n), indexing="ij"))
+    u, v = np.pi * j / n, np.pi * (i + 0.5) / n
+    rings = np.column_stack([np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)])
+    places = np.concatenate([rings, [(0, 0, 1), (0, 0, -1)]])
+    x, y, z = places.T
+    places *= (2.0 + 0.3 * np.sin(3 * x + 2 * z) * np.cos(4 * y))[:, None]
+    ring = np.arange(2 * n)
+    onward = np.roll(ring, -1)
+    begin = (np.arange(n - 1) * 2 * n)[:, None]
+    a, b = (begin + ring).ravel(), (begin + onward).ravel()
+    c, d = a + 2 * n, b + 2 * n
+    last = (n - 1) * 2 * n
+    caps = [np.stack([np.full(2 * n, len(rings)), ring, onward], 1)]
+    caps.append(np.stack([np.full(2 * n, len(rings) + 1), last + onward, last + ring], 1))
+    triangles = np.concatenate([np.stack([a, c, d], 1), np.stack([a, d, b], 1), *caps])
+    item = bpy.data.objects.new("Boulder", meshes.triangle_mesh("Boulder", places, triangles))
+    bpy.context.scene.collection.objects.link(item)
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other == item)
+        other.hide_set(other != item)
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.ed.undo_push(message="boulder")
+    return item
+
+
+def preview_and_cancel(walk):
+    """The dialog shows the strata on a copy; Esc leaves the scene as it was."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    item = _boulder()
+    known = len(bpy.data.objects), len(bpy.data.materials)
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.fill_with_strata)
+    yield walk.redrawn(4)
+    assert "Strata Preview" in bpy.data.objects and item.hide_get()
+    walk.shot("fill_preview")
+    walk.key("ESC")
+    yield lambda: "Strata Preview" not in bpy.data.objects
+    assert not item.hide_get() and item.select_get()
+    assert known == (len(bpy.data.objects), len(bpy.data.materials))
+
+
+def fill_and_undo(walk):
+    """Enter makes the beds; Ctrl-Z once takes them all away."""
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.fill_with_strata, preset="FAULTED")
+    yield walk.redrawn(4)
+    region = walk.region("WINDOW")
+    walk.move(region.x + 30, region.y + 30)  # over no field of the dialog, which Enter would open
+    yield walk.redrawn(2)
+    walk.key("RET")
+    yield lambda: "Boulder Strata" in bpy.data.collections and idle()
+    yield walk.redrawn(2)
+    walk.shot("filled")
+    beds = bpy.data.collections["Boulder Strata"].objects
+    assert len(beds) == 14 and "Strata Preview" not in bpy.data.objects
+    assert bpy.data.objects["Boulder"].hide_get()
+    walk.key("Z", ctrl=True)
+    yield lambda: "Boulder Strata" not in bpy.data.collections
+    assert not bpy.data.objects["Boulder"].hide_get()
+    assert not any(item.name.startswith("Boulder Bed") for item in bpy.data.objects)
+    yield walk.redrawn(2)
+
+
+STEPS = (preview_and_cancel, fill_and_undo)
