@@ -68,6 +68,7 @@ drift = "quadratic"
 variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
 rule = "conformable"
 minimum_thickness = 0.35
+tie = false
 correlation = -0.3
 
 [[rock.surface]]
@@ -345,7 +346,16 @@ def _surface(surface):
         "method": surface.method_options() if surface.interpolated else None,
         **{
             key: getattr(surface, key)
-            for key in ("name", "series", "rule", "property", "block", "minimum_thickness", "correlation")
+            for key in (
+                "name",
+                "series",
+                "rule",
+                "property",
+                "block",
+                "minimum_thickness",
+                "tie",
+                "correlation",
+            )
         },
     }
 

@@ -8,11 +8,12 @@ SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
 
 
 def model(observations=None, dips=None, method="plane", picks=None, points=None):
-    """A clay below 4 + x / 2, a sand below 10: of the clay five points, one of them not on the plane."""
+    """A clay below 4 + x / 2, a sand below 10, which need not go through their data: of the clay five points,
+    one of them not on the plane."""
     if points is None:
         points = [(x, y, 4 + x / 2) for x in (1, 9) for y in (1, 9)]
-    clay = Surface("clay", points=np.array(points, float), method=method, dips=dips)
-    sand = Surface("sand", method="constant", options={"value": 10.0})
+    clay = Surface("clay", points=np.array(points, float), method=method, dips=dips, tie=False)
+    sand = Surface("sand", method="constant", options={"value": 10.0}, tie=False)
     rock = Rock("rock", [clay, sand], SQUARE, edge_length=2.5, base_elevation=0.0, observations=observations)
     rock.hole_picks = picks or {}
     return build(Project("fit", [rock]))
