@@ -196,6 +196,7 @@ class FieldData(PanelCase):
         clay, gravel = self.model.rocks[0].surfaces
         clay.method, clay.source, clay.value = "constant", "NONE", 40.0
         gravel.method, gravel.source, gravel.value = "constant", "NONE", 60.0
+        clay.tie = gravel.tie = False
         self.model.view.show_misfits = True
         ops.build()
         rows = list(self.model.misfits)
