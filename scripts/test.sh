@@ -158,16 +158,16 @@ test_core() { # by modules on all processors; a test that hangs fails after ten 
         --junitxml="$logs/core.xml"
 }
 
-test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }
+test_blender() { in_time 25m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }
 
 # A window without a screen, drawn in software; its screenshots are kept in build/gui.
 test_gui() {
     mkdir -p build/gui
-    in_time 15m xvfb-run -a -s "-screen 0 1280x800x24 -fbdir build/gui" blender --factory-startup \
+    in_time 25m xvfb-run -a -s "-screen 0 1280x800x24 -fbdir build/gui" blender --factory-startup \
         --enable-event-simulate --window-geometry 0 0 1280 800 -P tests/gui/run.py
 }
 
-test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }
+test_bpy() { in_time 25m "$venv_bpy/bin/python" tests/blender/run.py; }
 
 test_package() { # zip and wheels of the modules that can be made here, and the sources, installed as a user does
     in_time 15m scripts/package.sh --platform linux-x64 --skip-missing &&

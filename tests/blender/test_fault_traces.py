@@ -177,7 +177,7 @@ class Drawn(TraceCase):
         select(tube)
         self.refused(ops.fault_body_from_selected, "object 'tube': it is not one line")
         fault.object = None
-        self.refused(ops.build, "it has no object; choose the curve or mesh along its trace")
+        self.refused(ops.build, "it has no object; choose the curve or mesh with its trace or its sticks")
 
     def test_search_names_and_sources(self):
         self.layers()

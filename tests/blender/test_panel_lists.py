@@ -269,6 +269,7 @@ class Surfaces(PanelCase):
         ops.surface_add(name="S0")
         row = self.rock().surfaces[0]
         examples = {"word": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples["truth"] = lambda s: not s.default
         examples["number"] = examples["length"] = lambda s: 7.25 if s.high is None else s.high - 0.25
         for settings in (ROCK, SURFACE):
             target = self.rock() if settings is ROCK else row

@@ -3,7 +3,7 @@
 
 import numpy as np
 from realmodel.core import Project, Rock, Series, Surface
-from realmodel.core.fields import ScalarField
+from realmodel.core.fields import Anisotropy, SolvedField
 from realmodel.core.structures import fields
 
 SIZE = 10.0
@@ -33,7 +33,18 @@ def given_field(monkeypatch, f, levels):
 
     def solve_field(lattice, data, work):
         own = f(data) if f.__name__ == "chosen" else f
-        return ScalarField(lattice, own(lattice.positions()), levels)
+        none = np.empty(0, np.int64)
+        return SolvedField(
+            lattice=lattice,
+            values=own(lattice.positions()),
+            levels=levels,
+            anisotropy=Anisotropy(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (1.0, 1.0, 1.0)),
+            centers=len(data.contacts),
+            misfit=0.0,
+            dips_missed=none,
+            bounds_missed=none,
+            critical_points=np.empty((0, 3)),
+        )
 
     monkeypatch.setattr(fields, "solve_field", solve_field)
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -11,12 +12,13 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
 
+_Field = TypeVar("_Field", bound=ScalarField)
 _LOOSE = 1e-6  # of the share of a contact in its tetrahedron: how firmly nodes follow contacts
 _ROUNDS = 200
 _MET = 1e-12  # of what contacts miss their levels by at first: nothing
 
 
-def with_contacts(field: ScalarField, contacts: np.ndarray, surfaces: np.ndarray) -> ScalarField:
+def with_contacts(field: _Field, contacts: np.ndarray, surfaces: np.ndarray) -> _Field:
     """The field with contacts (C, 3) as corners of tetrahedra, at which it has the level of their surfaces
     (C,) exactly. Before that its nodes are moved as little as they must be for it to have these levels there
     nearly: a corner alone would be a peak beside its surface where that passes another tetrahedron. Nodes on

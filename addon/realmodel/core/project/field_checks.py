@@ -41,7 +41,8 @@ def check_field_data(project, rock) -> None:
     if rock.map is not None:
         _check_map(rock)
     for key in ("boreholes", "observations", "map", "dips"):
-        if getattr(rock, key) is not None and not rock.interpolates:
+        has_effect = rock.interpolates or (key != "dips" and any(each.has_points for each in rock.surfaces))
+        if getattr(rock, key) is not None and not has_effect:
             raise refuse(f"'{key}' has no effect, as no surface is interpolated", key)
     _check_names(project, rock)
 
@@ -84,6 +85,10 @@ def _check_map(rock) -> None:
         rock.map.check()
     check_layer(rock.map.polygons, "map", refuse)
     check_layer(rock.map.faults, "map", refuse)
+    number = ground_number(rock)
+    if ground_file(rock) is None and number is not None and rock.surfaces[number].is_level_set:
+        what = f"the ground of the map cannot be '{rock.surfaces[number].name}': it is a level set"
+        raise refuse(what, "map", 'give its heights: ground = "dem.tif", or a sheet as youngest surface')
     for file in files_of_map(rock):
         check_file(file, "map", refuse)
 

@@ -116,6 +116,11 @@ class Surface(Shaped):
         )
 
     @builtins.property  # a field of this class is called property
+    def has_points(self) -> bool:
+        """Whether it is made from points: it is interpolated, or a level set. Else it is a ready mesh."""
+        return self.interpolated or self.is_level_set
+
+    @builtins.property  # a field of this class is called property
     def needs_points(self) -> bool:
         """Whether its method makes nothing without points. Raises OptionRefused."""
         method, settings = self.method_options()
@@ -245,6 +250,11 @@ class Rock(Entry):
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
         return dip_file_of(self.dips)
+
+    @property
+    def has_field_data(self) -> bool:
+        """Whether it has boreholes, observations or a map, which may give its surfaces contacts."""
+        return any(given is not None for given in (self.boreholes, self.observations, self.map))
 
     @property
     def observed(self) -> Observations | None:
@@ -435,7 +445,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
     continued to faults."""
     shapes = shapes_given(surface, ("points", "mesh"), refuse)
-    no_points = not shapes and rock.boreholes is None and rock.observations is None and rock.map is None
+    no_points = not shapes and not rock.has_field_data
     if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if shapes:

@@ -179,7 +179,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
     """The names of the files of a surface, by their keys."""
     if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
-    if surface.interpolated or surface.is_level_set:
+    if surface.has_points:
         points = surface.own_points()  # its contacts follow from the observations again
         dips, files = surface.own_dips(), {}
         if points is not None and len(points):

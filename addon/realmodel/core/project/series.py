@@ -112,14 +112,6 @@ def _check_field(rock, series: Series, refuse: Refuse) -> None:
         if value is None:
             what = f"its field has no end: {rock.item} has no {key}"
             raise refuse(what, "name", f"give the rock mass a {key}")
-    of_blocks = {
-        "observations": rock.observations is not None,
-        "map": rock.map is not None,
-        "intervals": rock.boreholes is not None and rock.boreholes.intervals is not None,
-    }
-    for key in (key for key, is_given in of_blocks.items() if is_given):
-        what = f"'{key}' of {rock.item} do not bind the surfaces of a field yet"
-        raise refuse(what, "name", "leave them out, or give contacts as points or picks")
 
 
 def check_level_set(rock, surface, refuse: Refuse) -> None:
@@ -130,7 +122,7 @@ def check_level_set(rock, surface, refuse: Refuse) -> None:
             what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
             advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
             raise refuse(what, key, advice)
-    if surface.points is None and rock.boreholes is None:
+    if surface.points is None and not rock.has_field_data:
         raise refuse("it has no points", advice="add points = ...")
     check_file(surface.input_file, "points", refuse)
     with refused_by(refuse):

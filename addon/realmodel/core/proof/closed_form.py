@@ -93,6 +93,14 @@ class ClosedForm:
         """(N,) the heights of a surface over or under points (N, 3), NaN where it has none."""
         return self._heights(work, surface, points, self.compartments_of(work, points))
 
+    def above(self, work: Work, surface: int, points: np.ndarray) -> np.ndarray:
+        """(N,) how far a surface lies above points (N, 3), NaN where it has no height; a level set about how
+        far away on their younger side."""
+        for own in self.fields:
+            if surface in own.numbers:
+                return -own.distances(surface, points, self.compartments_of(work, points))
+        return self.heights(work, surface, points) - points[:, 2]
+
     def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
         """(N,) heights of a surface at points in the compartments `where`. That of a level set is where it
         would be if f rose by 1 along z: above a point where f is less than its level."""

@@ -176,7 +176,7 @@ def _rock_without(rock: Rock, holes: set[str]) -> Rock:
 
 def _surface_without(surface: Surface, met: set[tuple]) -> Surface:
     """A surface without points that holes met, and without contacts and bounds: these are found anew."""
-    if not surface.interpolated:
+    if not surface.has_points:
         return surface
     points = surface.own_points()
     if points is not None and met:
@@ -197,7 +197,7 @@ def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
     contacts = []
     for number, surface in enumerate(rock.surfaces):
         places = [place for place in map(tuple, surface.contact_array().tolist()) if place in sources]
-        points = set(map(tuple, surface.point_array().tolist())) if surface.interpolated else set()
+        points = set(map(tuple, surface.point_array().tolist())) if surface.has_points else set()
         for name, place in rock.hole_picks.get(hole, (None, ()))[1]:
             picked = tuple(np.asarray(place).tolist())
             # the top of an interval may be on another surface than that of its block
@@ -205,9 +205,9 @@ def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
                 places.append(picked)
         if not places:
             continue
-        z = form.heights(work, number, np.array(places))
-        for place, height in zip(places, z.tolist(), strict=True):
-            error = None if height != height else height - place[2]
+        above = form.above(work, number, np.array(places))
+        for place, away in zip(places, above.tolist(), strict=True):
+            error = None if away != away else away
             contacts.append(LeftOutContact(surface.name, sources.get(place), place, error))
     return LeftOutHole(rock.name, hole, length, share, tuple(contacts))
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,7 +32,8 @@ class ObservedBlock:
 @dataclass(frozen=True)
 class ObservedContact:
     """A place (x, y, z) on a surface of a rock mass. hole, depth: where it comes from; "" and None for a
-    place without a hole. residual: the place less the height of the surface, None where that has none."""
+    place without a hole. residual: the place less the height of the surface, None where that has none; of a
+    level set about the distance from it, positive on its younger side."""
 
     rock: str
     surface: str
@@ -45,7 +46,8 @@ class ObservedContact:
 @dataclass(frozen=True)
 class ViolatedBound:
     """A place (x, y, z) above or below which a surface of a rock mass should be, and is not: by how much.
-    is_lower: whether it should be above. hole, depth: as of ObservedContact."""
+    is_lower: whether it should be above; of a level set, whether the place should be on its older side, and
+    `by` is about the distance from it. hole, depth: as of ObservedContact."""
 
     rock: str
     surface: str
@@ -140,7 +142,11 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
     bounds = rock.surfaces[at].bounds
     if bounds is None or not len(bounds):
         return []
-    beyond = bounds.beyond(heights_of_points(model, number, at, r, bounds.places))
+    own_field = model.rock_inputs[r].field_of(at)
+    places, row = bounds.along(np.inf if own_field is None else own_field.fields[0].lattice.spacing[0])
+    there = replace(bounds.some(row), places=places, ends=None)
+    beyond = np.zeros(len(bounds))
+    np.maximum.at(beyond, row, there.beyond(heights_of_points(model, number, at, r, places)))
     return [
         ViolatedBound(
             rock.name,

@@ -10,6 +10,7 @@ import numpy as np
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..structures.sheets.points_at_faults import point_sides
+from ..surfaces.sides import sides_of
 from .layer_values import at_places
 
 
@@ -40,19 +41,27 @@ class Residuals:
 
 def heights_of_points(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
     """(P,) the heights of a surface at points (P, 3); with faults those of its sheet in each point's
-    compartment. number: of the surface in the model, at: in its rock mass, rock: of that."""
-    if not model.structures.is_divided:
-        return at_places(*model.surface(number), points[:, :2], model.threads)
+    compartment. Those of a level set, which may have several over a place, are as far beneath each point as
+    this is from it, about. number: of the surface in the model, at: in its rock mass, rock: of that."""
     entry = model.rock_inputs[rock]
+    own_field = entry.field_of(at)
+    if not model.structures.is_divided and own_field is None:
+        return at_places(*model.surface(number), points[:, :2], model.threads)
     structure = entry.divided()
 
     def task(work: Work) -> np.ndarray:
-        sides = point_sides(work, points, entry, at).sides
+        if own_field is None:
+            sides = point_sides(work, points, entry, at).sides
+        else:
+            sides = sides_of(work, points, structure.faults)
         active = structure.faults.active(at)
         found = np.full(len(points), np.nan)
         for compartment, row in enumerate(structure.compartments):
             own = ((sides == row) | ~active).all(axis=1)
-            if own.any():
+            if own.any() and own_field is not None:
+                where = np.full(int(own.sum()), compartment)
+                found[own] = points[own, 2] - own_field.distances(at, points[own], where)
+            elif own.any():
                 vertices, triangles = structure.sheet(compartment, at)
                 found[own] = at_places(vertices, triangles, points[own, :2], model.threads)
         return found

@@ -8,15 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, place_text
-from ..base.sheet import Sheet
+from ..base.errors import InputRefused, naming
 from ..base.work import Work, refused_as
 from ..fields import (
-    FieldData,
     Lattice,
     ScalarField,
-    are_on,
+    SolvedField,
     level_solids,
     solve_field,
     with_contacts,
@@ -28,43 +25,27 @@ from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import sides_of
+from .contradicting_bounds import without_contradictions
+from .field_warnings import (
+    leave_out,
+    warn_of_contacts,
+    warn_of_critical_points,
+    warn_of_field,
+    warn_of_lacks,
+    within_rock,
+)
 from .parts.part_models import level
+from .series_data import SeriesData
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
 _CELLS = 50_000  # of the lattice, about, where its resolution is automatic
 _MOST_NODES = 20_000_000
+_NEAR = 1e-12  # of the range of f: a bound so near holds
+_PLACES = 0.5  # of an edge of the lattice: how far places within intervals are apart at most
+_ROUNDS = 4  # in which bounds that contacts have put off are held
 # By how much of a cell the lattice reaches beyond the rock at its low end: not by a simple fraction, so that
 # its planes do not lie in those of other meshes.
 _MARGIN = np.array([0.63, 0.71, 0.57])
-
-
-@dataclass(frozen=True)
-class SeriesData:
-    """What is known of a series. contacts: (C, 3) with the number (C,) of the surface in the series that each
-    is on. dips, normals: (D, 3)."""
-
-    contacts: np.ndarray
-    surfaces: np.ndarray
-    dips: np.ndarray
-    normals: np.ndarray
-
-    @classmethod
-    def of(cls, entry: RockInput, series: Series, numbers: list[int]) -> SeriesData:
-        points = [entry.rock.surfaces[number].point_array() for number in numbers]
-        dips = series.space_dips()
-        positions, normals = (np.empty((0, 3)),) * 2 if dips is None else (dips.positions, dips.normals)
-        lengths = np.sqrt((normals * normals).sum(axis=1, keepdims=True))
-        surfaces = np.repeat(np.arange(len(points)), [len(each) for each in points])
-        return cls(np.concatenate(points), surfaces.astype(np.int32), positions, normals / lengths)
-
-    def some(self, contacts: np.ndarray, dips: np.ndarray) -> SeriesData:
-        """Some contacts (C,) bool, and some dips (D,) bool."""
-        return SeriesData(
-            self.contacts[contacts], self.surfaces[contacts], self.dips[dips], self.normals[dips]
-        )
-
-    def positions(self) -> np.ndarray:
-        return np.concatenate([self.contacts, self.dips])
 
 
 def place_level_sets(inputs: list[RockInput]) -> None:
@@ -94,6 +75,18 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
             _take_level_sets(work, entry, own)
 
 
+def spacing(entry: RockInput) -> float:
+    """The smallest edge length of the lattices of the fields of a rock mass that is read; infinite where it
+    has none."""
+    given = [series for series in entry.rock.series if series.kind == FIELD]
+    top = _top(entry) if given else 0.0
+    found = [math.inf]
+    for series in given:
+        places = SeriesData.of(entry, series, members(entry.rock, series)).positions()
+        found.append(_lattice(entry, series, places, top).spacing[0])
+    return min(found)
+
+
 def _top(entry: RockInput) -> float:
     """An elevation above all sheets and contacts of a rock mass, as far as these are known."""
     known = []
@@ -110,31 +103,73 @@ def _top(entry: RockInput) -> float:
 
 def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> SeriesField:
     numbers = members(entry.rock, series)
-    data = SeriesData.of(entry, series, numbers)
-    lattice = _lattice(entry, series, data, top)
+    lattice = _lattice(entry, series, SeriesData.of(entry, series, numbers).positions(), top)
+    data = SeriesData.of(entry, series, numbers, _PLACES * lattice.spacing[0])
     families = _families(entry, series, numbers)
     sides = sides_of(work, data.positions(), entry.divided().faults)
-    fields = []
-    for row in work.share_out(list(families.rows)):
-        own = _within(data, sides, row, families)
-        names = [surface.name for surface in entry.rock.surfaces[numbers[0] : numbers[-1] + 1]]
+    fields, critical = [], [np.empty((0, 3))]
+    for number in work.share_out(list(range(len(families.rows)))):
+        own = data.some(families.has(number, sides))
+        if lacks := own.missing(data):
+            own = data
+            warn_of_lacks(entry, series, lacks, families.names(number))
         with naming(f"{entry.rock.item}, {series.item}"):
-            field = solve_field(
-                lattice, FieldData(names, own.contacts, own.surfaces, own.dips, own.normals), work
+            field, kept, left_out = without_contradictions(
+                own, lambda given: solve_field(lattice, given.field_data(), work)
             )
-        fields.append(with_contacts(field, own.contacts, own.surfaces))
-    of_compartment = [fields[own] for own in families.of_compartment]
+        leave_out(entry, series, own, left_out)
+        points = field.critical_points
+        critical.append(points[families.has(number, sides_of(work, points, entry.divided().faults))])
+        fields.append(_through_data(entry, series, kept, field))
+    points = np.concatenate(critical)
+    warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
+    of_compartment: list[ScalarField] = [fields[own] for own in families.of_compartment]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
+
+
+def _through_data(entry: RockInput, series: Series, data: SeriesData, field: SolvedField) -> SolvedField:
+    """The field with contacts on its levels. Bounds that do not hold any more then are places on the level,
+    too: they hold in the end. Warns of what is not honored."""
+    with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
+        made = with_contacts(field, data.contacts, data.surfaces)
+        contacts = set(map(tuple, data.contacts.tolist()))
+        kept = np.array([tuple(place) not in contacts for place in data.bounds.tolist()], bool)
+        pinned = np.zeros(len(kept), bool)
+        kept[field.bounds_missed] = False
+        for _ in range(_ROUNDS):
+            new = kept & ~pinned & data.is_off(made, _NEAR)
+            if not new.any():
+                break
+            pinned |= new
+            places, first = np.unique(data.bounds[pinned], axis=0, return_index=True)
+            surfaces = data.bound_surfaces[pinned][first]
+            every = np.concatenate([data.contacts, places]), np.concatenate([data.surfaces, surfaces])
+            made = with_contacts(field, *every)
+    warn_of_field(entry, series, data, field, np.flatnonzero(data.is_off(made, _NEAR)))
+    return made
 
 
 @dataclass(frozen=True)
 class _Families:
     """rows: (N, A) int8 the sides of the faults that displace a series, which compartments with one field
-    have in common. of_compartment: of each compartment its row. active: (F,) bool, these faults."""
+    have in common. of_compartment: of each compartment its row. active: (F,) bool, these faults.
+    compartments: the names of all."""
 
     rows: np.ndarray
     of_compartment: list[int]
     active: np.ndarray
+    compartments: list[str]
+
+    def has(self, number: int, sides: np.ndarray) -> np.ndarray:
+        """(N,) bool: which places with sides (N, F) lie in the compartments of a row."""
+        own, row = sides[:, self.active], self.rows[number]
+        return ((own == row) | (row == 0)).all(axis=1)
+
+    def names(self, number: int) -> list[str]:
+        """The names of the compartments of a row."""
+        return [
+            name for name, own in zip(self.compartments, self.of_compartment, strict=True) if own == number
+        ]
 
 
 def _families(entry: RockInput, series: Series, numbers: list[int]) -> _Families:
@@ -150,24 +185,13 @@ def _families(entry: RockInput, series: Series, numbers: list[int]) -> _Families
             what = f"fault '{faults.names[number]}', which dies out, displaces it: a field cannot do that yet"
             raise series.refused(what, "name", "let the fault end outside, or use sheets", item)
     rows, of_compartment = np.unique(structure.compartments[:, active], axis=0, return_inverse=True)
-    return _Families(rows, of_compartment.ravel().tolist(), active)
+    return _Families(rows, of_compartment.ravel().tolist(), active, structure.names)
 
 
-def _within(data: SeriesData, sides: np.ndarray, row: np.ndarray, families: _Families) -> SeriesData:
-    """The data in the compartments of a row of sides; all data where some surface has none there."""
-    own = sides[:, families.active]
-    here = ((own == row) | (row == 0)).all(axis=1)
-    contacts, dips = here[: len(data.contacts)], here[len(data.contacts) :]
-    some = data.some(contacts, dips)
-    has_all = len(np.unique(some.surfaces)) == len(np.unique(data.surfaces))
-    return some if has_all else data
-
-
-def _lattice(entry: RockInput, series: Series, data: SeriesData, top: float) -> Lattice:
-    """A lattice around the rock mass and the data of a series."""
+def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -> Lattice:
+    """A lattice around the rock mass and the places (N, 3) of the data of a series."""
     base = entry.rock.base_elevation
     plan = entry.planar_mesh().vertices[:, :2]
-    places = data.positions()
     low = np.minimum([*plan.min(axis=0), base], places.min(axis=0))
     high = np.maximum([*plan.max(axis=0), top], places.max(axis=0))
     size = high - low
@@ -191,21 +215,6 @@ def _cube_root(value: float) -> float:
     return root
 
 
-def _warn_of_missed(
-    entry: RockInput, own: SeriesField, number: int, sheets: dict[ScalarField, Sheet]
-) -> None:
-    """Adds the warning about contacts of a surface that its level set does not pass through."""
-    missed = []
-    for field, sheet in sheets.items():
-        contacts = field.points[field.point_values == field.levels[number - own.first]]
-        missed += contacts[~are_on(contacts, sheet)].tolist()
-    if missed:
-        count = "a contact lies" if len(missed) == 1 else f"{len(missed)} contacts lie"
-        text = f"{count} beside it, one at {place_text(tuple(missed[0]))}: use a finer resolution"
-        surface = entry.rock.surfaces[number].name
-        entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name, surface))
-
-
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
     """Sets the surfaces of a rock mass, and its sheets in compartments, that are level sets of a field."""
     with refused_as(lambda error: InputRefused(str(error), item=entry.rock.item, place=error.place)):
@@ -214,7 +223,7 @@ def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
             for field in own.distinct()
         }
     for number in own.numbers:
-        _warn_of_missed(entry, own, number, {field: sheets[field][number - own.first] for field in sheets})
+        warn_of_contacts(entry, own, number, {field: sheets[field][number - own.first] for field in sheets})
         each = [sheets[field][number - own.first] for field in own.fields]
         if entry.structure is not None:
             for compartment, sheet in zip(entry.structure.sheets, each, strict=True):

@@ -13,9 +13,11 @@ from ..surfaces.field_data import apply_observations
 from ..surfaces.observed.derived import Situation
 from ..surfaces.rock_input import RockInput
 from ..surfaces.sides import sides_of
+from .fields import spacing
 from .parts.parts import Structures
 
-_NEAR = 0.25  # of an edge length: nearer to a fault, a boundary between blocks may be the fault
+# Of an edge length of the planar mesh, or of the lattice of a field alone.
+_NEAR = 0.25  # nearer to a fault, a boundary between blocks may be the fault
 
 
 def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockInput]) -> None:
@@ -40,7 +42,7 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
 
         places, parted = observations.places, None
         if entry.region is not None:
-            reach = _NEAR * entry.median_edge()
+            reach = _NEAR * (entry.median_edge() if entry.rock.interpolates else spacing(entry))
             parted = _parted(observations, reach, sides)
             places = _off_structures(observations, reach, sides)
         of_faults, within = sides(places)

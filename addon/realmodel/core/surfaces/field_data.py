@@ -76,7 +76,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
         _with_points(surface, number, picks.points.pop(surface.name, None), derived)
-        if surface.interpolated
+        if surface.has_points
         else (surface, None)
         for number, surface in enumerate(rock.surfaces)
     ]
@@ -135,7 +135,7 @@ def _with_points(
         return surface, met
     if surface.point_file is None:
         surface = replace(surface, points=surface.own_points())
-    is_alone = surface.points is None and met is None and surface.needs_points
+    is_alone = surface.points is None and met is None and not surface.is_level_set and surface.needs_points
     contacts = contacts_for(derived, number, is_alone)
     surface = replace(surface, contacts=contacts if len(contacts) else None)
     known = [each for each in (met, contacts) if each is not None and len(each)]
@@ -168,14 +168,14 @@ def apply_observations(
 
 def _covered(work: Work, entry: RockInput, places: np.ndarray) -> np.ndarray | None:
     """(N, S) bool: over or under which surfaces places (N, 3) lie; None where all surfaces are interpolated
-    and reach everywhere."""
-    if all(surface.interpolated for surface in entry.rock.surfaces):
+    or level sets, and reach everywhere."""
+    reach = [surface.has_points for surface in entry.rock.surfaces]
+    if all(reach):
         return None
     plan = np.ascontiguousarray(places[:, :2])
     covered = np.ones((len(places), len(entry.rock.surfaces)), bool)
-    for number, surface in enumerate(entry.rock.surfaces):
-        shape = entry.surfaces[number]
-        if not surface.interpolated and shape is not None:
+    for number, shape in enumerate(entry.surfaces):
+        if not reach[number] and shape is not None:
             covered[:, number] = np.isfinite(heights_at(work, shape, plan))
     return covered
 
@@ -186,6 +186,8 @@ def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
     found = []
     for surface in entry.rock.surfaces:
         contacts, bounds = surface.contact_array(), surface.bounds
+        if surface.is_level_set:  # it always has contacts
+            continue
         if len(contacts) and bounds is not None and np.array_equal(contacts, along_bounds(bounds)):
             text = (
                 f"it has no points, and no observation is on it: it goes through the {len(contacts)} places "

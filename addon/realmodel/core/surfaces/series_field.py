@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.algebra import norm
 from ..fields import ScalarField
 
 
@@ -49,3 +50,17 @@ class SeriesField:
                 found[here] = field.at(points[here]) - field.levels[surface - self.first]
         found[points[:, 2] > self.top] = np.inf
         return found
+
+    def distances(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
+        """(N,) about how far points are from a surface, positive on its younger side; else as `excess`."""
+        rise = np.zeros((len(points), 3))
+        for field, compartments in self.distinct().items():
+            here = np.flatnonzero(np.isin(where, compartments))
+            low, high = field.lattice.corners
+            for axis, step in enumerate(field.lattice.spacing):
+                move = 0.5 * step * np.eye(3)[axis]
+                ahead, behind = (np.clip(points[here] + way, low, high) for way in (move, -move))
+                far = ahead[:, axis] - behind[:, axis]
+                rise[here, axis] = (field.at(ahead) - field.at(behind)) / np.where(far > 0, far, np.inf)
+        steep = norm(rise)
+        return self.excess(surface, points, where) / np.where(steep > 0, steep, 1.0)

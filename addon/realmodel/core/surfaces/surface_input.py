@@ -74,7 +74,7 @@ class SurfaceInput:
         if file is None and surface.points is None:
             file = self.boreholes
         with naming(surface_item(Rock(self.rock, []), surface)):
-            if surface.interpolated or surface.is_level_set:
+            if surface.has_points:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
                 read = replace(surface, points=points, dips=self._dips(step), shape_file=file)
                 return ReadSurface(read, None, None, warnings)

@@ -179,7 +179,9 @@ TEST(Ties, SheetsStayEqualWhereAFaultHasNoWeight) {
         tied.push_back(tied_heights(std::span(z).first(count), grid.nodes, sided, ties.terms));
     }
     for (std::size_t i = 0; i < count; ++i)
-        if (weights[i] == 0) EXPECT_EQ(tied[0][i], tied[1][i]);
+        if (weights[i] == 0) {
+            EXPECT_EQ(tied[0][i], tied[1][i]);
+        }
     EXPECT_NEAR(grid.at({asked.places[0]}, tied[0])[0], 4, 1e-10);
     EXPECT_NEAR(grid.at({asked.places[1]}, tied[1])[0], -6, 1e-10);
     EXPECT_NEAR(grid.at({asked.places[2]}, tied[0])[0], 3, 1e-10);

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...base.algebra import norm, ranks_in_runs
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
@@ -179,6 +180,7 @@ KINDS = {
     "contradiction": "observations contradict others, of which as few as possible are left out",
     "in_body": "observations contradict a body, and are not used",
     "no_surface": "observations are of blocks that cannot be there, and are not used",
+    "not_adjacent": "contacts are between blocks that do not follow one another in a series, and say nothing",
 }
 
 
@@ -187,14 +189,17 @@ class Bounds(ShortRepr):
     """Heights that a surface lies at or above, or at or below.
 
     places: (N, 3) float64, model units; with faults a bound counts in the compartment of its place. is_lower:
-    (N,) bool, True where the surface lies at the place or above it, False at it or below. holes, depths: (N,)
-    where each comes from, as Observations has them.
+    (N,) bool, True where the surface lies at the place or above it, False at it or below; of a level set,
+    whether f is at most, or at least, that of the surface. holes, depths: (N,) where each comes from, as
+    Observations has them. ends: (N, 3), of a level set: each holds on the way from its place to this one,
+    too; None: at its place alone.
     """
 
     places: np.ndarray
     is_lower: np.ndarray
     holes: np.ndarray
     depths: np.ndarray
+    ends: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.places)
@@ -211,7 +216,21 @@ class Bounds(ShortRepr):
 
     def some(self, chosen: np.ndarray) -> Bounds:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
-        return Bounds(self.places[chosen], self.is_lower[chosen], self.holes[chosen], self.depths[chosen])
+        ends = None if self.ends is None else self.ends[chosen]
+        return Bounds(
+            self.places[chosen], self.is_lower[chosen], self.holes[chosen], self.depths[chosen], ends
+        )
+
+    def along(self, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Places (P, 3) at which bounds with ways are looked at, no farther apart than a step, but not the
+        ends of a way; and (P,) the row of each."""
+        if self.ends is None:
+            return self.places, np.arange(len(self))
+        way = self.ends - self.places
+        count = np.maximum(np.ceil(norm(way) / step), 1).astype(np.int64)
+        row = np.repeat(np.arange(len(self)), count)
+        share = (ranks_in_runs(count) + 0.5) / count[row]
+        return self.places[row] + share[:, None] * way[row], row
 
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""

@@ -488,7 +488,10 @@ class InterpolatedSurface:
 
         z = np.array([self._on_nodes(sheet) for sheet in sheets])
         sides = sides_of_sheets(structure, self.number, sheets)
-        of_points = np.where(self.counts, sheet_of(self.placed.sides), -1)
+        of_points = sheet_of(self.placed.sides)
+        certain = self.counts & ~self.placed.moved.any(axis=1)
+        # As in _certain: what lies on the other side alone does not show a sheet.
+        of_points = np.where(self.counts & np.isin(of_points, of_points[certain]), of_points, -1)
         of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
         data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The order of blocks along boreholes and columns of observations: younger blocks lie above older ones."""
+"""The order of blocks along boreholes and columns of observations: younger blocks lie above older ones, but
+in a series in space."""
 
 from __future__ import annotations
 
@@ -21,11 +22,14 @@ class _Run:
     weight: float  # its length along the hole; of places without one their number
 
 
-def in_wrong_order(observations: Observations, blocks: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """(N,) bool: the observations that are left out so that no older block lies above a younger one.
+def in_wrong_order(
+    observations: Observations, blocks: np.ndarray, parts: np.ndarray, may_lie_above: np.ndarray
+) -> np.ndarray:
+    """(N,) bool: the observations that are left out so that each block may lie above those beneath it.
 
     blocks: (N,) the numbers of the blocks, oldest first; -1 for what has no order. parts: (N,) the number of
-    the part of space that each lies in, such as a compartment: across its border there is no order. Of each
+    the part of space that each lies in, such as a compartment: across its border there is no order.
+    may_lie_above: (B, B) bool, whether rock of the first block may lie above the second. Of each
     hole, or of the places over one another, the longest part remains that has an order. Where a hole is
     flatter than 45 degrees it may cross a surface upward, and says nothing of the order.
     """
@@ -34,7 +38,7 @@ def in_wrong_order(observations: Observations, blocks: np.ndarray, parts: np.nda
         runs = _runs(observations, blocks, rows[blocks[rows] >= 0])
         for run in runs:
             wrong[run.rows] = True
-        for number in _longest(observations.places, runs):
+        for number in _longest(observations.places, runs, may_lie_above):
             wrong[runs[number].rows] = False
     return wrong
 
@@ -68,16 +72,16 @@ def _runs(observations: Observations, blocks: np.ndarray, rows: np.ndarray) -> l
     return runs
 
 
-def _longest(places: np.ndarray, runs: list[_Run]) -> list[int]:
+def _longest(places: np.ndarray, runs: list[_Run], may_lie_above: np.ndarray) -> list[int]:
     """The numbers of the runs that remain: of those in order the ones of the largest weight."""
-    if all(_agree(places, first, second) for first, second in itertools.pairwise(runs)):
+    if all(_agree(places, first, second, may_lie_above) for first, second in itertools.pairwise(runs)):
         return list(range(len(runs)))
     best = [(run.weight, -1) for run in runs]
     for number, run in enumerate(runs):
         for before in range(number):
             weight = best[before][0] + run.weight
             # of equal weights the one with more runs
-            if weight >= best[number][0] and _agree(places, runs[before], run):
+            if weight >= best[number][0] and _agree(places, runs[before], run, may_lie_above):
                 best[number] = (weight, before)
     at = max(range(len(runs)), key=lambda number: best[number][0], default=-1)
     found = []
@@ -87,7 +91,7 @@ def _longest(places: np.ndarray, runs: list[_Run]) -> list[int]:
     return found
 
 
-def _agree(places: np.ndarray, above: _Run, below: _Run) -> bool:
+def _agree(places: np.ndarray, above: _Run, below: _Run, may_lie_above: np.ndarray) -> bool:
     """Whether two runs, one after another along a hole, may be in this order."""
     x, y, z = places[below.rows[0]] - places[above.rows[-1]]
     if z * z < x * x + y * y:
@@ -96,4 +100,5 @@ def _agree(places: np.ndarray, above: _Run, below: _Run) -> bool:
         x, y, z = places[below.rows[-1]] - places[above.rows[0]]
         if z * z < x * x + y * y:
             return True
-    return above.block >= below.block if z <= 0.0 else above.block <= below.block
+    upper, lower = (above, below) if z <= 0.0 else (below, above)
+    return bool(may_lie_above[upper.block, lower.block])

@@ -11,6 +11,7 @@ import numpy as np
 from ...project.project import Rock
 from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations
 from .columns import in_wrong_order
+from .level_sets import FieldStatements
 from .succession import Succession
 
 
@@ -87,11 +88,15 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     own = blocks[rows]
     ordered = np.where(own < len(rock.surfaces), own, -1)
     _, parts = _numbered(_sides(situation, len(observations))[rows])
-    wrong = rows[in_wrong_order(observations.some(rows), ordered, parts)]
+    is_sheet = np.array([not surface.is_level_set for surface in rock.surfaces], bool)
+    may = Succession([surface.rule for surface in rock.surfaces]).may_lie_above(is_sheet)
+    wrong = rows[in_wrong_order(observations.some(rows), ordered, parts, may)]
     is_wrong = np.isin(np.arange(len(observations)), wrong)
     left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
     used &= ~is_wrong
-    contacts, bounds = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    contacts, bounds, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    text = "it meets a block here that is not next to it in its series: no surface is known to be here"
+    left_out.add(np.isin(np.arange(len(observations)), not_adjacent), "not_adjacent", text)
     return Derived(contacts, bounds, used, left_out.entries)
 
 
@@ -174,8 +179,9 @@ def _of_used(
     situation: Situation,
     blocks: np.ndarray,
     used: np.ndarray,
-) -> tuple[list[np.ndarray], list[Bounds]]:
-    """The contacts and bounds of each surface from the observations that are used, their rows."""
+) -> tuple[list[np.ndarray], list[Bounds], np.ndarray]:
+    """The contacts and bounds of each surface from the observations that are used, their rows; and the rows
+    at places where blocks meet that no surface of their series divides."""
     places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
     above, below = _statements(rock, situation, blocks, used)
     first, place = _numbered(np.column_stack([places, sides]))
@@ -186,8 +192,13 @@ def _of_used(
         np.logical_or.at(found, place, said)
     meets = at_place[0] & at_place[1]
     _, column = _numbered(np.column_stack([places[:, :2], sides]))
+    fields = FieldStatements(rock, observations, used, (above, below), (place, first_rows))
     contacts, bounds = [], []
-    for number in range(len(rock.surfaces)):
+    for number, surface in enumerate(rock.surfaces):
+        if surface.is_level_set:
+            contacts.append(places[fields.contacts[number]])
+            bounds.append(fields.bounds(number))
+            continue
         on = np.sort(first_rows[meets[:, number]])
         contacts.append(places[on])
         lower, upper = (np.flatnonzero(said[:, number] & ~meets[place, number]) for said in (above, below))
@@ -205,7 +216,7 @@ def _of_used(
                 observations.depths[rows],
             )
         )
-    return contacts, bounds
+    return contacts, bounds, used[fields.not_adjacent]
 
 
 def _statements(
@@ -299,10 +310,11 @@ def with_contacts(rock: Rock, derived: Derived) -> Rock:
     surfaces = list(rock.surfaces)
     for number, surface in enumerate(surfaces):
         surfaces[number] = replace(surface, bounds=derived.bounds[number])
-        if not surface.interpolated:
+        if not surface.has_points:
             continue
         own = surface.own_points()
-        contacts = contacts_for(derived, number, own is None and surface.needs_points)
+        is_alone = own is None and not surface.is_level_set and surface.needs_points
+        contacts = contacts_for(derived, number, is_alone)
         if not np.array_equal(contacts, surface.contact_array()):
             known = contacts if own is None else np.concatenate([own, contacts])
             surfaces[number] = replace(surfaces[number], points=known, contacts=contacts)

@@ -73,6 +73,15 @@ class Succession:
         younger = self._cut_later(after)
         return block > after and any(self.at_or_below[block, number] for number in younger)
 
+    def may_lie_above(self, is_sheet: np.ndarray) -> np.ndarray:
+        """(S, S) bool: whether rock of the first block may lie above that of the second one. is_sheet: (S,)
+        bool, the surfaces with one height over a place. An older block may where no sheet lies over it and
+        under the younger one."""
+        count = len(self._rules)
+        over, under = (each[:count, is_sheet] for each in (self.at_or_above, self.at_or_below))
+        number = np.arange(count)
+        return (over.astype(np.int64) @ under.T == 0) | (number[:, None] >= number)
+
     def contacts(self, blocks: Sequence[int]) -> list[int]:
         """The surfaces through a place on the boundary of all of these blocks."""
         chosen = list(blocks)

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Warnings about the field of a series: data that it does not honor, critical points, data that it lacks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import number_list, place_text
+from ..base.sheet import Sheet
+from ..base.work import Work
+from ..fields import ScalarField, SolvedField, are_on
+from ..project.series import Series
+from ..readers.tables.observations import KINDS
+from ..surfaces.rock_input import RockInput
+from ..surfaces.series_field import SeriesField
+from ..surfaces.wrong_sides import heights_at
+from .series_data import SeriesData
+
+_LISTED = 12  # data that a warning names
+
+
+def warn_of_lacks(entry: RockInput, series: Series, lacks: list[str], compartments: list[str]) -> None:
+    """Adds the warning that compartments, by their names, have the field of all data. lacks: the names of the
+    surfaces without contacts there."""
+    what = "compartment" if len(compartments) == 1 else "compartments"
+    text = (
+        f"{series.item}: {what} {number_list(compartments, _LISTED)} without contacts of "
+        f"{number_list(lacks, _LISTED)}: the field there is that of all data, as if no fault displaced it; "
+        "give contacts of each surface on both sides of the faults"
+    )
+    entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
+
+
+def leave_out(entry: RockInput, series: Series, data: SeriesData, rows: np.ndarray) -> None:
+    """Lists bounds that are left out, by their rows; those of one observation once. Warns of them."""
+    found = list({(each.text, each.hole): each for each in map(data.left_out, rows.tolist())}.values())
+    if found:
+        entry.left_out += found
+        text = f"{len(found)} {KINDS['contradiction']}"
+        _add(entry, series, text, "contradiction", [each.text for each in found])
+
+
+def warn_of_field(
+    entry: RockInput, series: Series, data: SeriesData, field: SolvedField, off: np.ndarray
+) -> None:
+    """Adds the warnings about dips and bounds that a field does not honor. off: rows of these bounds."""
+    dips = [
+        f"{data.item('dip', n)} at {place_text(data.dips[n].tolist())}" for n in field.dips_missed.tolist()
+    ]
+    if dips:
+        text = f"its polarity does not hold at {len(dips)} dips, which contradict other data"
+        _add(entry, series, text, "dips", dips)
+    if len(off):
+        count = "a place is" if len(off) == 1 else f"{len(off)} places are"
+        text = f"{count} on the wrong side: other data contradict it, or a finer resolution is needed"
+        _add(entry, series, text, "observations", [data.bound_text(n) for n in off.tolist()])
+
+
+def warn_of_critical_points(entry: RockInput, series: Series, points: np.ndarray) -> None:
+    """Adds the warning about critical points (P, 3) of the fields of a series in its rock mass."""
+    if len(points):
+        is_one = len(points) == 1
+        text = f"its field has {len(points)} critical point{'' if is_one else 's'}, where beds close or part"
+        _add(entry, series, text, "critical_points", [place_text(point) for point in points.tolist()])
+
+
+def within_rock(work: Work, entry: RockInput, points: np.ndarray) -> np.ndarray:
+    """(P,) bool: which points (P, 3) lie over the region and on or above the base of a rock mass."""
+    base = entry.rock.base_elevation
+    assert base is not None  # fields have one
+    vertices, triangles = entry.planar_mesh()
+    level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
+    return np.isfinite(heights_at(work, level, points[:, :2])) & (points[:, 2] >= base)
+
+
+def warn_of_contacts(
+    entry: RockInput, own: SeriesField, number: int, sheets: dict[ScalarField, Sheet]
+) -> None:
+    """Adds the warning about contacts of a surface that its level set does not pass through. sheets: of each
+    field the level set."""
+    missed = []
+    for field, sheet in sheets.items():
+        contacts = field.points[field.point_values == field.levels[number - own.first]]
+        missed += contacts[~are_on(contacts, sheet)].tolist()
+    if missed:
+        count = "a contact lies" if len(missed) == 1 else f"{len(missed)} contacts lie"
+        text = f"{count} beside it, one at {place_text(tuple(missed[0]))}: use a finer resolution"
+        surface = entry.rock.surfaces[number].name
+        entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name, surface))
+
+
+def _add(entry: RockInput, series: Series, text: str, kind: str, listed: list[str]) -> None:
+    text = f"{series.item}: {text}: {number_list(listed, _LISTED)}"
+    entry.warnings.append(BuildWarning(text, kind, entry.rock.name))

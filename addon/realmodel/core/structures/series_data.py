@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is known of a series whose surfaces are level sets: contacts, dips and bounds, with where each comes
+from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.algebra import norm
+from ..fields import FieldData, ScalarField
+from ..project.project import Rock
+from ..project.series import Series
+from ..readers.tables.observations import Bounds, LeftOut, source_text
+from ..surfaces.rock_input import RockInput
+
+_MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hardly more
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesData:
+    """rock, numbers: of its surfaces there. contacts: (C, 3) with the number (C,) of the surface in the
+    series that each is on, and its row (C,) among the points of that. dips, normals: (D, 3), with rows (D,).
+    bounds: (B, 3) places, each with the number (B,) in the series of the surface whose level f is at most
+    there, or else at least, as is_lower (B,) bool says, and with its row (B,) among the bounds of that
+    surface."""
+
+    rock: Rock
+    numbers: list[int]
+    contacts: np.ndarray
+    surfaces: np.ndarray
+    contact_rows: np.ndarray
+    dips: np.ndarray
+    normals: np.ndarray
+    dip_rows: np.ndarray
+    bounds: np.ndarray
+    bound_surfaces: np.ndarray
+    is_lower: np.ndarray
+    bound_rows: np.ndarray
+
+    @classmethod
+    def of(cls, entry: RockInput, series: Series, numbers: list[int], step: float = np.inf) -> SeriesData:
+        """step: how far places within an interval are apart at most."""
+        rock = entry.rock
+        points = [rock.surfaces[number].point_array() for number in numbers]
+        dips = series.space_dips()
+        positions, normals = (np.empty((0, 3)),) * 2 if dips is None else (dips.positions, dips.normals)
+        given = [rock.surfaces[number].bounds for number in numbers]
+        step = max(step, sum(_length(each) for each in given if each is not None) / _MOST_BOUNDS)
+        none = np.empty((0, 3)), np.empty(0, np.int64)
+        placed = [none if each is None else each.along(step) for each in given]
+        lower = [np.empty(0, bool) if each is None else each.is_lower for each in given]
+        return cls(
+            rock,
+            numbers,
+            np.concatenate(points),
+            _owners([len(each) for each in points]),
+            np.concatenate([np.arange(len(each)) for each in points]),
+            positions,
+            normals / norm(normals)[:, None],
+            np.arange(len(positions)),
+            np.concatenate([places for places, _ in placed]),
+            _owners([len(places) for places, _ in placed]),
+            np.concatenate([each[rows] for each, (_, rows) in zip(lower, placed, strict=True)]),
+            np.concatenate([rows for _, rows in placed]),
+        )
+
+    def some(self, chosen: np.ndarray) -> SeriesData:
+        """Those that `chosen`, bool, says of `positions`."""
+        contacts, dips, bounds = np.split(chosen, np.cumsum([len(self.contacts), len(self.dips)]))
+        return SeriesData(
+            self.rock,
+            self.numbers,
+            *(each[contacts] for each in (self.contacts, self.surfaces, self.contact_rows)),
+            *(each[dips] for each in (self.dips, self.normals, self.dip_rows)),
+            *(each[bounds] for each in (self.bounds, self.bound_surfaces, self.is_lower, self.bound_rows)),
+        )
+
+    def without_bounds(self, rows: np.ndarray) -> SeriesData:
+        """All but some bounds, by their rows."""
+        chosen = np.ones(len(self.contacts) + len(self.dips) + len(self.bounds), bool)
+        chosen[len(self.contacts) + len(self.dips) + rows] = False
+        return self.some(chosen)
+
+    def is_off(self, field: ScalarField, near: float) -> np.ndarray:
+        """(B,) bool: the bounds that do not hold in a field, by more than `near` of the range of f."""
+        above = field.at(self.bounds) - field.levels[self.bound_surfaces]
+        return np.where(self.is_lower, above, -above) > near * float(np.ptp(field.values))
+
+    def positions(self) -> np.ndarray:
+        """(C + D + B, 3) the places of contacts, dips and bounds."""
+        return np.concatenate([self.contacts, self.dips, self.bounds])
+
+    def missing(self, all_data: SeriesData) -> list[str]:
+        """The names of the surfaces of which there are contacts in all data, but not here."""
+        lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
+        return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
+
+    def field_data(self) -> FieldData:
+        """The same for the solver."""
+        none = np.int32(-1)
+        return FieldData(
+            [self.rock.surfaces[number].name for number in self.numbers],
+            self.contacts,
+            self.surfaces,
+            self.dips,
+            self.normals,
+            self.bounds,
+            np.where(self.is_lower, none, self.bound_surfaces),
+            np.where(self.is_lower, self.bound_surfaces, none),
+            self.item,
+        )
+
+    def item(self, kind: str, row: int) -> str:
+        """A datum in messages, by its kind, "contact", "dip" or "bound", and its row of that kind."""
+        if kind == "dip":
+            return f"dip {self.dip_rows[row]}"
+        if kind == "bound":
+            bounds = self._bounds_of(row)
+            at = int(self.bound_rows[row])
+            return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
+        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
+        at, observed = int(self.contact_rows[row]), self.rock.observed
+        own = len(surface.point_array()) - len(surface.contact_array())
+        if observed is not None and at >= own:
+            same = np.flatnonzero((observed.places == self.contacts[row]).all(axis=1))
+            if len(same):
+                return f"surface '{surface.name}', {observed.source(int(same[0]))}"
+        return f"surface '{surface.name}', point {at}"
+
+    def left_out(self, row: int) -> LeftOut:
+        """A bound that is not used, as it contradicts others."""
+        bounds, at = self._bounds_of(row), int(self.bound_rows[row])
+        depth = float(bounds.depths[at])
+        return LeftOut(
+            "contradiction",
+            f"{self.bound_text(row)}, which contradicts data near it",
+            "",
+            str(bounds.holes[at]),
+            None if np.isnan(depth) else depth,
+            tuple(self.bounds[row].tolist()),
+        )
+
+    def bound_text(self, row: int) -> str:
+        """What a bound says."""
+        name = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].name
+        side = "older" if self.is_lower[row] else "younger"
+        return f"{self.item('bound', row)}: on the {side} side of '{name}'"
+
+    def _bounds_of(self, row: int) -> Bounds:
+        bounds = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].bounds
+        assert bounds is not None
+        return bounds
+
+
+def _owners(counts: list[int]) -> np.ndarray:
+    return np.repeat(np.arange(len(counts)), counts).astype(np.int32)
+
+
+def _length(bounds: Bounds) -> float:
+    return 0.0 if bounds.ends is None else float(norm(bounds.ends - bounds.places).sum())
