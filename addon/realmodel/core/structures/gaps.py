@@ -148,13 +148,17 @@ class _Around:
             return fault, []
         border, conditions = _outer_border(fault), self._conditions(fault, ends, has_sheets)
         samples = self._looked_at(fault, border, conditions, box, ends)
+        side = np.full(len(border.edges), -1)
+        side[samples.edge] = samples.side
         samples = samples.some(samples.near)
         if not len(samples.points):
             return fault, []
         chosen = np.zeros(len(border.edges), bool)
         chosen[samples.edge] = True
-        # also those beside them: where they cross the end of the rock near a vertex no place may show it
-        chosen |= np.isin(border.edges, border.edges[chosen]).any(axis=1)
+        # also those beside them on a side: where they cross the end of the rock near a vertex no place may
+        # show it
+        beside = np.isin(border.edges, border.edges[chosen]).any(axis=1)
+        chosen |= beside & np.isin(side, side[chosen])
         try:
             vertices, triangles = continued(*fault.triangulation(), border.some(chosen), self.width)
         except InputRefused:  # it is not known where to: it ends where it ends
