@@ -143,7 +143,7 @@ void cancel_equal(std::vector<std::array<std::int32_t, 3>>& triangles) {
     std::vector<Turned> sorted;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         auto corners = triangles[t];
-        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
         const int turn = corners[1] < corners[2] ? 1 : -1;
         if (turn < 0) std::swap(corners[1], corners[2]);
         sorted.push_back({corners, turn, t});

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/vectors.hpp"
 #include "meshing/band.hpp"
 #include "meshing/border_detail.hpp"
 #include "meshing/border_pieces.hpp"
