@@ -50,6 +50,7 @@ name = "Top {number}"
 points = "t{number}.csv"
 method = "kriging"
 variogram = {{model = "spherical", range = 30000, sill = 45000, nugget = 5000}}
+tie = false
 """
     path = folder / "project.toml"
     path.write_text(text)

@@ -32,6 +32,8 @@ namespace {
 constexpr double kClearance = 0.6;
 constexpr double kLongestEdge = 1.6;
 constexpr double kShortestEdge = 1e-3;
+/// How many times as fine as elsewhere a mesh becomes around points of constraints.
+constexpr double kMostRefined = 64;
 constexpr double kLeastAngle = 27.0 / 180 * std::numbers::pi;
 
 // The same for grids: nodes stay where they are as far as slivers allow it.
@@ -330,7 +332,10 @@ PlanarMesh Meshing::mesh(SizeField size, double begin, double end) const {
         advance_front(flat, size, banded.first_of_band, most_vertices(),
                       part(0.5, 0.75, "filling"));
     }
-    const double shortest = std::max(finest_length(), std::min(finest, room_at_loners(flat) / 2));
+    // Nearer ones are left as they are: where lines come as close, all of these would be divided as
+    // finely.
+    const double room = room_at_loners(flat) / 2;
+    const double shortest = room < finest / kMostRefined ? finest : std::min(finest, room);
     const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
                                   is_grid ? kLongestGridEdge : kLongestEdge, shortest,
                                   most_vertices()};
