@@ -63,7 +63,7 @@ def model_of(name, folder):
         ("two_layers", 4, 0.7, 2),
         ("gravel_plain", 12, 2, 6),
         ("castle_hill", 40, 6, 18),
-        ("haut_barr", 4, 0.8, 2),
+        ("haut_barr", 4, 1.0, 2),
         pytest.param("claudius", 150, 25, 75, marks=data_only),
         pytest.param("drogon", 50, 10, 20, marks=data_only),
         pytest.param("pleasant", 100, 8, 20, marks=data_only),
@@ -89,7 +89,7 @@ def overturned_fold(base=-8.0):
         x = along + 1.1 * z
         kept = (rng.random(len(x)) < 0.35) & (x > 0) & (x < 16)
         points = np.column_stack([x, rng.uniform(-0.5, 0.5, len(x)), z + 0.5 * number])[kept]
-        surfaces.append(Surface(f"S{number}", points=points, method="natural_neighbour"))
+        surfaces.append(Surface(f"S{number}", points=points, method="natural_neighbour", tie=False))
     return section_model(surfaces, base)
 
 
@@ -97,7 +97,9 @@ def hecho_fold():
     """The section of shared/data/folds/hecho_sparse, its points taken as heights."""
     folder = places.REAL_DATA / "folds" / "hecho_sparse"
     points = [np.loadtxt(folder / f"s{n}.csv", delimiter=",", skiprows=1) for n in range(6)]
-    surfaces = [Surface(f"S{n}", points=p, method="natural_neighbour") for n, p in enumerate(points)]
+    surfaces = [
+        Surface(f"S{n}", points=p, method="natural_neighbour", tie=False) for n, p in enumerate(points)
+    ]
     return section_model([*surfaces, Surface("top", mesh=folder / "top.off")], -2.0)
 
 
