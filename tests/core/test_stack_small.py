@@ -41,7 +41,7 @@ def test_one_layer_on_one_mesh():
 def in_one_part(rock, wanted):
     """A model of one rock mass whose space no structure divides."""
     numbers = [(number, number, None) for number in range(len(rock[0]))]
-    parts = [([], [(rock, numbers, [], [])], wanted)]
+    parts = [([], [(rock, numbers, [], [])], wanted, None)]
     return build_parts(parts, (len(numbers), []), np.empty((0, len(numbers)), np.uint8))
 
 

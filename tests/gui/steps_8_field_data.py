@@ -80,6 +80,7 @@ def built_with_misfits(walk):
     rock.base_elevation, rock.edge_length = 0.0, 100.0
     for row in rock.surfaces:
         row.method = "universal_kriging" if row.name == "Clay" else "plane"
+        row.tie = False
     model().view.show_misfits = True
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.build)
