@@ -80,7 +80,8 @@ class Succession:
         count = len(self._rules)
         over, under = (each[:count, is_sheet] for each in (self.at_or_above, self.at_or_below))
         number = np.arange(count)
-        return (over.astype(np.int64) @ under.T == 0) | (number[:, None] >= number)
+        between = np.array([(row & under).any(axis=1) for row in over]).reshape(count, count)
+        return ~between | (number[:, None] >= number)
 
     def contacts(self, blocks: Sequence[int]) -> list[int]:
         """The surfaces through a place on the boundary of all of these blocks."""
