@@ -20,7 +20,7 @@ from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height
 from ..heights.run import elsewhere, few_points, refused_points, runs_away
-from ..heights.ties import Terms, correction, missed_warnings, tie_data, tied_heights
+from ..heights.ties import Terms, TieData, correction, missed_warnings, tied_heights
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
 from .rock_input import named_surfaces
@@ -105,10 +105,9 @@ class LocalHeights:
         return z if self.terms is None else tied_heights(task.work, z, task.nodes, self.terms)
 
     def tied(
-        self, work: Work, given: np.ndarray, points: np.ndarray, mesh: Sheet
+        self, work: Work, data: TieData, points: np.ndarray, mesh: Sheet
     ) -> tuple[LocalHeights, list[str]]:
-        """The same, tied to its points, `given`, on a planar mesh, and warnings. points: as of heights."""
-        data = tie_data(given, None)
+        """The same, tied to its data on a planar mesh, and warnings. points: as of heights."""
         around = native_module().nodes_around(*mesh.arrays, data.places)
         nodes = np.ascontiguousarray(mesh.vertices[around])
         z = np.full(len(mesh.vertices), np.nan)
@@ -220,7 +219,8 @@ def is_local(surface: Surface) -> bool:
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if method == "parallel":
-        return settings["thickness"] is not None and not (surface.ties and len(surface.point_array()))
+        is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+        return settings["thickness"] is not None and not is_tied
     if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False
     if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left

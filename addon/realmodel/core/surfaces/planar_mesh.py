@@ -193,7 +193,7 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
         if not surface.ties:
             continue
         work.check()
-        data = tie_data(surface.point_array(), surface.bounds)
+        data = tie_data(surface.tied_points, surface.bounds)
         asked = (data.places, data.lower, data.upper)
         numbers, away = native_module().crowded_data(*mesh.arrays, asked)
         places.append(data.places[numbers])

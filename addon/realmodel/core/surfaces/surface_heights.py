@@ -124,7 +124,7 @@ def _tied(task: Task, result: Interpolation, surface: Surface) -> Interpolation:
     """The heights with which a surface honors its points and bounds on the mesh of its region."""
     if not surface.ties or task.triangles is None or not len(task.triangles):
         return result
-    data = tie_data(task.points, task.bounds)
+    data = tie_data(surface.tied_points, task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, result.z, data)
     if z is result.z:
         return replace(result, warnings=(*result.warnings, *warnings))

@@ -26,10 +26,12 @@ constexpr int kMostPasses = 6;       // over the last level, until what is left 
 constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
 constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
-constexpr double kCrowded = 0.05;    // of a row's square: less left by others needs a finer mesh
+constexpr double kCrowded = 0.2;     // of a row's square: less left by others needs a finer mesh
 constexpr double kMostCrowded = 0.02;  // as much less than that as the order of rows may matter
 
-constexpr double kSteep = 4;
+constexpr double kSteep = 1;
+constexpr int kMostReleases = 2;  // of one inequality: so the rounds end
+constexpr double kSignRidge = 1e-9;  // of the diagonal, where only signs of terms are wanted
 constexpr std::size_t kLookedAt = 32;  // data around an inequality
 
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
@@ -94,6 +96,7 @@ public:
         spacing_ = std::sqrt(rows_.area / static_cast<double>(count));
         if (active_.empty()) activate_some(wrong);
         do {
+            release_unneeded();
             leave_out_crowded();
             meet_active();
         } while (activate_some(beyond()));
@@ -148,9 +151,46 @@ private:
     }
 
     double residual(std::int32_t row) const {
+        return target(row) - rows_.rows[row].value(z_);
+    }
+
+    double target(std::int32_t row) const {
         const auto found = target_.find(row);
-        const double target = found == target_.end() ? rows_.rows[row].lower : found->second;
-        return target - rows_.rows[row].value(z_);
+        return found == target_.end() ? rows_.rows[row].lower : found->second;
+    }
+
+    /// Releases inequalities that hold the sheet back from what the others ask for: in the smallest
+    /// correction of the nodes alone that meets all active rows, their terms have the wrong sign
+    /// (Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23).
+    void release_unneeded() {
+        for (;;) {
+            Eigen::VectorXd right(static_cast<Eigen::Index>(active_.size()));
+            bool has_inequality = false;
+            for (std::size_t i = 0; i < active_.size(); ++i) {
+                const TieRow& row = rows_.rows[active_[i]];
+                has_inequality = has_inequality || !row.is_contact();
+                right[static_cast<Eigen::Index>(i)] = target(active_[i]) - row.value(rows_.heights);
+            }
+            if (!has_inequality) return;
+            const Eigen::VectorXd terms =
+                TieSystem(rows_, active_, DBL_MIN, kSignRidge).solve(right);
+            Members unneeded;
+            for (std::size_t i = 0; i < active_.size(); ++i) {
+                const std::int32_t row = active_[i];
+                if (rows_.rows[row].is_contact() || releases_[row] == kMostReleases) continue;
+                const double term = terms[static_cast<Eigen::Index>(i)];
+                if (target(row) == rows_.rows[row].lower ? term < 0 : term > 0)
+                    unneeded.push_back(static_cast<std::int32_t>(i));
+            }
+            if (unneeded.empty()) return;
+            for (const std::int32_t at : unneeded) {
+                const std::int32_t row = active_[at];
+                state_[row] = State::kIdle;
+                target_.erase(row);
+                ++releases_[row];
+            }
+            remove(active_, unneeded);
+        }
     }
 
     /// Gives up active rows that nodes cannot honor beside others.
@@ -294,6 +334,7 @@ private:
     std::vector<State> state_;
     Members active_;
     std::unordered_map<std::int32_t, double> target_;  // of active inequalities
+    std::unordered_map<std::int32_t, int> releases_;
     double spacing_ = 0;
     std::vector<double> radii_;
     std::vector<std::vector<double>> coefficients_, corrections_;  // of each level

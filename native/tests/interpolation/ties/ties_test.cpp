@@ -132,6 +132,22 @@ TEST(Ties, BoundsHoldBesideContacts) {
     EXPECT_LE(std::abs(found[3]), 3 + 1e-10);
 }
 
+TEST(Ties, LowerBoundsDenserThanNodesAllHold) {
+    // A surface that is high enough keeps them all, though no nodes could meet each of them.
+    const Grid grid(8);
+    std::mt19937_64 random(3);
+    const auto draw = [&] { return static_cast<double>(random() >> 11) / 9007199254740992.0; };
+    Asked asked;
+    for (int i = 0; i < 300; ++i)
+        asked.add({7 * draw(), 7 * draw()}, 100 * draw(), kNone);
+    const std::vector<double> z(grid.nodes.size(), 50);
+    const Ties ties = tie({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), kTolerance);
+    for (const double after : ties.after)
+        EXPECT_LE(after, 2 * kTolerance);
+    const std::vector<double> tied = tied_heights(z, grid.nodes, {}, ties.terms);
+    EXPECT_LT(*std::max_element(tied.begin(), tied.end()), 250);
+}
+
 TEST(Ties, ContactsComeBeforeBoundsThatContradictThem) {
     const Grid grid(20);
     const std::vector<double> z(grid.nodes.size(), 0);
