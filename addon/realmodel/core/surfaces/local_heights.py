@@ -43,7 +43,8 @@ class LocalHeights:
     height. hull: the corners of the points' hull, where extrapolation differs from the method. border: for
     triangulations, the points on the border of the hull, and the box around all. over: the number of the
     surface that this one is parallel to, or a height. least: the minimum thickness above the older surface.
-    terms: the correction with which it honors its points.
+    ties: it is tied to its points, by terms: the correction with which it honors them, None where it does
+    so without.
     """
 
     method: str
@@ -61,6 +62,7 @@ class LocalHeights:
     border: tuple[np.ndarray, Box] | None = None
     over: int | float | None = None
     least: float | None = None
+    ties: bool = False
     terms: Terms | None = None
 
     @property
@@ -110,13 +112,13 @@ class LocalHeights:
         """The same, tied to its data on a planar mesh, and warnings. points: as of heights."""
         around = native_module().nodes_around(*mesh.arrays, data.places)
         nodes = np.ascontiguousarray(mesh.vertices[around])
-        z = np.full(len(mesh.vertices), np.nan)
+        z, free = np.full(len(mesh.vertices), np.nan), replace(self, ties=True)
         if self.border is None:
-            z[around] = self.heights(work, points, nodes)
+            z[around] = free.heights(work, points, nodes)
         else:
-            z[around], _ = self.certain_heights(work, points, nodes, self.border[1])
+            z[around], _ = free.certain_heights(work, points, nodes, self.border[1])
         terms, after = correction(work, *mesh.arrays, z, data)
-        return replace(self, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
+        return replace(free, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
         outside = result.outside
@@ -127,7 +129,7 @@ class LocalHeights:
         return replace_extrapolated(task, result, outside)
 
     def _task(self, work: Work, points: np.ndarray, nodes: np.ndarray) -> Task:
-        return Task(work, points, nodes, self.settings)
+        return Task(work, points, nodes, self.settings, ties=self.ties)
 
     def _result(self, task: Task) -> Result:
         if self.known is not None:

@@ -266,3 +266,4 @@ def interpolate_rock(
         entry.warnings += points_too_low(work, entry, sorted(waiting))
         if keep is as_it_is:  # tiles have no such warnings
             entry.warnings += doubtful_heights(work, entry, sorted(waiting))
+        entry.untied.clear()

@@ -36,7 +36,8 @@ class RockInput:
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     fields: of series whose surfaces are level sets; such a surface is a level set, in each compartment of its
-    field.
+    field. untied: of sheets that were tied to their data what they were before, until doubts about them are
+    told.
     """
 
     rock: Rock
@@ -53,6 +54,7 @@ class RockInput:
     used: np.ndarray | None = None
     edge: float | None = None
     fields: list[SeriesField] = field(default_factory=list)
+    untied: dict[Sheet, Sheet] = field(default_factory=dict, metadata=NOT_STORED)
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""

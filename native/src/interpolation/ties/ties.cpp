@@ -26,12 +26,12 @@ constexpr int kMostPasses = 6;       // over the last level, until what is left 
 constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
 constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
-constexpr double kCrowded = 0.2;     // of a row's square: less left by others needs a finer mesh
+constexpr double kCrowded = 0.3;     // of a row's square: less left by others needs a finer mesh
 constexpr double kMostCrowded = 0.02;  // as much less than that as the order of rows may matter
 
 constexpr double kSteep = 1;
-constexpr int kMostReleases = 2;  // of one inequality: so the rounds end
-constexpr double kSignRidge = 1e-9;  // of the diagonal, where only signs of terms are wanted
+constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
+constexpr double kSignRidge = 1e-9;    // of the diagonal, where only signs of terms are wanted
 constexpr std::size_t kLookedAt = 32;  // data around an inequality
 
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
@@ -78,7 +78,11 @@ private:
 class Tying {
 public:
     Tying(const TieRows& rows, double tolerance, const Execution& execution)
-        : rows_(rows), tolerance_(tolerance), execution_(execution), z_(rows.heights) {
+        : rows_(rows),
+          tolerance_(tolerance),
+          execution_(execution),
+          centers_(rows.positions, rows.sided, rows.faults),
+          z_(rows.heights) {
         state_.assign(rows.rows.size(), State::kIdle);
     }
 
@@ -150,9 +154,7 @@ private:
         return !wrong.empty();
     }
 
-    double residual(std::int32_t row) const {
-        return target(row) - rows_.rows[row].value(z_);
-    }
+    double residual(std::int32_t row) const { return target(row) - rows_.rows[row].value(z_); }
 
     double target(std::int32_t row) const {
         const auto found = target_.find(row);
@@ -315,21 +317,26 @@ private:
         }
         const KernelSum sum(rows_.positions, rows_.sided, rows_.faults, coefficients,
                             radii_[level]);
-        const NodeLoop loop{z_.size(), 256, execution_};
+        const NodeLoop loop{centers_.size(), 4, execution_};
         loop.over_nodes([] { return 0; },
-                        [&](int, std::size_t i) {
-                            const auto number = static_cast<std::int32_t>(i);
-                            corrections_[level][i] = sum.at(rows_.center(number));
-                            double correction = 0;
-                            for (const auto& of_level : corrections_)
-                                correction += of_level[i];
-                            z_[i] = rows_.heights[i] + correction;
+                        [&](int, std::size_t number) {
+                            const NodeBlock block = centers_[number];
+                            const Eigen::ArrayXd found = sum.at(block);
+                            for (std::size_t k = 0; k < block.numbers.size(); ++k) {
+                                const std::uint32_t i = block.numbers[k];
+                                corrections_[level][i] = found[static_cast<Eigen::Index>(k)];
+                                double correction = 0;
+                                for (const auto& of_level : corrections_)
+                                    correction += of_level[i];
+                                z_[i] = rows_.heights[i] + correction;
+                            }
                         });
     }
 
     const TieRows& rows_;
     double tolerance_;
     Execution execution_;
+    NodeBlocks centers_;
     std::vector<double> z_;  // at the centers, corrected
     std::vector<State> state_;
     Members active_;
