@@ -9,12 +9,20 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core import RealModelError, Surface
-from ...core.settings.dips import Dips
-from .. import borehole_picks, caches, data_objects, observed_blocks, stored_arrays, surface_dips
+from .. import (
+    borehole_picks,
+    caches,
+    data_objects,
+    observed_blocks,
+    series_settings,
+    stored_arrays,
+    surface_dips,
+)
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
 ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block
-DIPS = (DIP, ROCK_DIP)
+SERIES_DIP = "dip of the series"  # in its field
+DIPS = (DIP, ROCK_DIP, SERIES_DIP)
 KINDS = (POINT, *DIPS, PLACE, INTERVAL)
 
 
@@ -26,9 +34,9 @@ _groups = caches.new(most=256 << 20, size_of=_bytes_of)  # lists of Groups, by w
 
 
 class Datum(NamedTuple):
-    """kind: POINT, DIP, ROCK_DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface,
-    of others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be
-    NaN. hole: its name, "" for none. used: whether it is not switched off."""
+    """kind: POINT, PLACE, INTERVAL, or one of DIPS. rock: the name of the rock mass. name: of the surface or
+    the series, of others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a
+    dip z may be NaN. hole: its name, "" for none. used: whether it is not switched off."""
 
     kind: str
     rock: str
@@ -53,7 +61,7 @@ class Datum(NamedTuple):
 class Group(NamedTuple):
     """Data of one kind and one rock mass, of points and dips of one surface. names: (N,) of Datum. rows: (N,)
     their rows, from 0, in the data that are used or, of what is switched off in a surface's points, there.
-    ends: (N, 3) the lower ends of intervals. dips: of a group of dips."""
+    ends: (N, 3) the lower ends of intervals. normals: (N, 3) of dips, toward younger rock, of any length."""
 
     kind: str
     rock: str
@@ -63,7 +71,7 @@ class Group(NamedTuple):
     used: np.ndarray
     rows: np.ndarray
     ends: np.ndarray | None = None
-    dips: Dips | None = None
+    normals: np.ndarray | None = None
 
     def datum(self, number):
         place = tuple(float(value) for value in self.places[number])
@@ -96,6 +104,8 @@ def groups(scene, kinds=KINDS):
             found += [group for row in rock.surfaces if row.dips for group in _dips(rock, row)]
         if ROCK_DIP in kinds and rock.dips:
             found += _dips(rock, rock)
+        if SERIES_DIP in kinds:
+            found += [group for row in rock.series if row.dips for group in _series_dips(rock, row)]
         if rock.observations and (PLACE in kinds or INTERVAL in kinds):
             key = (rock.name, rock.observations)
             if key not in _groups:
@@ -108,6 +118,7 @@ def are_there(scene):
     """Whether a scene has field data, without a look at files."""
     rocks = scene.realmodel.rocks
     of_rocks = any(rock.dips or rock.observations or rock.interval_values or rock.map for rock in rocks)
+    of_rocks = of_rocks or any(row.dips for rock in rocks for row in rock.series)
     return of_rocks or any(
         row.dips or row.left_out or (row.source == "POINTS_FILE" and (row.stored or row.filepath))
         for rock in rocks
@@ -211,8 +222,23 @@ def _dips(rock, row):
     if row == rock:
         surfaces, blocks = dips.named
         names, kind = np.where(surfaces != "", surfaces, blocks), ROCK_DIP
-    holes = np.full(len(dips), "")
-    return [Group(kind, rock.name, names, places, holes, dips.in_use, np.arange(len(dips)), dips=dips)]
+    normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
+    return [_of_dips(kind, rock, names, places, dips.in_use, normals)]
+
+
+def _series_dips(rock, row):
+    """The dips of a series, by its row."""
+    try:
+        dips = series_settings.dips_of(row)
+    except RealModelError:
+        return []
+    names = np.full(len(dips), row.name)
+    return [_of_dips(SERIES_DIP, rock, names, dips.positions, dips.in_use, dips.normals)]
+
+
+def _of_dips(kind, rock, names, places, used, normals):
+    holes, rows = np.full(len(places), ""), np.arange(len(places))
+    return Group(kind, rock.name, names, places, holes, used, rows, normals=normals)
 
 
 def _observed(rock):

@@ -99,6 +99,13 @@ def _properties(scene):
     yield from scene.realmodel.bodies
 
 
+def _properties_of_series(scene):
+    """By the name of a series the property of its youngest surface, of which the list has the last."""
+    return {
+        surface.series: surface.property_id for _, surface in settings.surface_rows(scene) if surface.series
+    }
+
+
 def _names(row):
     return {row.name, getattr(row, "block", "") or row.name}
 
@@ -128,15 +135,16 @@ def _give_materials(mesh, materials, faces):
 
 
 def _dips(scene):
-    places, gradients, materials = [], [], []
-    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    places, normals, materials = [], [], []
+    of_block = _properties_of_series(scene)
+    of_block |= {name: row.property_id for row in _properties(scene) for name in _names(row)}
     for group in data.groups(scene):
         if group.kind not in data.DIPS:
             continue
         at, names = group.places[:_MOST].copy(), group.names[:_MOST]
         at[:, 2] = heights.of_dips(scene, group.rock, names, at)
         places.append(at)
-        gradients.append(group.dips.gradients[:_MOST])
+        normals.append(group.normals[:_MOST])
         for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
             own = colors.of_property(scene, of_block.get(name, 0))
             upper = own if used else colors.plain_material(*_OFF)
@@ -145,7 +153,7 @@ def _dips(scene):
         return
     places = np.concatenate(places) - project_settings.model_origin(scene)
     radius = _DISC * heights.extent(scene)
-    shape = marks.discs(places, np.concatenate(gradients), radius, exaggeration.factor(scene))
+    shape = marks.discs(places, np.concatenate(normals), radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
     _give_materials(item.data, materials, 1)
 
