@@ -36,7 +36,7 @@ TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
         const auto first =
             static_cast<std::int64_t>(data.sheets[i]) * static_cast<std::int64_t>(count);
         TieRow& row = rows[i];
-        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, 0, true};
+        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
         for (std::size_t k = 0; k < 3; ++k) {
             const Position& p = sheets.nodes[corners[k]];
             keys[i][k] = first + corners[k];
@@ -44,7 +44,6 @@ TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
                 row.is_known && !std::isnan(sheets.heights[static_cast<std::size_t>(keys[i][k])]);
             row.shortest_edge =
                 std::min(row.shortest_edge, length(minus(p, sheets.nodes[corners[(k + 1) % 3]])));
-            row.reach = std::max(row.reach, length(minus(p, data.places[i])));
         }
         if (row.is_known) every.insert(every.end(), keys[i].begin(), keys[i].end());
     }
