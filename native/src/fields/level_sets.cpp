@@ -121,13 +121,13 @@ private:
 };
 
 /// Where a level set passes between two corners.
-Position position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
-    const Position a = lattice.position(crossing[0]);
+Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
+    const Vec3 a = lattice.position(crossing[0]);
     if (crossing[0] == crossing[1]) return a;
-    const Position b = lattice.position(crossing[1]);
+    const Vec3 b = lattice.position(crossing[1]);
     const double from = lattice.value(crossing[0]), to = lattice.value(crossing[1]);
     const double share = (level - from) / (to - from);
-    Position p{};
+    Vec3 p{};
     for (std::size_t k = 0; k < 3; ++k)
         p[k] = std::clamp(a[k] + share * (b[k] - a[k]), std::min(a[k], b[k]), std::max(a[k], b[k]));
     return p;

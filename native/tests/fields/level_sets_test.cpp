@@ -10,12 +10,13 @@
 #include <numeric>
 #include <random>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
 namespace {
 
-using Point = std::array<double, 3>;
+using Point = Vec3;
 
 /// A lattice with the values of a function at its nodes, and points with values of their own.
 struct Sampled {
@@ -57,14 +58,9 @@ struct Sampled {
 
 double volume(const LevelSet& set) {
     double sum = 0;
-    for (const auto& t : set.triangles) {
-        std::array<Point, 3> p{};
-        for (std::size_t i = 0; i < 3; ++i)
-            p[i] = set.vertices[static_cast<std::size_t>(t[i])];
-        sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
-               p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
-               p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-    }
+    const auto at = [&](std::int32_t v) { return set.vertices[static_cast<std::size_t>(v)]; };
+    for (const auto& t : set.triangles)
+        sum += sixfold_volume({0, 0, 0}, at(t[0]), at(t[1]), at(t[2]));
     return sum / 6;
 }
 
