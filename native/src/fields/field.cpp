@@ -36,21 +36,25 @@ constexpr int kMostRounds = 40;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
 
+/// The cube of some size that a contact lies in, and its surface.
+using Cube = std::array<std::int64_t, 4>;
+Cube cube_of(const KnownData& known, std::size_t contact, double size) {
+    Cube cube{0, 0, 0, known.surface_of(contact)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        cube[axis] = static_cast<std::int64_t>(std::floor(known.contacts()[contact][axis] / size));
+    return cube;
+}
+
 /// At most about `most` of some contacts: of each surface one in each of equal cubes.
 std::vector<std::size_t> thinned(const KnownData& known, std::size_t most) {
-    const std::vector<Vec3>& at = known.contacts();
     std::vector<std::size_t> kept;
     for (double size = 1.0 / 64;; size *= 1.25) {
-        std::map<std::array<std::int64_t, 4>, std::size_t> first;
-        for (std::size_t n = 0; n < at.size(); ++n) {
-            std::array<std::int64_t, 4> key{0, 0, 0, known.surface_of(n)};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                key[axis] = static_cast<std::int64_t>(std::floor(at[n][axis] / size));
-            first.emplace(key, n);
-        }
+        std::map<Cube, std::size_t> first;
+        for (std::size_t n = 0; n < known.contacts().size(); ++n)
+            first.emplace(cube_of(known, n, size), n);
         if (first.size() > most && size < 4) continue;
         kept.clear();
-        for (const auto& [key, n] : first)
+        for (const auto& [cube, n] : first)
             kept.push_back(n);
         std::sort(kept.begin(), kept.end());
         return kept;
@@ -311,16 +315,11 @@ private:
         const std::vector<std::size_t> order = by_turns(missed);
         // Cubes as large as a center's share of the contacts' sheets.
         const double size = 1 / std::sqrt(static_cast<double>(have + most));
-        std::set<std::array<std::int64_t, 4>> taken;
+        std::set<Cube> taken;
         std::size_t left = std::min(most - have, have);
         for (const std::size_t n : order) {
             if (left == 0) break;
-            std::array<std::int64_t, 4> key{0, 0, 0, known_.surface_of(n)};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                key[axis] =
-                    static_cast<std::int64_t>(std::floor(known_.contacts()[n][axis] / size));
-            }
-            if (!taken.insert(key).second) continue;
+            if (!taken.insert(cube_of(known_, n, size)).second) continue;
             is_center_[n] = 1;
             --left;
         }
