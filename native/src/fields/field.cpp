@@ -118,8 +118,8 @@ public:
                     value *= unit;
             },
             execution_);
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
-            out.levels.push_back(unit * level(k));
+        for (const double level : levels())
+            out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
@@ -129,16 +129,22 @@ public:
 
 private:
     struct State {
-        bool active = false, stays = false;
+        bool active = false, was_released = false, stays = false;
     };
 
     void begin(double from, double to, const char* text) const {
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
     }
 
-    double level(std::int32_t surface) const { return level_in(*spline_, surface); }
     double level_in(const Spline& spline, std::int32_t surface) const {
         return spline.of({{{known_.contacts()[known_.reference(surface)], 1, true}}, {}, 0, false});
+    }
+
+    std::vector<double> levels() const {
+        std::vector<double> out;
+        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
+            out.push_back(level_in(*spline_, k));
+        return out;
     }
 
     /// A part of the data that likelihoods are compared by: contacts that are spread, and those
@@ -291,21 +297,15 @@ private:
                 spline_->values_at(here, std::span<double>(out.data() + from, to - from));
             },
             0.0);
+        const std::vector<double> level_of = levels();
         for (std::size_t n = 0; n < at.size(); ++n)
-            out[n] = std::abs(out[n] - level_of_[known_.surface_of(n)]);
+            out[n] = std::abs(out[n] - level_of[known_.surface_of(n)]);
         return out;
-    }
-
-    void set_levels() {
-        level_of_.clear();
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
-            level_of_.push_back(level(k));
     }
 
     /// Those of the contacts that are missed most, no two of them near each other, of all surfaces
     /// by turns.
     bool add_centers() {
-        set_levels();
         const std::vector<double> missed = misfits();
         misfit_ = *std::max_element(missed.begin(), missed.end());
         const auto have =
@@ -361,7 +361,7 @@ private:
         std::sort(missed.begin(), missed.end());
         missed.resize(std::min(missed.size(), kMostActivated));
         for (const auto& [lack, n] : missed) {
-            if (released_[n]) states_[n].stays = true;
+            if (states_[n].was_released) states_[n].stays = true;
             states_[n].active = true;
         }
         return !missed.empty();
@@ -377,7 +377,7 @@ private:
             const double force = spline_->force(row++);
             if (force >= 0 || states_[n].stays) continue;
             states_[n].active = false;
-            released_[n] = 1;
+            states_[n].was_released = true;
             any = true;
         }
         return any;
@@ -418,7 +418,6 @@ private:
     /// Most dips against which the field falls; or one whose nearest neighbors have its attitude,
     /// but the other polarity.
     void refuse_polarities() {
-        released_.assign(inequalities_.size(), 0);
         std::vector<std::int64_t> against;
         for (const Inequality& inequality : inequalities_) {
             if (inequality.kind == Kind::kPolarity && spline_->of(inequality.functional) < 0)
@@ -482,8 +481,6 @@ private:
     Likely likely_;
     std::vector<Inequality> inequalities_;
     std::vector<State> states_;
-    std::vector<char> released_;
-    std::vector<double> level_of_;
     std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;
