@@ -69,8 +69,6 @@ public:
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
-        for (std::size_t n = 0; n < known.contacts().size(); ++n)
-            surface_of_[known.contacts()[n]] = known.surface_of(n);
         const std::size_t most = static_cast<std::size_t>(std::max(options.most_centers, 1));
         const std::size_t all = known.contacts().size();
         if (all <= std::min<std::size_t>(most, 2 * kFirstCenters)) {
@@ -148,8 +146,8 @@ private:
     }
 
     /// A part of the data that likelihoods are compared by: contacts that are spread, and those
-    /// nearest to them.
-    std::vector<Functional> sample() const {
+    /// nearest to them, without the references.
+    std::vector<std::size_t> sample() const {
         const std::vector<Vec3>& at = known_.contacts();
         std::set<std::size_t> numbers;
         for (const std::size_t n : thinned(known_, kSampledContacts / 2)) {
@@ -167,23 +165,24 @@ private:
             }
             numbers.insert(nearest);
         }
-        std::vector<Functional> out;
+        std::vector<std::size_t> out;
         for (const std::size_t n : numbers) {
-            if (n != known_.reference(known_.surface_of(n))) out.push_back(known_.on_surface(n));
+            if (n != known_.reference(known_.surface_of(n))) out.push_back(n);
         }
         return out;
     }
 
-    /// The fixed functionals, of many dips only some, and others.
-    std::vector<Functional> joined(std::vector<Functional> fixed,
-                                   std::span<const Functional> others) const {
+    /// The fixed functionals, of many dips only some, and the sample.
+    std::vector<Functional> sampled(std::span<const double> gaps) const {
+        std::vector<Functional> fixed = known_.fixed(gaps);
         const std::size_t dips = known_.data().dips.size();
         const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
         std::vector<Functional> out;
         for (std::size_t n = 0; n < fixed.size(); ++n) {
             if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
         }
-        out.insert(out.end(), others.begin(), others.end());
+        for (const std::size_t n : sample_)
+            out.push_back(known_.on_surface(n));
         return out;
     }
 
@@ -192,13 +191,11 @@ private:
     /// together.
     void find_likely() {
         const auto look = [&] {
-            likely_ = most_likely(joined(known_.fixed(gaps_), sample_), known_.data().normals,
-                                  execution_);
+            likely_ = most_likely(sampled(gaps_), known_.data().normals, execution_);
         };
         look();
         if (known_.data().surfaces < 3) return;
-        const Spline spline(joined(known_.fixed(gaps_), sample_), map_of(likely_.anisotropy),
-                            likely_.errors, execution_);
+        const Spline spline(sampled(gaps_), map_of(likely_.anisotropy), likely_.errors, execution_);
         double low = 1e300, high = 0;
         const std::vector<double> apart = distances();
         for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
@@ -217,13 +214,13 @@ private:
     void find_gaps(const Likely& likely) {
         const std::int32_t last = known_.data().surfaces - 1;
         gaps_ = distances();
-        std::vector<Functional> all = joined(known_.fixed(gaps_), sample_);
+        std::vector<Functional> all = sampled(gaps_);
         Spline spline(all, map_of(likely.anisotropy), likely.errors, execution_);
         for (int round = 0; round < kGapRounds; ++round) {
             const std::vector<double> steep = steepness(spline);
             for (std::int32_t k = 0; k < last; ++k)
                 gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
-            all = joined(known_.fixed(gaps_), sample_);
+            all = sampled(gaps_);
             spline.set_right(all);
         }
     }
@@ -254,10 +251,8 @@ private:
     /// How steep a field is on the two surfaces of each layer.
     std::vector<double> steepness(const Spline& spline) const {
         std::vector<std::vector<double>> on(known_.data().surfaces);
-        for (const Functional& f : sample_) {
-            const Vec3& at = f.values[0].at;
-            on[surface_of_.at(at)].push_back(length(spline.gradient(at)));
-        }
+        for (const std::size_t n : sample_)
+            on[known_.surface_of(n)].push_back(length(spline.gradient(known_.contacts()[n])));
         std::vector<double> out;
         for (std::size_t k = 0; k + 1 < on.size(); ++k) {
             std::vector<double> both = on[k];
@@ -400,8 +395,7 @@ private:
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
-        const Spline spline(joined(known_.fixed({}), sample_), map_of(kIsotropic), {1e-6, 1e-3},
-                            execution_);
+        const Spline spline(sampled({}), map_of(kIsotropic), {1e-6, 1e-3}, execution_);
         const double mean_gap = known_.total_gap() / last;
         for (std::int32_t k = 0; k < last; ++k) {
             if (level_in(spline, k + 1) - level_in(spline, k) >= -kWrongOrder * mean_gap) continue;
@@ -475,8 +469,7 @@ private:
     FieldOptions options_;
     Execution execution_;
     std::vector<char> is_center_;
-    std::vector<Functional> sample_;
-    std::map<Vec3, std::int32_t> surface_of_;
+    std::vector<std::size_t> sample_;
     std::vector<double> gaps_;
     Likely likely_;
     std::vector<Inequality> inequalities_;
