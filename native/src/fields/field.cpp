@@ -204,24 +204,23 @@ private:
             high = std::max(high, steep);
         }
         if (high <= kUneven * low) return;
-        find_gaps({kIsotropic, {1e-6, 1e-3}});
+        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}});
         look();
-        find_gaps(likely_);
+        find_gaps(apart, likely_);
         look();
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.
-    void find_gaps(const Likely& likely) {
+    /// @param apart  how far each surface is from the next
+    void find_gaps(const std::vector<double>& apart, const Likely& likely) {
         const std::int32_t last = known_.data().surfaces - 1;
-        gaps_ = distances();
-        std::vector<Functional> all = sampled(gaps_);
-        Spline spline(all, map_of(likely.anisotropy), likely.errors, execution_);
+        gaps_ = apart;
+        Spline spline(sampled(gaps_), map_of(likely.anisotropy), likely.errors, execution_);
         for (int round = 0; round < kGapRounds; ++round) {
             const std::vector<double> steep = steepness(spline);
             for (std::int32_t k = 0; k < last; ++k)
                 gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
-            all = sampled(gaps_);
-            spline.set_right(all);
+            spline.set_right(sampled(gaps_));
         }
     }
 
