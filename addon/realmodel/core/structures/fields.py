@@ -118,7 +118,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
         with naming(f"{entry.rock.item}, {series.item}"):
             field, kept, left_out = without_contradictions(
-                own, lambda given: solve_field(lattice, given.field_data(), work)
+                own, lambda given: solve_field(lattice, given.level_set_data(), work)
             )
         leave_out(entry, series, own, left_out)
         points = field.critical_points
