@@ -263,8 +263,7 @@ def _spacing(points: np.ndarray) -> float:
 
 def at_height(dips: Dips, height) -> np.ndarray:
     """(D, 3) the places of dips; heights, or one, of those that have none."""
-    own = np.full(len(dips), np.nan) if dips.z is None else dips.z
-    return np.column_stack([dips.positions, np.where(np.isfinite(own), own, height)])
+    return np.column_stack([dips.positions, np.where(np.isfinite(dips.heights), dips.heights, height)])
 
 
 def sided_dips(work: Work, surface: Surface, entry: RockInput) -> tuple[Dips | None, np.ndarray]:
