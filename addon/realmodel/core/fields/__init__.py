@@ -5,7 +5,7 @@ Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a 
 tetrahedron of the lattice, and the level of each surface.
 """
 
-from .lattice import Lattice, ScalarField
+from .lattice import Lattice, ScalarField, rises
 from .level_sets import are_on, level_solids, with_contacts, within_lattice
 from .solve import Anisotropy, LevelSetData, SolvedField, solve_field
 
@@ -17,6 +17,7 @@ __all__ = [
     "SolvedField",
     "are_on",
     "level_solids",
+    "rises",
     "solve_field",
     "with_contacts",
     "within_lattice",
