@@ -19,35 +19,18 @@ _NOTHING = ("Planned hole", "#404040")
 
 
 def collar(row):
-    """(3,) the collar of a hole in model coordinates."""
+    """[x, y, z] of the collar of a hole, model coordinates."""
     return json.loads(row.collar) if row.collar else [0.0, 0.0, 0.0]
-
-
-def collar_text(axis):
-    """The getter of a text field: text, as Blender's numbers have 32 bits, which are too coarse for map
-    coordinates."""
-    return lambda row: f"{collar(row)[axis]:.3f}"
-
-
-def move_collar(axis):
-    """The setter of that field. What is no number changes nothing."""
-
-    def set_text(row, text):
-        try:
-            value = float(text.replace(",", ""))
-        except ValueError:
-            return
-        if np.isfinite(value):
-            given = collar(row)
-            given[axis] = value
-            set_collar(row, given)
-            update(row.id_data, row)
-
-    return set_text
 
 
 def set_collar(row, place):
     row.collar = json.dumps([float(value) for value in place])
+
+
+def move_collar(row, place):
+    """Moves the collar of a hole, and shows what it meets there."""
+    set_collar(row, place)
+    update(row.id_data, row)
 
 
 def axis_of(row):
@@ -57,7 +40,8 @@ def axis_of(row):
 
 
 def update(scene, row):
-    """Looks up what a hole meets now, where the model is at hand, and shows all holes."""
+    """Shows all holes. What this one meets is asked of the model, if that is in memory; if not, it is not
+    known until the next build."""
     _look_up(scene, row)
     show(scene)
 
