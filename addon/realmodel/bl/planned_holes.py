@@ -141,17 +141,7 @@ def _show(scene, name, axis, parts, size):
     ends = np.array([(0.0, axis.length), *((begin, end) for _, begin, end in parts)]).ravel()
     places = axis.places(ends) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
-    thin = marks.lines(places, pairs[:1], _AXIS * size, _SIDES)
-    thick = marks.lines(places, pairs[1:], _RADIUS * size, _SIDES)
-    shape = type(thin)(
-        np.concatenate([thin.coordinates, thick.coordinates]),
-        np.concatenate([thin.offsets, thick.offsets[1:] + thin.offsets[-1]]),
-        np.concatenate([thin.corners, thick.corners + len(thin.coordinates)]).astype(np.int32),
-    )
-    mesh = bodies.add(scene, KIND, name, shape).data
-    ids = sorted({number for number, *_ in parts})
-    for material in (colors.plain_material(*_NOTHING), *(colors.of_property(scene, each) for each in ids)):
-        mesh.materials.append(material)
-    slots = np.array([0, *(1 + ids.index(number) for number, *_ in parts)], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(slots, _SIDES))
-    mesh.update()
+    radii = size * np.where(pairs[:, 0] == 0, _AXIS, _RADIUS)
+    mesh = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES)).data
+    of_parts = [colors.of_property(scene, number) for number, *_ in parts]
+    bodies.give_materials(mesh, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)

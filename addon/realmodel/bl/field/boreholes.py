@@ -43,15 +43,7 @@ def show(scene):
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
     mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
-    materials = [tubes[number][0] for number in kept.tolist()]
-    slots = {material.name: None for material in materials}
-    slots = {name: number for number, name in enumerate(slots)}
-    by_name = {material.name: material for material in materials}
-    for name in slots:
-        mesh.materials.append(by_name[name])
-    given = np.array([slots[material.name] for material in materials], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
-    mesh.update()
+    bodies.give_materials(mesh, [tubes[number][0] for number in kept.tolist()], _SIDES)
 
 
 def is_on_cut(scene):
