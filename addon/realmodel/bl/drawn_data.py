@@ -48,13 +48,6 @@ def on_plane(scene, ray, plane):
     return start + (point - start) @ normal / towards * along
 
 
-def in_world(scene, places):
-    """(N, 3) where places (N, 3) of the model are shown."""
-    stretched = exaggeration.matrix(scene)
-    offsets = np.asarray(places, np.float64).reshape(-1, 3) - project_settings.model_origin(scene)
-    return offsets @ stretched[:3, :3].T + stretched[:3, 3]
-
-
 def add_contacts(scene, row, points):
     """Adds points (P, 3) in model coordinates to those that a surface is made from. Raises InputRefused where
     it is a ready mesh."""

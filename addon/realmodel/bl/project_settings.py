@@ -23,6 +23,7 @@ from ..core.surfaces.prepare import read_rocks
 from . import (
     borehole_picks,
     built_models,
+    exaggeration,
     library_rows,
     method_settings,
     names,
@@ -73,6 +74,13 @@ class _Source(NamedTuple):
 def model_origin(scene):
     """(3,) float64: what object coordinates lack to be model coordinates."""
     return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
+
+
+def in_world(scene, places):
+    """(N, 3) where places (N, 3) of the model are shown."""
+    stretched = exaggeration.matrix(scene)
+    offsets = np.asarray(places, np.float64).reshape(-1, 3) - model_origin(scene)
+    return offsets @ stretched[:3, :3].T + stretched[:3, 3]
 
 
 def user_objects(scene):

@@ -9,7 +9,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import drawn_data, placed_images, settings, viewports
+from ..bl import drawn_data, placed_images, project_settings, settings, viewports
 from ..bl.display import exaggeration_changed, visible
 from ..core import InputRefused
 from .in_viewport import InViewport
@@ -58,7 +58,7 @@ class _Drawing(InViewport):
         del self._places[-1:]
 
     def marks(self, context):
-        return drawn_data.in_world(context.scene, self._places).tolist()
+        return project_settings.in_world(context.scene, self._places)
 
     def drawn(self, context):
         """The lines (N, 3) that were drawn, or those of the active object. Raises InputRefused."""

@@ -72,8 +72,7 @@ def move(scene, place):
     """Moves the plane to a place in model coordinates; it stays parallel."""
     plane = plane_of(scene)
     matrix = plane.matrix_world.copy()
-    offset = np.append(place - project_settings.model_origin(scene), 1.0)
-    matrix.translation = (exaggeration.matrix(scene) @ offset)[:3]
+    matrix.translation = project_settings.in_world(scene, place)[0]
     plane.matrix_world = matrix
 
 
