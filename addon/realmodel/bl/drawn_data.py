@@ -67,10 +67,10 @@ def add_contacts(scene, row, points):
     live.touch(scene)
 
 
-def add_stick(scene, row, points):
-    """Adds a stick through points (P, 3) in model coordinates to those that a fault is fitted through, which
-    are an object from now on. Raises InputRefused where the fault is made of something else."""
-    if len(points) < 2:
+def add_sticks(scene, row, lines):
+    """Adds sticks through points, (P, 3) each in model coordinates, to those that a fault is fitted through,
+    which are an object from now on. Raises InputRefused where the fault is made of something else."""
+    if any(len(points) < 2 for points in lines):
         raise InputRefused("a stick needs two points", advice="draw a line along the fault")
     known = _sticks(scene, row)
     if known is not None:
@@ -83,7 +83,8 @@ def add_stick(scene, row, points):
             reading_text.fill(row, {})
             row.stick, row.interface_digest = "", ""
             project_settings.forget_shape(row)
-    _add_to_mesh(scene, row.object, points, _along(len(points)))
+    for points in lines:
+        _add_to_mesh(scene, row.object, points, _along(len(points)))
     data_objects.update(scene)
     live.touch(scene)
 

@@ -96,8 +96,7 @@ class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
     def act(self, context):
         row = settings.active_structure(context.scene)
         lines = self.drawn(context)
-        for line in lines:
-            drawn_data.add_stick(context.scene, row, line)
+        drawn_data.add_sticks(context.scene, row, lines)
         self.report({"INFO"}, f"Added {len(lines)} stick{'s' * (len(lines) > 1)} to {row.name}")
 
 
