@@ -125,8 +125,9 @@ def compose(scene, depsgraph, whole=True):
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
+        fields = series_settings.fields(row)
         for at, surface_row in enumerate(row.surfaces):
-            surface = _plain_surface(surface_row, series_settings.fields(row))
+            surface = _plain_surface(surface_row, fields)
             with naming(surface_item(rock, surface)):
                 _shape(source, composed, (number, at), surface, surface_row)
             rock.surfaces.append(surface)
@@ -213,7 +214,7 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
-    if row.source in ("TRACE_OBJECT", "STICKS_OBJECT"):
+    if row.source in settings.LINE_OBJECTS:
         _lines_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
