@@ -119,7 +119,7 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
 
 def some_holes(context):
     there = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if there else "there are no boreholes; import some first (Surfaces, Import Boreholes)"
+    return None if there else "there are no boreholes; import some first (Import Field Data)"
 
 
 def chosen_holes(context):
