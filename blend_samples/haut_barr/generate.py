@@ -297,6 +297,7 @@ def write_rock(folder, lines, name, edge_length, surfaces, inside, box, base=Non
             write_points(folder / file, stations(inside, box, spacing, seed), height)
             lines += [f'points = "{file}"']
             lines += ['method = "natural_neighbour"', 'extrapolate = "nearest"'] if spacing < 4 else VARIOGRAM
+            lines.append("tie = false")  # the survey has finer clefts than the mesh: ties make spikes
         if rule != "erosional":
             lines.append(f'rule = "{rule}"')
         if block is not None:

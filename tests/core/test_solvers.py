@@ -63,7 +63,7 @@ def model_of(name, folder):
         ("two_layers", 4, 0.7, 2),
         ("gravel_plain", 12, 2, 6),
         ("castle_hill", 40, 6, 18),
-        ("haut_barr", 4, 1.0, 2),
+        ("haut_barr", 4, 0.8, 2),
         pytest.param("claudius", 150, 25, 75, marks=data_only),
         pytest.param("drogon", 50, 10, 20, marks=data_only),
         pytest.param("pleasant", 100, 8, 20, marks=data_only),

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.elementary import cube_root
 from ..base.errors import InputRefused, naming
 from ..base.work import Work, refused_as
 from ..fields import (
@@ -36,6 +36,8 @@ from .field_warnings import (
 )
 from .parts.part_models import level
 from .series_data import SeriesData
+from .sheets.families import Family, families
+from .sheets.within import Within
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
 _CELLS = 50_000  # of the lattice, about, where its resolution is automatic
@@ -105,25 +107,27 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     numbers = members(entry.rock, series)
     lattice = _lattice(entry, series, SeriesData.of(entry, series, numbers).positions(), top)
     data = SeriesData.of(entry, series, numbers, _PLACES * lattice.spacing[0])
-    families = _families(entry, series, numbers)
-    sides = sides_of(work, data.positions(), entry.divided().faults)
-    fields, critical = [], [np.empty((0, 3))]
-    for number in work.share_out(list(range(len(families.rows)))):
-        own = data.some(families.has(number, sides))
+    structure = entry.divided()
+    sides = sides_of(work, data.positions(), structure.faults)
+    fields: dict[int, ScalarField] = {}
+    critical = [np.empty((0, 3))]
+    for family in work.share_out(_families(entry, series, numbers)):
+        within = Within(work, structure, numbers[-1], family)
+        own = data.some(within.has(sides))
         if lacks := own.missing(data):
             own = data
-            warn_of_lacks(entry, series, lacks, families.names(number))
+            warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
         with naming(f"{entry.rock.item}, {series.item}"):
             field, kept, left_out = without_contradictions(
-                own, lambda given: solve_field(lattice, given.field_data(), work)
+                own, lambda given: solve_field(lattice, given.level_set_data(), work)
             )
         leave_out(entry, series, own, left_out)
         points = field.critical_points
-        critical.append(points[families.has(number, sides_of(work, points, entry.divided().faults))])
-        fields.append(_through_data(entry, series, kept, field))
+        critical.append(points[within(points)])
+        fields |= dict.fromkeys(family.members, _through_data(entry, series, kept, field))
     points = np.concatenate(critical)
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
-    of_compartment: list[ScalarField] = [fields[own] for own in families.of_compartment]
+    of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
 
 
@@ -149,30 +153,8 @@ def _through_data(entry: RockInput, series: Series, data: SeriesData, field: Sol
     return made
 
 
-@dataclass(frozen=True)
-class _Families:
-    """rows: (N, A) int8 the sides of the faults that displace a series, which compartments with one field
-    have in common. of_compartment: of each compartment its row. active: (F,) bool, these faults.
-    compartments: the names of all."""
-
-    rows: np.ndarray
-    of_compartment: list[int]
-    active: np.ndarray
-    compartments: list[str]
-
-    def has(self, number: int, sides: np.ndarray) -> np.ndarray:
-        """(N,) bool: which places with sides (N, F) lie in the compartments of a row."""
-        own, row = sides[:, self.active], self.rows[number]
-        return ((own == row) | (row == 0)).all(axis=1)
-
-    def names(self, number: int) -> list[str]:
-        """The names of the compartments of a row."""
-        return [
-            name for name, own in zip(self.compartments, self.of_compartment, strict=True) if own == number
-        ]
-
-
-def _families(entry: RockInput, series: Series, numbers: list[int]) -> _Families:
+def _families(entry: RockInput, series: Series, numbers: list[int]) -> list[Family]:
+    """The compartments that share a field. Raises InputRefused for faults that it cannot have."""
     structure = entry.divided()
     faults = structure.faults
     active = faults.active(numbers[-1])
@@ -184,8 +166,7 @@ def _families(entry: RockInput, series: Series, numbers: list[int]) -> _Families
         if faults.dies_out[number]:
             what = f"fault '{faults.names[number]}', which dies out, displaces it: a field cannot do that yet"
             raise series.refused(what, "name", "let the fault end outside, or use sheets", item)
-    rows, of_compartment = np.unique(structure.compartments[:, active], axis=0, return_inverse=True)
-    return _Families(rows, of_compartment.ravel().tolist(), active, structure.names)
+    return sorted(families(structure, numbers[-1]), key=lambda family: family.key)
 
 
 def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -> Lattice:
@@ -196,23 +177,15 @@ def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -
     high = np.maximum([*plan.max(axis=0), top], places.max(axis=0))
     size = high - low
     is_auto = series.resolution == AUTO
-    step = _cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
+    step = cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
     origin = low - _MARGIN * step
     counts = np.ceil((high - origin) / step + 0.3).astype(np.int64) + 1
     if counts.astype(float).prod() > _MOST_NODES:
-        coarser = step * _cube_root(float(counts.astype(float).prod()) / _MOST_NODES)
+        coarser = step * cube_root(float(counts.astype(float).prod()) / _MOST_NODES)
         what = f"its lattice would have {counts.astype(float).prod():,.0f} nodes"
         advice = f"use a resolution of {coarser:.2g} or more"
         raise series.refused(what, "resolution", advice, f"{entry.rock.item}, {series.item}")
     return Lattice(tuple(origin.tolist()), (step,) * 3, tuple(counts.tolist()))
-
-
-def _cube_root(value: float) -> float:
-    """By Newton's method: the same on all machines."""
-    root = math.ldexp(1.0, math.frexp(value)[1] // 3)
-    for _ in range(20):
-        root = (2.0 * root + value / (root * root)) / 3.0
-    return root
 
 
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
