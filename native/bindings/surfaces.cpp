@@ -217,8 +217,7 @@ std::pair<Array<std::int32_t>, Array<double>> crowded_data(
     const interpolation::TiedSheets sheet{
         rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"), zeros, {}, {}};
     const std::vector<std::int32_t> one(static_cast<std::size_t>(places.shape(0)), 0);
-    const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper),
-                                       one};
+    const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), one};
     interpolation::CrowdedData found;
     {
         const py::gil_scoped_release unlocked;

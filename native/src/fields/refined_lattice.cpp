@@ -28,18 +28,15 @@ void check_finite(std::span<const double> numbers, const char* what, std::size_t
 }
 
 void check_field(const LatticeField& field, std::span<const double> levels) {
-    double nodes = 1;
+    const auto& [origin, spacing, counts] = field.lattice;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double last = field.origin[axis] + field.spacing[axis] * field.counts[axis];
-        if (field.counts[axis] < 2 || field.counts[axis] > kMostNodes)
+        const double last = origin[axis] + spacing[axis] * counts[axis];
+        if (counts[axis] < 2 || counts[axis] > kMostNodes)
             refuse_lattice("a lattice needs 2 to 1048576 nodes along each axis");
-        if (!(field.spacing[axis] > 0) || !std::isfinite(field.origin[axis]) ||
-            !std::isfinite(last))
+        if (!(spacing[axis] > 0) || !std::isfinite(origin[axis]) || !std::isfinite(last))
             refuse_lattice("a lattice needs finite coordinates, and spacings above 0");
-        nodes *= field.counts[axis];
     }
-    if (static_cast<double>(field.values.size()) != nodes)
-        refuse_lattice("values: one for each node");
+    if (field.values.size() != field.lattice.nodes()) refuse_lattice("values: one for each node");
     if (field.points.size() != 3 * field.point_values.size())
         refuse_lattice("points: a position and a value for each");
     check_finite(field.values, "values", 1);
@@ -52,7 +49,9 @@ void check_field(const LatticeField& field, std::span<const double> levels) {
 }  // namespace
 
 RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double> levels)
-    : origin_(field.origin), spacing_(field.spacing), counts_(field.counts) {
+    : origin_(field.lattice.origin),
+      spacing_(field.lattice.spacing),
+      counts_(field.lattice.counts) {
     check_field(field, levels);
     stride_ = {1, counts_[0] + 2, (counts_[0] + 2L) * (counts_[1] + 2L)};
     nodes_ = stride_[2] * (counts_[2] + 2);

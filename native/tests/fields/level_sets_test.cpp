@@ -25,9 +25,7 @@ struct Sampled {
 
     Sampled(const std::array<std::int32_t, 3>& counts, const Point& spacing,
             const std::function<double(const Point&)>& f) {
-        field.origin = {-1, 2, 0.5};
-        field.spacing = spacing;
-        field.counts = counts;
+        field.lattice = {{-1, 2, 0.5}, spacing, counts};
         for (std::int32_t k = 0; k < counts[2]; ++k) {
             for (std::int32_t j = 0; j < counts[1]; ++j) {
                 for (std::int32_t i = 0; i < counts[0]; ++i)
@@ -36,10 +34,7 @@ struct Sampled {
         }
     }
     Point node(const std::array<std::int32_t, 3>& at) const {
-        Point p{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            p[axis] = field.origin[axis] + field.spacing[axis] * at[axis];
-        return p;
+        return field.lattice.position(at[0], at[1], at[2]);
     }
     void add(const Point& p, double value) {
         points.insert(points.end(), p.begin(), p.end());
@@ -169,14 +164,14 @@ TEST(LevelSetsTest, PointsAreVerticesWhereverTheyLie) {
 TEST(LevelSetsTest, TheFieldIsLinearOnTetrahedra) {
     const auto f = [](const Point& p) { return 2 * p[0] - 0.5 * p[1] + 0.25 * p[2]; };
     Sampled field({4, 5, 6}, {0.7, 0.3, 0.9}, f);
+    const Lattice& lattice = field.field.lattice;
     std::mt19937_64 generator(6);
     std::vector<double> positions;
     for (std::size_t i = 0; i < 100; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::uniform_real_distribution<double> random(
-                field.field.origin[axis],
-                field.field.origin[axis] +
-                    field.field.spacing[axis] * (field.field.counts[axis] - 1));
+                lattice.origin[axis],
+                lattice.origin[axis] + lattice.spacing[axis] * (lattice.counts[axis] - 1));
             positions.push_back(random(generator));
         }
         if (i % 3 == 0) {
