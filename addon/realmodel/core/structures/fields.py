@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ..base.algebra import are_among
 from ..base.elementary import cube_root
 from ..base.errors import InputRefused, naming
 from ..base.work import Work, refused_as
@@ -136,8 +137,7 @@ def _through_data(entry: RockInput, series: Series, data: SeriesData, field: Sol
     too: they hold in the end. Warns of what is not honored."""
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
         made = with_contacts(field, data.contacts, data.surfaces)
-        contacts = set(map(tuple, data.contacts.tolist()))
-        kept = np.array([tuple(place) not in contacts for place in data.bounds.tolist()], bool)
+        kept = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(kept), bool)
         kept[field.bounds_missed] = False
         for _ in range(_ROUNDS):
