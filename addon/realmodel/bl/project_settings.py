@@ -121,7 +121,7 @@ def compose(scene, depsgraph, whole=True):
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
             rock.dips = surface_dips.of_row(row)
-            rock.series = series_settings.of_row(row)
+            rock.series = series_settings.of_rock(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
@@ -146,6 +146,10 @@ def _plain_surface(row, fields):
     """A surface with everything but its shape. fields: the names of series whose surfaces are level sets."""
     surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
     surface.series = row.series or None
+    if row.source not in method_settings.READY_MESHES:
+        surface.dips = surface_dips.of_row(row)
+        if row.left_out:
+            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     if surface.series in fields:
         return surface
     if method_settings.has_method(row):
@@ -154,9 +158,6 @@ def _plain_surface(row, fields):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = surface_dips.of_row(row)
-        if row.left_out:
-            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     return surface
 
 
@@ -204,6 +205,11 @@ def _shape(source, composed, place, surface, row):
     if row.interface_digest and in_use(row.interface):
         given, triangles = shapes.triangulation(row.interface, source.depsgraph)
         if shapes.digest(given, triangles) != row.interface_digest:
+            if isinstance(surface, Surface) and series_settings.is_level_set(row):
+                what = f"its interface was edited, but it is a level set of series '{row.series}'"
+                raise InputRefused(
+                    what, advice="undo that and move its contacts, or take it out of the series"
+                )
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
@@ -427,7 +433,7 @@ def add_rock(group, rock):
         borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
         surface_dips.keep(row, rock.dips)
-        series_settings.keep(row, rock.series)
+        series_settings.fill(row, rock.series)
     return row
 
 

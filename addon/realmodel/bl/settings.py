@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import preferences
 
-VERSION = 5  # of the settings in a .blend
+VERSION = 6  # of the settings in a .blend
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
@@ -78,9 +78,10 @@ def surface_of(row):
     return row.id_data.path_resolve(row.path_from_id().partition(".filters[")[0])
 
 
-def rock_of(surface):
-    """The rock mass that a surface's row belongs to."""
-    return surface.id_data.path_resolve(surface.path_from_id().rpartition(".surfaces[")[0])
+def rock_of(row):
+    """The rock mass that the row of a surface or of a series belongs to."""
+    within = ".series[" if kind_of(row) == "series" else ".surfaces["
+    return row.id_data.path_resolve(row.path_from_id().rpartition(within)[0])
 
 
 def surface_rows(scene):
@@ -121,10 +122,11 @@ def row_at(scene, place):
 
 
 def kind_of(row):
-    """ "surface", "fault", "body" or "rock"."""
+    """ "surface", "series", "fault", "body" or "rock"."""
     path = row.path_from_id()
-    if ".surfaces[" in path:
-        return "surface"
+    for kind, within in (("surface", ".surfaces["), ("series", ".series[")):
+        if within in path:
+            return kind
     return "fault" if ".faults[" in path else "body" if ".bodies[" in path else "rock"
 
 
