@@ -339,9 +339,5 @@ def _rows(numbers: np.ndarray, apart: str) -> bytes:
     """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
-        text.write(_joined(row, apart) + "\n")
+        text.write(apart.join(map(repr, row)) + "\n")
     return text.getvalue().encode()
-
-
-def _joined(row: list[float], apart: str) -> str:
-    return apart.join(map(repr, row))
