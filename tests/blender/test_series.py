@@ -8,7 +8,7 @@ import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import built_models, live, series_settings
 from realmodel.bl.field import data, edits, handle
-from realmodel.core import InputRefused, build, load_project
+from realmodel.core import InputRefused, SpaceDips, build, load_project
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -47,6 +47,40 @@ class Series(PanelCase):
         np.testing.assert_allclose(
             [block.volume for block in again.blocks], list(expected.values()), rtol=1e-9
         )
+
+    def test_sheets_keep_the_dips_of_their_series(self):
+        random = np.random.default_rng(2)
+        for name, height in (("low", 0.0), ("high", 10.0)):
+            rows = [f"{x},{y},{height + 0.1 * x}" for x, y in random.uniform(0, 100, (9, 2))]
+            (self.folder / f"{name}.csv").write_text("\n".join(["x,y,z", *rows]))
+        (self.folder / "dips.csv").write_text(
+            "x,y,dip,dip_direction,surface,block\n20,30,20,90,,\n70,60,9,270,high,\n40,80,7,270,,high\n"
+        )
+        project = self.folder / "sheets.toml"
+        project.write_text(
+            'format = 1\nname = "p"\n[[rock]]\nname = "r"\n'
+            "region = [[0, 0], [100, 0], [100, 100], [0, 100]]\n"
+            "edge_length = 20\nbase_elevation = -50\n"
+            '[[rock.series]]\nname = "J"\nkind = "sheets"\ndips = "dips.csv"\n'
+            '[[rock.surface]]\nname = "low"\npoints = "low.csv"\nseries = "J"\n'
+            '[[rock.surface]]\nname = "high"\npoints = "high.csv"\nseries = "J"\n'
+        )
+        expected = [block.volume for block in build(load_project(project)).blocks]
+        ops.open_project(filepath=str(project))
+        rock = self.model.rocks[0]
+        self.assertIn("3 dips", " ".join(draw_tab(bpy.context).labels))
+        rock.surfaces[1].name = "top"
+        dips = series_settings.dips_of(rock.series[0])
+        self.assertEqual([names.tolist() for names in dips.named], [["", "top", ""], ["", "", "top"]])
+        self.save_and_open()
+        ops.build()
+        self.assertEqual(list(self.volumes().values()), expected)
+        saved = self.folder / "saved.toml"
+        ops.save_project(filepath=str(saved))
+        self.assertEqual([block.volume for block in build(load_project(saved)).blocks], expected)
+        row = self.model.rocks[0].series[0]
+        series_settings.add_dips(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
+        self.assertEqual(series_settings.dips_of(row).gradients[-1].tolist(), [-0.5, 0.0])
 
     def test_a_fold_is_made_from_scratch(self):
         ops.new()
@@ -149,6 +183,25 @@ class Series(PanelCase):
         normal = dips.normals[0] / np.linalg.norm(dips.normals[0])
         np.testing.assert_allclose(normal, (np.sqrt(0.5), 0.0, np.sqrt(0.5)), atol=1e-12)
         self.assertEqual(rock.surfaces[1].dips, "")
+
+    def test_sheets_take_dips_of_their_surfaces_and_of_none(self):
+        ops.new()
+        for name in ("A", "B"):
+            ops.surface_add(name=name, empty=True)
+        rock = self.model.rocks[0]
+        ops.series_add(kind="sheets")
+        row = rock.series[0]
+        row.oldest = "A"
+        table = self.folder / "dips.csv"
+        table.write_text("x,y,dip,dip_direction,surface\n1,2,10,90,A\n3,4,20,90,\n")
+        ops.boreholes_read(filepath=str(table), series="series")
+        ops.dip_add(location=(5.0, 6.0, 7.0), dip=30.0, dip_direction=90.0)
+        dips = series_settings.dips_of(row)
+        self.assertEqual(dips.named[0].tolist(), ["A", "", ""])
+        np.testing.assert_allclose(dips.gradients[:, 0], -np.tan(np.radians([10, 20, 30])))
+        self.assertEqual((rock.dips, rock.surfaces[0].dips), ("", ""))
+        self.refused(ops.dip_add, "one height", overturned=True)
+        self.assertEqual(len(data.groups(self.scene, (data.SERIES_DIP,))[0].places), 3)
 
     def test_an_edited_level_set_is_refused(self):
         ops.open_project(filepath=str(PROJECT))

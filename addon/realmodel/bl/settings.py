@@ -13,10 +13,8 @@ VERSION = 6  # of the settings in a .blend
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
 IMAGE = "realmodel_image"  # on an object: it is an image that was placed by its coordinates
-OF_OBJECTS = (  # sources that are objects of the user
-    *("POINTS_OBJECT", "MESH_OBJECT", "TRACE_OBJECT"),
-    "STICKS_OBJECT",
-)
+LINE_OBJECTS = ("TRACE_OBJECT", "STICKS_OBJECT")  # sources of faults: objects with lines
+OF_OBJECTS = ("POINTS_OBJECT", "MESH_OBJECT", *LINE_OBJECTS)  # sources that are objects of the user
 TRACES = ("TRACE_OBJECT", "TRACE_FILE")  # sources of faults that are lines
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
@@ -58,9 +56,7 @@ def is_region_object(_row, item):
 
 def is_fault_object(row, item):
     """Poll of the pointer of a fault: to a mesh, or to a curve or mesh with its trace or its sticks."""
-    return (is_region_object if row.source in ("TRACE_OBJECT", "STICKS_OBJECT") else is_mesh_object)(
-        row, item
-    )
+    return (is_region_object if row.source in LINE_OBJECTS else is_mesh_object)(row, item)
 
 
 def active_rock(scene):

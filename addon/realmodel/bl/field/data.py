@@ -8,13 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core import RealModelError, Surface
+from ...core import Dips, RealModelError
 from .. import (
     borehole_picks,
+    borehole_points,
     caches,
     data_objects,
     observed_blocks,
     series_settings,
+    settings,
     stored_arrays,
     surface_dips,
 )
@@ -105,7 +107,7 @@ def groups(scene, kinds=KINDS):
         if ROCK_DIP in kinds and rock.dips:
             found += _dips(rock, rock)
         if SERIES_DIP in kinds:
-            found += [group for row in rock.series if row.dips for group in _series_dips(rock, row)]
+            found += [group for row in rock.series if row.dips for group in _dips(rock, row)]
         if rock.observations and (PLACE in kinds or INTERVAL in kinds):
             key = (rock.name, rock.observations)
             if key not in _groups:
@@ -160,12 +162,7 @@ def _stamp(row):
 def own_points(scene, row):
     """(P, 3) the points of a surface that are used, without contacts that follow from observations. Raises
     InputRefused."""
-    if row.stored:
-        arrays = stored_arrays.unpack(row.stored)
-        given = Surface(row.name, points=arrays["points"], contacts=arrays.get("contacts"))
-        points = given.own_points()
-    else:
-        points = data_objects.read_points(scene, row) if row.source == "POINTS_FILE" else None
+    points = borehole_points.own_points(scene, row)
     if points is None:
         return np.empty((0, 3))
     off = set(map(tuple, left_out(row).tolist()))
@@ -212,33 +209,23 @@ def _points(scene, rock, row, holes):
 
 
 def _dips(rock, row):
-    """The dips of a surface, or of a rock mass, by its row."""
+    """The dips of a surface, of a series or of a rock mass, by its row."""
+    is_of_series = settings.kind_of(row) == "series"
     try:
-        dips = surface_dips.of_row(row)
+        dips = (series_settings.dips_of if is_of_series else surface_dips.of_row)(row)
     except RealModelError:
         return []
-    places = np.column_stack([dips.positions, dips.heights])
-    names, kind = np.full(len(dips), row.name), DIP
-    if row == rock:
+    if is_plan := isinstance(dips, Dips):
+        places = np.column_stack([dips.positions, dips.heights])
+        normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
+    else:
+        places, normals = dips.positions, dips.normals
+    names, kind = np.full(len(dips), row.name), SERIES_DIP if is_of_series else DIP
+    if row == rock and is_plan:
         surfaces, blocks = dips.named
         names, kind = np.where(surfaces != "", surfaces, blocks), ROCK_DIP
-    normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
-    return [_of_dips(kind, rock, names, places, dips.in_use, normals)]
-
-
-def _series_dips(rock, row):
-    """The dips of a series, by its row."""
-    try:
-        dips = series_settings.dips_of(row)
-    except RealModelError:
-        return []
-    names = np.full(len(dips), row.name)
-    return [_of_dips(SERIES_DIP, rock, names, dips.positions, dips.in_use, dips.normals)]
-
-
-def _of_dips(kind, rock, names, places, used, normals):
-    holes, rows = np.full(len(places), ""), np.arange(len(places))
-    return Group(kind, rock.name, names, places, holes, used, rows, normals=normals)
+    holes, rows = np.full(len(dips), ""), np.arange(len(dips))
+    return [Group(kind, rock.name, names, places, holes, dips.in_use, rows, normals=normals)]
 
 
 def _observed(rock):

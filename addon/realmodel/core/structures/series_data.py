@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import FieldData, ScalarField
+from ..fields import LevelSetData, ScalarField
 from ..project.project import Rock
 from ..project.series import Series
 from ..readers.tables.observations import Bounds, LeftOut, source_text
@@ -99,10 +99,10 @@ class SeriesData:
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
         return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
 
-    def field_data(self) -> FieldData:
+    def level_set_data(self) -> LevelSetData:
         """The same for the solver."""
         none = np.int32(-1)
-        return FieldData(
+        return LevelSetData(
             [self.rock.surfaces[number].name for number in self.numbers],
             self.contacts,
             self.surfaces,
