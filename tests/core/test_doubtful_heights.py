@@ -58,7 +58,8 @@ def test_a_tied_surface_passes_through_a_wrong_pick_and_warns_of_it():
     assert found.surface == "S1" and found.items == (7,)
     said = re.fullmatch(
         r"before it is tied it misses point 7 at \(303.194829, 453.497889, 209.969953\), which lies (.*) "
-        "above it; the neighboring surfaces are 200 away: check the point, through which the surface makes a bump",
+        "above it; the neighboring surfaces are 200 away: check the point, through which the surface makes a "
+        "bump",
         found.text,
     )
     assert said and 150 < float(said[1]) < 170

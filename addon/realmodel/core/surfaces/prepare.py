@@ -75,6 +75,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
+        entry.has_faults = bool(project.faults)
         if rock.observed is not None:
             apply_observations(work, entry)
         apply_dips(work, entry, field.ground, field.mapped)

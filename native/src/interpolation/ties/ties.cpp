@@ -27,8 +27,7 @@ constexpr int kMostPasses = 6;       // over the last level, until what is left 
 constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
 constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
-constexpr double kCrowded = 0.3;     // of a row's square: less left by others needs a finer mesh
-constexpr double kMostCrowded = 0.02;  // as much less than that as the order of rows may matter
+constexpr double kMostCrowded = 0.02;  // of the square of a row: less left by others asks as much
 
 constexpr double kSteep = 1;
 constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
@@ -408,7 +407,7 @@ Ties tie(const TiedSheets& sheets, const TieData& data, double tolerance,
     return ties;
 }
 
-CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data) {
+CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data, double least) {
     const TieRows rows(sheet, data);
     const std::vector<bool> contradicts = steep_bounds(data, sheet.nodes);
     Members members;
@@ -421,7 +420,7 @@ CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data) {
     CrowdedData crowded;
     const spatial::NearestPoints tree(places);
     std::vector<spatial::Neighbor> near;
-    for (const std::int32_t at : crowded_members(rows, members, kCrowded)) {
+    for (const std::int32_t at : crowded_members(rows, members, least)) {
         crowded.numbers.push_back(members[at]);
         tree.find(places[at], 2, near);
         crowded.room.push_back(std::sqrt(near.back().squared_distance));

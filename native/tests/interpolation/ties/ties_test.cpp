@@ -213,7 +213,8 @@ TEST(Ties, CrowdedDataAreThoseThatNodesCannotTellApart) {
     asked.contact({10.25, 10.2}, 3);
     asked.contact({15.3, 4.3}, 4);       // alone
     asked.add({15.31, 4.3}, -kNone, 5);  // which that implies
-    const CrowdedData found = crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data());
+    const CrowdedData found =
+        crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), 0.3);
     ASSERT_EQ(found.numbers.size(), 2u);
     EXPECT_EQ(found.numbers[0], 1);
     EXPECT_TRUE(found.numbers[1] == 2 || found.numbers[1] == 3);
@@ -227,8 +228,9 @@ TEST(Ties, BoundsThatContradictNearDataAreCrowded) {
     Asked asked;
     asked.contact({10.3, 10.3}, 5);
     asked.add({10.3001, 10.3}, 9, kNone);
-    EXPECT_EQ(crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data()).numbers.size(),
-              1u);
+    EXPECT_EQ(
+        crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), 0.3).numbers.size(),
+        1u);
 }
 
 }  // namespace
