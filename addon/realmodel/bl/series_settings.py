@@ -54,12 +54,14 @@ def dips_of(row):
 
 
 def add_dips(row, dips):
-    """Adds SpaceDips to the dips that a series has."""
-    known = dips_of(row)
-    if isinstance(known, Dips):
-        keep_dips(row, Dips.joined([known, dips.of_sheets()]))
+    """Adds SpaceDips, or Dips of sheets, to the dips that a series has. Raises InputRefused where sheets
+    would get a vertical or an overturned one."""
+    parts = [each for each in (dips_of(row), dips) if each is not None]
+    if any(isinstance(each, Dips) for each in parts):
+        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+        keep_dips(row, Dips.joined(flat))
     else:
-        keep_dips(row, dips if known is None else SpaceDips.joined([known, dips]))
+        keep_dips(row, SpaceDips.joined(parts))
 
 
 def active(rock):
