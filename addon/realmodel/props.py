@@ -24,6 +24,7 @@ from . import (
     props_ensemble,
     props_planned,
     props_rock,
+    props_series,
     props_stage,
     props_structure,
     props_surface,
@@ -315,6 +316,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
     is_outdated: BoolProperty(options={"HIDDEN"})  # something was changed since the blocks were built
+    is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/live.py
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
     ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)
@@ -347,13 +349,15 @@ class RealModelActivity(bpy.types.PropertyGroup):
     )
     unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
+    problem_item: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})
     problem_triangles: StringProperty(options={"SKIP_SAVE"})
     problem_place: StringProperty(options={"SKIP_SAVE"})
 
 
 _MODULES = (
-    *(props_surface, props_rock, props_structure, props_view, props_stage, props_ensemble, props_planned),
+    *(props_surface, props_series, props_rock, props_structure, props_view, props_stage, props_ensemble),
+    props_planned,
     sys.modules[__name__],
 )
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// level_sets, moved_onto_levels, field_at, corners_at, points_between.
+// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between.
 #include "realmodel/fields/level_sets.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "arrays.hpp"
 #include "execution.hpp"
-#include "rows.hpp"
+#include "lattice.hpp"
 
 namespace py = pybind11;
 
@@ -14,31 +15,24 @@ namespace realmodel::bindings {
 
 namespace {
 
-/// A field as Python has it: (origin, spacing, counts), values, points (P, 3), values of points.
-struct GivenField {
-    fields::LatticeField field;
+/// Positions (P, 3), and the values there.
+using PointsTuple = std::tuple<Array<double>, Array<double>>;
 
-    GivenField(const py::tuple& lattice, const Array<double>& values, const Array<double>& points,
-               const Array<double>& point_values) {
-        if (lattice.size() != 3) throw py::value_error("lattice: origin, spacing and counts");
-        field.origin = lattice[0].cast<std::array<double, 3>>();
-        field.spacing = lattice[1].cast<std::array<double, 3>>();
-        field.counts = lattice[2].cast<std::array<std::int32_t, 3>>();
-        field.values = view(values);
-        rows<3>(points, "points");
-        field.points = view(points);
-        field.point_values = view(point_values);
-    }
-};
+fields::LatticeField field_of(const LatticeTuple& lattice, const Array<double>& values,
+                              const PointsTuple& points) {
+    const auto& [positions, own] = points;
+    require_columns(positions, 3, "points");
+    return {lattice_of(lattice), view(values), view(positions), view(own)};
+}
 
-py::list level_sets(const py::tuple& lattice, const Array<double>& values, const py::tuple& points,
-                    const Array<double>& levels, WatchedExecution* execution) {
-    const auto positions = points[0].cast<Array<double>>(), own = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, positions, own);
+py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
+                    const PointsTuple& points, const Array<double>& levels,
+                    WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
     std::vector<fields::LevelSet> found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::level_sets(given.field, view(levels), run(execution));
+        found = fields::level_sets(field, view(levels), run(execution));
     }
     py::list sets;
     for (fields::LevelSet& each : found)
@@ -47,48 +41,45 @@ py::list level_sets(const py::tuple& lattice, const Array<double>& values, const
     return sets;
 }
 
-Array<double> moved_onto_levels(const py::tuple& lattice, const Array<double>& values,
+Array<double> moved_onto_levels(const LatticeTuple& lattice, const Array<double>& values,
                                 const Array<double>& levels) {
-    const GivenField given(lattice, values, Array<double>(std::vector<py::ssize_t>{0, 3}),
-                           Array<double>(0));
-    return to_array(fields::moved_onto_levels(given.field, view(levels)));
+    const fields::LatticeField field{lattice_of(lattice), view(values), {}, {}};
+    return to_array(fields::moved_onto_levels(field, view(levels)));
 }
 
-Array<double> field_at(const py::tuple& lattice, const Array<double>& values,
-                       const py::tuple& points, const Array<double>& positions,
+Array<double> field_at(const LatticeTuple& lattice, const Array<double>& values,
+                       const PointsTuple& points, const Array<double>& positions,
                        WatchedExecution* execution) {
-    const auto own = points[0].cast<Array<double>>(), known = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, own, known);
-    rows<3>(positions, "positions");
+    const fields::LatticeField field = field_of(lattice, values, points);
+    require_columns(positions, 3, "positions");
     std::vector<double> found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::field_at(given.field, view(positions), run(execution));
+        found = fields::field_at(field, view(positions), run(execution));
     }
     return to_array(std::move(found));
 }
 
-py::tuple corners_at(const py::tuple& lattice, const Array<double>& values, const py::tuple& points,
-                     const Array<double>& positions, WatchedExecution* execution) {
-    const auto own = points[0].cast<Array<double>>(), known = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, own, known);
-    rows<3>(positions, "positions");
-    fields::CornersAt found;
+py::tuple tetrahedra_at(const LatticeTuple& lattice, const Array<double>& values,
+                        const PointsTuple& points, const Array<double>& positions,
+                        WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
+    require_columns(positions, 3, "positions");
+    fields::TetrahedraAt found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::corners_at(given.field, view(positions), run(execution));
+        found = fields::tetrahedra_at(field, view(positions), run(execution));
     }
     return py::make_tuple(to_array(std::move(found.corners)), to_array(std::move(found.weights)));
 }
 
-Array<std::uint8_t> points_between(const py::tuple& lattice, const Array<double>& values,
-                                   const py::tuple& points, WatchedExecution* execution) {
-    const auto own = points[0].cast<Array<double>>(), known = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, own, known);
+Array<std::uint8_t> points_between(const LatticeTuple& lattice, const Array<double>& values,
+                                   const PointsTuple& points, WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
     std::vector<std::uint8_t> found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::points_between(given.field, run(execution));
+        found = fields::points_between(field, run(execution));
     }
     return to_array(std::move(found));
 }
@@ -110,7 +101,7 @@ field is greater.)doc");
     m.def("field_at", &field_at, py::arg("lattice"), py::arg("values"), py::arg("points"),
           py::arg("positions"), py::arg("execution") = py::none(), R"doc(
 (P,) float64: a field at positions (P, 3); NaN outside of its lattice. points: as of level_sets.)doc");
-    m.def("corners_at", &corners_at, py::arg("lattice"), py::arg("values"), py::arg("points"),
+    m.def("tetrahedra_at", &tetrahedra_at, py::arg("lattice"), py::arg("values"), py::arg("points"),
           py::arg("positions"), py::arg("execution") = py::none(), R"doc(
 (P, 4) int64, the corners of the tetrahedra that positions (P, 3) are in: nodes, and points counted after all
 nodes; (P, 4) float64, their weights, which sum to 1. points: as of level_sets.)doc");

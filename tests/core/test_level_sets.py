@@ -51,7 +51,7 @@ def test_contacts_denser_than_nodes_are_vertices_and_bend_it_no_more_than_they_m
     """Forty contacts in one cell of a surface that they miss by a tenth of it, here and there."""
     lattice = Lattice((-0.375, -0.5, -0.25), (1.0, 1.0, 1.0), (12, 12, 12))
     field = ScalarField(lattice, lattice.positions() @ [0.2, 0.1, 1.0], np.array([4.9]))
-    random = np.random.default_rng(2)
+    random = np.random.default_rng(1)
     plan = random.uniform([4.625, 5.5], [5.625, 6.5], (40, 2))
     z = 4.9 - plan @ [0.2, 0.1] + 0.1 * np.sin(9 * plan[:, 0]) * np.cos(11 * plan[:, 1])
     places, surfaces = np.column_stack([plan, z]), np.zeros(40, int)
@@ -60,8 +60,8 @@ def test_contacts_denser_than_nodes_are_vertices_and_bend_it_no_more_than_they_m
     np.testing.assert_array_equal(own.at(places), np.full(40, 4.9))
     level_set = within_lattice(own, run(lambda work: level_solids(work, own))[0])
     assert are_on(places, level_set).all()
-    assert np.abs(own.values - field.values).max() < 1.0
-    assert np.abs(level_set.vertices @ [0.2, 0.1, 1.0] - 4.9).max() < 0.5
+    assert np.abs(own.values - field.values).max() < 0.2
+    assert np.abs(level_set.vertices @ [0.2, 0.1, 1.0] - 4.9).max() < 0.2
 
 
 def test_a_vertex_is_on_a_sheet_where_it_is_exactly_there():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""References by name from settings and picks to surfaces, faults and rock masses: renaming a row updates
-them."""
+"""References by name from settings and picks to surfaces, series, faults and rock masses: renaming a row
+updates them."""
 
+from ..core import Dips
 from ..core.settings.methods import OPTIONS
 from ..core.settings.setting import property_name
-from . import borehole_picks, observed_blocks, settings, surface_dips
+from . import borehole_picks, observed_blocks, series_settings, settings, surface_dips
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -21,13 +22,17 @@ def update_references(row):
     scene, old = row.id_data, row.known_name
     row.known_name = row.name
     kind = settings.kind_of(row)
-    alike = [other for other in _named(scene) if settings.kind_of(other) == kind]
+    rows = settings.rock_of(row).series if kind == "series" else _named(scene)
+    alike = [other for other in rows if settings.kind_of(other) == kind]
     if not old or any(other.name == old for other in alike):
         return
     if kind == "surface":
         borehole_picks.rename(settings.rock_of(row), old, row.name)
         observed_blocks.rename(settings.rock_of(row), old, row.name)
-        surface_dips.rename(settings.rock_of(row), old, row.name)
+        rock = settings.rock_of(row)
+        named = [series for series in rock.series if isinstance(series_settings.dips_of(series), Dips)]
+        for owner in (rock, *named):
+            surface_dips.rename(owner, old, row.name)
     if kind == "body":
         for rock in scene.realmodel.rocks:
             observed_blocks.rename(rock, old, row.name)
@@ -38,7 +43,9 @@ def update_references(row):
 
 
 def _named(scene):
-    yield from scene.realmodel.rocks
+    for rock in scene.realmodel.rocks:
+        yield rock
+        yield from rock.series
     yield from (row for _, row in settings.interface_rows(scene))
 
 
@@ -50,6 +57,8 @@ def _references(scene, row, kind):
         yield from ((other, key) for other in rock.surfaces for key in _OF_SURFACES)
         yield from ((fault, key) for fault in group.faults for key in ("youngest", "elevation"))
         yield from ((body, "after") for body in group.bodies)
+    elif kind == "series":
+        yield from ((surface, "series") for surface in settings.rock_of(row).surfaces)
     elif kind == "fault":
         yield from ((end, "name") for fault in group.faults for end in fault.ends_at)
     elif kind == "rock":

@@ -39,11 +39,11 @@ def spaced_points(places, size, stretch):
     return points(places, np.clip(0.5 * apart, least, most), stretch)
 
 
-def discs(places, gradients, radius, stretch):
-    """A disc at each place (N, 3) in the plane that rises by gradients (N, 2) along x and y, with a short
-    line along its normal, as a PolygonMesh: of each disc its upper side, its lower side, and the faces of
-    the line. They are round, and the line is normal, with the vertical exaggeration `stretch`."""
-    normals = np.column_stack([-gradients * stretch, np.ones(len(gradients))])
+def discs(places, normals, radius, stretch):
+    """A disc at each place (N, 3) across its normal (N, 3), of any length, with a short line along that, as a
+    PolygonMesh: of each disc its side toward the normal, its other side, and the faces of the line. They are
+    round, and the line is normal, with the vertical exaggeration `stretch`."""
+    normals = normals * (stretch, stretch, 1.0)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
     side = np.cross(normals, helper)
@@ -80,8 +80,8 @@ def places_of(coordinates):
 
 
 def lines(places, pairs, radius, sides=3):
-    """A bar with this number of sides along each pair (E, 2) of places (V, 3), as `points`. Pairs of equal
-    places have none."""
+    """A bar with this number of sides along each pair (E, 2) of places (V, 3), as `points`. radius: of all
+    bars, or (E,) of each. Pairs of equal places have none."""
     begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
     length = np.linalg.norm(along, axis=1)
@@ -91,7 +91,8 @@ def lines(places, pairs, radius, sides=3):
     side /= np.linalg.norm(side, axis=1)[:, None]
     other = np.cross(along, side)
     angles = 2 * np.pi * np.arange(sides) / sides
-    ring = radius * (
+    radius = np.broadcast_to(radius, len(length))[length > 0]
+    ring = radius[:, None, None] * (
         np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
     )
     coordinates = np.concatenate([begin[:, None] + ring, end[:, None] + ring], axis=1)

@@ -6,7 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import InputRefused
-from .. import borehole_picks, observed_blocks, reading_text, settings, stored_arrays, surface_dips
+from .. import (
+    borehole_picks,
+    observed_blocks,
+    reading_text,
+    series_settings,
+    settings,
+    stored_arrays,
+    surface_dips,
+)
 from . import data
 
 
@@ -28,8 +36,7 @@ def switch(scene, datum, used):
     if datum.kind == data.POINT:
         _switch_point(scene, row, np.array(datum.place), used)
     elif datum.kind in data.DIPS:
-        dips = surface_dips.of_row(row)
-        surface_dips.keep(row, surface_dips.with_used(dips, group.rows[number], used))
+        _keep_dips(datum, row, surface_dips.with_used(_dips(datum, row), group.rows[number], used))
     else:
         observed_blocks.keep(rock, _switched(observed_blocks.of_rock(rock), group.rows[number], used))
     return datum._replace(used=used)
@@ -51,7 +58,7 @@ def move(scene, datum, place):
     place = np.asarray(place, np.float64)
     if datum.kind == data.INTERVAL:
         observations = observed_blocks.of_rock(rock)
-        moved, place = _moved_end(observations, int(group.rows[number]))(place)
+        moved, place = _with_end_moved(observations, int(group.rows[number]), place)
         observed_blocks.keep(rock, moved)
     elif datum.kind == data.PLACE:
         observations = observed_blocks.of_rock(rock)
@@ -59,8 +66,7 @@ def move(scene, datum, place):
         places[group.rows[number]] = place
         observed_blocks.keep(rock, replace(observations, places=places))
     elif datum.kind in data.DIPS:
-        dips = surface_dips.of_row(row)
-        surface_dips.keep(row, surface_dips.moved(dips, group.rows[number], place))
+        _keep_dips(datum, row, surface_dips.moved(_dips(datum, row), group.rows[number], place))
         place[2] = place[2] if group.places[number, 2] == group.places[number, 2] else np.nan
     elif group.used[number]:
         points = data.own_points(scene, row).copy()
@@ -75,9 +81,21 @@ def move(scene, datum, place):
 
 
 def _rows(scene, datum):
-    """The row of the rock mass of a datum, and that in which it is stored: of the surface, or the same."""
+    """The row of the rock mass of a datum, and that in which it is stored: of the surface or the series, or
+    the same."""
     rock = next(rock for rock in scene.realmodel.rocks if rock.name == datum.rock)
+    if datum.kind == data.SERIES_DIP:
+        return rock, rock.series[datum.name]
     return rock, rock.surfaces[datum.name] if datum.kind in (data.POINT, data.DIP) else rock
+
+
+def _dips(datum, row):
+    """The Dips that a row stores, or the SpaceDips of that of a series."""
+    return (series_settings.dips_of if datum.kind == data.SERIES_DIP else surface_dips.of_row)(row)
+
+
+def _keep_dips(datum, row, dips):
+    (series_settings.keep_dips if datum.kind == data.SERIES_DIP else surface_dips.keep)(row, dips)
 
 
 def _switch_point(scene, row, place, used):
@@ -120,9 +138,9 @@ def _switched(observations, first, used):
     return replace(observations, used=in_use)
 
 
-def _moved_end(observations, first):
-    """A function of a place: the Observations with the upper end of the interval that begins in row `first`
-    moved there, as far as its hole and its neighbors allow, and the place where it is then."""
+def _with_end_moved(observations, first, place):
+    """The Observations with the upper end of the interval that begins in row `first` moved to a place, as far
+    as its hole and its neighbors allow, and the place where it is then."""
     rows = data.interval_rows(observations).tolist()
     number = next(n for n, (begin, _) in enumerate(rows) if begin == first)
     last = rows[number][1]
@@ -133,21 +151,17 @@ def _moved_end(observations, first):
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     depths = observations.depths[start : last + 1]
-
-    def moved(place):
-        at = min(max(_nearest(line, along, place), 1e-3 * along[-1]), (1.0 - 1e-3) * along[-1])
-        new = np.array([np.interp(at, along, line[:, axis]) for axis in range(3)])
-        depth = float(np.interp(at, along, depths)) if np.isfinite(depths).all() else float("nan")
-        places, all_depths = observations.places.copy(), observations.depths.copy()
-        kept = np.ones(len(places), bool)
-        for row in range(start, last + 1):
-            if row in (first, first - 1 if meets else first):
-                places[row], all_depths[row] = new, depth
-            elif start < row < last:  # between the ends of an inclined interval
-                kept[row] = along[row - start] < at if row < first else along[row - start] > at
-        return replace(observations, places=places, depths=all_depths).some(kept), new
-
-    return moved
+    at = min(max(_nearest(line, along, place), 1e-3 * along[-1]), (1.0 - 1e-3) * along[-1])
+    new = np.array([np.interp(at, along, line[:, axis]) for axis in range(3)])
+    depth = float(np.interp(at, along, depths)) if np.isfinite(depths).all() else float("nan")
+    places, all_depths = observations.places.copy(), observations.depths.copy()
+    kept = np.ones(len(places), bool)
+    for row in range(start, last + 1):
+        if row in (first, first - 1 if meets else first):
+            places[row], all_depths[row] = new, depth
+        elif start < row < last:  # between the ends of an inclined interval
+            kept[row] = along[row - start] < at if row < first else along[row - start] > at
+    return replace(observations, places=places, depths=all_depths).some(kept), new
 
 
 def _nearest(line, along, place):

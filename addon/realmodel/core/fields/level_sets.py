@@ -8,19 +8,20 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base.algebra import norm
+from ..base.algebra import are_among, norm
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
 
 _Field = TypeVar("_Field", bound=ScalarField)
 _LOOSE = 1e-2  # of the share of a contact in its tetrahedron: where they share corners, none moves far
-_ROUNDS = 3  # in which what this leaves is made less
+_SHARED = 0.1  # of what contacts miss their levels by: where more is left at first they share corners
+_ROUNDS = 10  # in which what is left is made less
 _STEPS = 200  # of each solution
 _MET = 1e-12  # of what contacts miss their levels by at first: nothing
 _REFINEMENTS = 40  # times that tetrahedra are halved
 _LEAST = 2.0**-10  # of the edges of the lattice: shorter ones are not halved
-_BESIDE = 0.005  # of the range of f in its tetrahedron: what a contact may miss its level by
+_BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss its level by
 
 
 def with_contacts(work: Work, field: _Field, contacts: np.ndarray, surfaces: np.ndarray) -> _Field:
@@ -35,14 +36,14 @@ def with_contacts(work: Work, field: _Field, contacts: np.ndarray, surfaces: np.
     for left in reversed(range(_REFINEMENTS)):
         given = np.concatenate([field.values, at_middles])
         lattice, values, own = replace(field, points=middles, point_values=at_middles).native()
-        corners, weights = work.native(native_module().corners_at, lattice, values, own, contacts)
-        found, missed = _through(given, corners, weights, levels)
-        off = np.abs(missed) > _BESIDE * np.ptp(given[corners], axis=1)
+        corners, weights = work.native(native_module().tetrahedra_at, lattice, values, own, contacts)
+        missed = [np.abs(_through(given, corners, weights, levels, rounds)[1]) for rounds in (0, 1)]
+        off = (missed[1] > _BESIDE * np.ptp(given[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
         ends = _halved(field, middles, corners[off])
         if not len(ends):
-            lattice, values, own = _as_corners(
-                field, found, np.concatenate([middles, contacts]), levels
-            ).native()
+            found, _ = _through(given, corners, weights, levels, _ROUNDS)
+            made = _as_corners(field, found, np.concatenate([middles, contacts]), levels)
+            lattice, values, own = made.native()
             passed = work.native(native_module().points_between, lattice, values, own)
             ends = _halved(field, middles, corners[passed[len(middles) :] == 0])
         places = np.concatenate([middles, _positions(field, middles, ends).mean(axis=1)])
@@ -50,6 +51,7 @@ def with_contacts(work: Work, field: _Field, contacts: np.ndarray, surfaces: np.
         if left == 0 or len(new) == len(middles):
             break
         middles, at_middles = places[new], np.concatenate([at_middles, given[ends].mean(axis=1)])[new]
+    found, _ = _through(given, corners, weights, levels, _ROUNDS)
     return _as_corners(field, found, np.concatenate([middles, contacts]), levels)
 
 
@@ -84,7 +86,7 @@ def _halved(field: ScalarField, points: np.ndarray, tetrahedra: np.ndarray) -> n
 
 
 def _through(
-    given: np.ndarray, corners: np.ndarray, weights: np.ndarray, levels: np.ndarray
+    given: np.ndarray, corners: np.ndarray, weights: np.ndarray, levels: np.ndarray, rounds: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N,) values near those given with which a field has levels (C,) at contacts, as far as these do not
     pull at the same corners, by the corners (C, 4) of their tetrahedra and the weights A of these: in rounds
@@ -100,7 +102,7 @@ def _through(
     values = given.copy()
     missed = levels - (given[corners] * weights).sum(axis=1)
     least = _MET**2 * (missed * missed).sum()
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         y, way, rest = np.zeros(len(missed)), missed, missed
         square = (rest * rest).sum()
         for _ in range(_STEPS):
@@ -119,10 +121,7 @@ def _through(
 
 def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:
     """(C,) bool: which contacts (C, 3) are vertices of a level set."""
-    both = np.concatenate([level_set.vertices, contacts]) + 0.0
-    _, place = np.unique(both, axis=0, return_inverse=True)
-    place = place.ravel()
-    return np.isin(place[len(level_set.vertices) :], place[: len(level_set.vertices)])
+    return are_among(contacts, level_set.vertices)
 
 
 def level_solids(work: Work, field: ScalarField) -> list[Sheet]:

@@ -86,11 +86,7 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
             if isinstance(rock.dips, Dips) and len(rock.dips):
                 target = beside(rock.name, "dips", ending=".csv")
-                surfaces, blocks = rock.dips.named
-                codes = _block_codes(rock)
-                meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
-                text = dips_text(replace(rock.dips, surfaces=surfaces, blocks=meant))
-                lines.append(f"dips = {toml_value(write(target, text))}")
+                lines.append(f"dips = {toml_value(write(target, _named_dips_text(rock, rock.dips)))}")
             for series in rock.series:
                 lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
@@ -163,9 +159,10 @@ def _point_text(point: list[float]) -> str:
 def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
     if series.dip_file is not None:
         raise UsageError(f"{series.item}: its file has not been read; build the model first")
-    dips, file = series.space_dips(), None
-    if dips is not None and len(dips):
-        file = write(beside(rock.name, series.name, "dips", ending=".csv"), space_dips_text(dips))
+    dips, file = series.dips, None
+    if isinstance(dips, (Dips, SpaceDips)) and len(dips):
+        text = space_dips_text(dips) if isinstance(dips, SpaceDips) else _named_dips_text(rock, dips)
+        file = write(beside(rock.name, series.name, "dips", ending=".csv"), text)
     values = {
         "name": series.name,
         "kind": series.kind if series.kind != FIELD else None,
@@ -202,6 +199,7 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
         values["left_out"] = np.asarray(given.left_out, np.float64).tolist()
     values |= {
         "minimum_thickness": given.minimum_thickness,
+        "true_thickness": given.true_thickness or None,
         "tie": None if given.tie else False,
         "correlation": given.correlation,
         "rule": given.rule if given.rule != DEFAULT_RULE else None,
@@ -285,6 +283,14 @@ def dips_text(dips: Dips) -> bytes:
     return text.getvalue().encode()
 
 
+def _named_dips_text(rock: Rock, dips: Dips) -> bytes:
+    """Dips that may name surfaces and blocks of a rock mass, as CSV."""
+    surfaces, blocks = dips.named
+    codes = _block_codes(rock)
+    meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
+    return dips_text(replace(dips, surfaces=surfaces, blocks=meant))
+
+
 def _block_codes(rock: Rock) -> dict[str, str]:
     """For each surface of a rock mass, the name that means the block beneath it when a table is read."""
     surfaces = [surface.name for surface in rock.surfaces]
@@ -297,7 +303,11 @@ def _block_codes(rock: Rock) -> dict[str, str]:
 
 def space_dips_text(dips: SpaceDips) -> bytes:
     """Dips in space as CSV: their normals, of which angles would not give back each bit."""
-    return b"x,y,z,normal_x,normal_y,normal_z\n" + _rows(np.hstack([dips.positions, dips.normals]), ",")
+    names, numbers = "x,y,z,normal_x,normal_y,normal_z", np.hstack([dips.positions, dips.normals])
+    if dips.in_use.all():
+        return f"{names}\n".encode() + _rows(numbers, ",")
+    rows = [[*map(repr, row), str(int(use))] for row, use in zip(numbers.tolist(), dips.in_use, strict=True)]
+    return "\n".join(map(",".join, [[f"{names},use"], *rows, [""]])).encode()
 
 
 def observations_text(rock: Rock) -> bytes:
@@ -334,9 +344,5 @@ def _rows(numbers: np.ndarray, apart: str) -> bytes:
     """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
-        text.write(_joined(row, apart) + "\n")
+        text.write(apart.join(map(repr, row)) + "\n")
     return text.getvalue().encode()
-
-
-def _joined(row: list[float], apart: str) -> str:
-    return apart.join(map(repr, row))

@@ -210,7 +210,7 @@ SURFACE = {
     "dips": _OTHER,
     "left_out": _OTHER,
     "series": Setting(
-        kind="text",
+        kind="series",
         label="Series",
         tip="Name of the series that the surface belongs to; empty: none",
         more="See [Series](#series)",
@@ -230,6 +230,14 @@ SURFACE = {
         low=0.0,
         more="For interpolated surfaces; points that contradict it are listed",
         switch=("Minimum Thickness", "Keep the surface at least this far above the next older one"),
+    ),
+    "true_thickness": Setting(
+        False,
+        kind="truth",
+        label="True Thickness",
+        tip="Measure the minimum thickness, and the thickness of a parallel surface, perpendicular to the "
+        "other surface, not vertically",
+        more="Default `false`; see [true thickness](methods.md#true-thickness)",
     ),
     "tie": Setting(
         True,

@@ -14,10 +14,12 @@ from ..base.errors import naming, number_list
 from ..base.work import Work
 from ..project.field_checks import ground_number
 from ..project.project import Project, Rock, Surface
+from ..project.series import Series
 from ..project.structure_history import body_times
 from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips
+from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
@@ -67,6 +69,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             left_out += not_used
         dips, not_used = _dips(project, rock, units)
         left_out += not_used
+        series = [_with_sheet_dips(project, rock, each, units, left_out) for each in rock.series]
     mapped = _mapped(project, rock, units, dips)
     if rock.map is not None:
         observed, not_used, map_warnings = read_map(project, rock, units)
@@ -87,6 +90,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         dips=dips,
         map=None,
         names={},
+        series=series,
         hole_picks=picks.holes or rock.hole_picks,
         hole_ends=picks.ends or rock.hole_ends,
     )
@@ -101,6 +105,20 @@ def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, 
         return read_dips_of_rock(rock.dip_file, units, project.units)
     assert rock.dips is None or isinstance(rock.dips, Dips)
     return None if rock.dips is None else rock.dips.checked(), []
+
+
+def _with_sheet_dips(
+    project: Project, rock: Rock, series: Series, units: UnitNames, left_out: list[LeftOut]
+) -> Series:
+    """A series; one of sheets with its dips as arrays. Those that are not used are added to left_out."""
+    if series.kind != SHEETS:
+        return series
+    with naming(f"{rock.item}, {series.item}"):
+        if series.dip_file is None:
+            return replace(series, dips=series.sheet_dips())
+        dips, not_used = read_dips_of_rock(series.dip_file, units, project.units)
+        left_out += not_used
+        return replace(series, dips=dips)
 
 
 def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -> np.ndarray | None:
