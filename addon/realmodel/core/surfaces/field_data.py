@@ -78,7 +78,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     observations = Observations.joined(found).along_holes() if found else None
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
-        _with_points(surface, number, picks.points.pop(surface.name, None), derived)
+        _with_points(_without_picks(surface, picks), number, picks.points.pop(surface.name, None), derived)
         if surface.has_points
         else (surface, None)
         for number, surface in enumerate(rock.surfaces)
@@ -144,6 +144,15 @@ def _of_bodies(project: Project, rock: Rock) -> Situation:
         bodies=[body.name for body, _ in own],
         voids=[body.void for body, _ in own],
     )
+
+
+def _without_picks(surface: Surface, picks: Picks) -> Surface:
+    """The surface with the picks that are switched off among its points that are left out."""
+    off = picks.switched_off.get(surface.name)
+    if off is None or not surface.has_points:
+        return surface
+    known = [] if surface.left_out is None else [np.asarray(surface.left_out, np.float64).reshape(-1, 3)]
+    return replace(surface, left_out=np.concatenate([*known, off]))
 
 
 def _with_points(
