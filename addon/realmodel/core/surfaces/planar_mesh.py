@@ -23,7 +23,7 @@ _LOOKED_AT = 8  # places around one
 # less the corrections of nodes are much larger than those of data. Beside a fault the points on its two sides
 # are close together in plan and ask for nothing of one another: there only data that hardly can be met are
 # crowded
-_CROWDED, _CROWDED_AT_FAULTS = 0.3, 0.05
+_CROWDED, _CROWDED_AT_FAULTS = 0.25, 0.05
 _BESIDE = 0.25  # of the distance to another datum of the same surface: the vertex of another one serves, too
 
 
