@@ -14,6 +14,7 @@ from .display import shown_models
 from .field import heights
 from .thread_job import ThreadJob
 
+_NOTHING = 1e-6  # of the length of a hole: an error that is none
 _BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
 _FRAMED = 0.15  # of all data, at least, around a hole that is jumped to
 
@@ -101,6 +102,8 @@ def lines(row):
         where = "" if depth is None else f" at {depth:.5g}"
         if error is None:
             yield f"{surface}{where}: no surface there"
+        elif abs(error) < _NOTHING * detail["length"]:
+            yield f"{surface}{where}: met"
         else:
             yield f"{surface}{where}: {abs(error):.3g} too {'high' if error > 0 else 'low'}"
 

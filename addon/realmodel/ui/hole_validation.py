@@ -46,8 +46,8 @@ class REALMODEL_PT_hole_validation(OfABuiltModel, FoldedPanel, bpy.types.Panel):
         if hole_validation.is_outdated(group):
             hint(layout, "The model was built again since: leave the holes out again.")
         unit = units.unit_text(context.scene, 1)
-        for part, text in zip(_columns(layout), ("Hole", "Right, %", f"Worst, {unit}"), strict=True):
-            right_label(part, text) if text != "Hole" else part.label(text=text)
+        for part, text in zip(_columns(layout), ("Hole", "%", f"Worst {unit}"), strict=True):
+            part.label(text=text) if text == "Hole" else right_label(part, text)
         layout.template_list(
             *("REALMODEL_UL_left_out_holes", "", group, "left_out_holes", group, "active_left_out_hole"),
             rows=5,
