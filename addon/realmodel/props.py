@@ -24,6 +24,7 @@ from . import (
     props_ensemble,
     props_planned,
     props_rock,
+    props_series,
     props_stage,
     props_structure,
     props_surface,
@@ -347,13 +348,15 @@ class RealModelActivity(bpy.types.PropertyGroup):
     )
     unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
+    problem_item: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})
     problem_triangles: StringProperty(options={"SKIP_SAVE"})
     problem_place: StringProperty(options={"SKIP_SAVE"})
 
 
 _MODULES = (
-    *(props_surface, props_rock, props_structure, props_view, props_stage, props_ensemble, props_planned),
+    *(props_surface, props_series, props_rock, props_structure, props_view, props_stage, props_ensemble),
+    props_planned,
     sys.modules[__name__],
 )
 

@@ -5,15 +5,16 @@ import bpy
 from bpy.props import FloatProperty, StringProperty
 
 from .bl import changes, planned_holes
+from .props_coordinates import coordinate_field
 
 
 def _collar_field(name, axis):
-    return StringProperty(
-        name=name,
-        description="Where the hole begins, in model coordinates",
-        options=set(),
-        get=planned_holes.collar_text(axis),
-        set=planned_holes.move_collar(axis),
+    return coordinate_field(
+        name,
+        axis,
+        "Where the hole begins, in model coordinates",
+        planned_holes.collar,
+        planned_holes.move_collar,
     )
 
 

@@ -11,7 +11,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import props_surface
+from . import props_series, props_surface
 from .bl import changes, plan_mesh, settings
 from .core.settings.schema import ROCK, SIZE
 from .props_schema import settings_of
@@ -87,7 +87,10 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
     dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
-    series: StringProperty(options={"HIDDEN"})  # JSON of realmodel.core.Series
+    series: CollectionProperty(type=props_series.RealModelSeries)
+    active_series: IntProperty(
+        name="Active Series", description="The series whose settings are shown", options=set()
+    )
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)
     constraints_stored: StringProperty(options={"HIDDEN"})

@@ -10,6 +10,7 @@ _SEARCH = {
     "surface": choices.surfaces,
     "any_surface": choices.all_surfaces,
     "rock_mass": choices.rocks,
+    "series": choices.series,
     "column": choices.columns,
     "layer": choices.layers,
     "direction": choices.directions,

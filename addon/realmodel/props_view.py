@@ -16,15 +16,16 @@ from .bl import changes
 from .bl.display import cuts
 from .bl.field import boreholes
 from .core.proof.misfits import DIP_TOLERANCE
+from .props_coordinates import coordinate_field
 
 
 def _plane_field(name, axis):
-    return StringProperty(
-        name=name,
-        description="Where the section plane is, in model coordinates",
-        options=set(),
-        get=cuts.place_text(axis),
-        set=cuts.move_to(axis),
+    return coordinate_field(
+        name,
+        axis,
+        "Where the section plane is, in model coordinates",
+        lambda view: cuts.place(view.id_data),
+        lambda view, place: cuts.move(view.id_data, place),
     )
 
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "execution.hpp"
+#include "lattice.hpp"
 #include "realmodel/fields/critical_points.hpp"
 #include "realmodel/fields/field.hpp"
 #include "rows.hpp"
@@ -22,9 +23,6 @@ namespace realmodel::bindings {
 
 namespace {
 
-/// origin, spacing, counts.
-using LatticeTuple =
-    std::tuple<std::array<double, 3>, std::array<double, 3>, std::tuple<int, int, int>>;
 /// How many surfaces; positions, and the surface of each.
 using ContactsTuple = std::tuple<int, Array<double>, Indices>;
 using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
@@ -34,12 +32,6 @@ using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
 using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
-
-fields::Lattice lattice_of(const LatticeTuple& of) {
-    const auto& [origin, spacing, counts] = of;
-    const auto [nx, ny, nz] = counts;
-    return {origin, spacing, {nx, ny, nz}};
-}
 
 py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                const DipsAndNormals& dips, const BoundsTuple& bounds, const OptionsTuple& given,

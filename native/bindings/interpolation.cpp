@@ -70,16 +70,11 @@ interpolation::Variogram variogram_of(const py::dict& of) {
     return variogram;
 }
 
-template <class T>
-std::span<const T> values(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
 /// @return spans of the arrays in `of`
 interpolation::Sheets sheets_of(const std::optional<SheetsTuple>& of) {
     if (!of) return {};
     const auto& [points, dips, variances, thickness, asked] = *of;
-    return {values(points), values(dips), values(variances), variogram_of(thickness), asked};
+    return {view(points), view(dips), view(variances), variogram_of(thickness), asked};
 }
 
 interpolation::Drift drift_of(const std::string& name) {

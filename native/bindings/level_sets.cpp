@@ -5,8 +5,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "arrays.hpp"
 #include "execution.hpp"
-#include "rows.hpp"
+#include "lattice.hpp"
 
 namespace py = pybind11;
 
@@ -14,31 +15,24 @@ namespace realmodel::bindings {
 
 namespace {
 
-/// A field as Python has it: (origin, spacing, counts), values, points (P, 3), values of points.
-struct GivenField {
-    fields::LatticeField field;
+/// Positions (P, 3), and the values there.
+using PointsTuple = std::tuple<Array<double>, Array<double>>;
 
-    GivenField(const py::tuple& lattice, const Array<double>& values, const Array<double>& points,
-               const Array<double>& point_values) {
-        if (lattice.size() != 3) throw py::value_error("lattice: origin, spacing and counts");
-        field.origin = lattice[0].cast<std::array<double, 3>>();
-        field.spacing = lattice[1].cast<std::array<double, 3>>();
-        field.counts = lattice[2].cast<std::array<std::int32_t, 3>>();
-        field.values = view(values);
-        rows<3>(points, "points");
-        field.points = view(points);
-        field.point_values = view(point_values);
-    }
-};
+fields::LatticeField field_of(const LatticeTuple& lattice, const Array<double>& values,
+                              const PointsTuple& points) {
+    const auto& [positions, own] = points;
+    require_columns(positions, 3, "points");
+    return {lattice_of(lattice), view(values), view(positions), view(own)};
+}
 
-py::list level_sets(const py::tuple& lattice, const Array<double>& values, const py::tuple& points,
-                    const Array<double>& levels, WatchedExecution* execution) {
-    const auto positions = points[0].cast<Array<double>>(), own = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, positions, own);
+py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
+                    const PointsTuple& points, const Array<double>& levels,
+                    WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
     std::vector<fields::LevelSet> found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::level_sets(given.field, view(levels), run(execution));
+        found = fields::level_sets(field, view(levels), run(execution));
     }
     py::list sets;
     for (fields::LevelSet& each : found)
@@ -47,23 +41,21 @@ py::list level_sets(const py::tuple& lattice, const Array<double>& values, const
     return sets;
 }
 
-Array<double> moved_onto_levels(const py::tuple& lattice, const Array<double>& values,
+Array<double> moved_onto_levels(const LatticeTuple& lattice, const Array<double>& values,
                                 const Array<double>& levels) {
-    const GivenField given(lattice, values, Array<double>(std::vector<py::ssize_t>{0, 3}),
-                           Array<double>(0));
-    return to_array(fields::moved_onto_levels(given.field, view(levels)));
+    const fields::LatticeField field{lattice_of(lattice), view(values), {}, {}};
+    return to_array(fields::moved_onto_levels(field, view(levels)));
 }
 
-Array<double> field_at(const py::tuple& lattice, const Array<double>& values,
-                       const py::tuple& points, const Array<double>& positions,
+Array<double> field_at(const LatticeTuple& lattice, const Array<double>& values,
+                       const PointsTuple& points, const Array<double>& positions,
                        WatchedExecution* execution) {
-    const auto own = points[0].cast<Array<double>>(), known = points[1].cast<Array<double>>();
-    const GivenField given(lattice, values, own, known);
-    rows<3>(positions, "positions");
+    const fields::LatticeField field = field_of(lattice, values, points);
+    require_columns(positions, 3, "positions");
     std::vector<double> found;
     {
         const py::gil_scoped_release unlocked;
-        found = fields::field_at(given.field, view(positions), run(execution));
+        found = fields::field_at(field, view(positions), run(execution));
     }
     return to_array(std::move(found));
 }

@@ -153,20 +153,15 @@ using TieArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<
 /// Radii (L,), positions (M, 2), sided (M, F), coefficients (L, M).
 using TermArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
 
-template <class T>
-std::span<const T> all_of(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
 py::dict ties(const Array<double>& nodes, const Array<std::int32_t>& triangles,
               const SheetArrays& sheets, const TieArrays& data, double tolerance,
               WatchedExecution* execution) {
     const auto& [heights, sides, weights] = sheets;
     const auto& [places, lower, upper, numbers] = data;
     const interpolation::TiedSheets given{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
-                                          all_of(heights), all_of(sides), all_of(weights)};
-    const interpolation::TieData asked{rows<2>(places, "places"), all_of(lower), all_of(upper),
-                                       all_of(numbers)};
+                                          view(heights), view(sides), view(weights)};
+    const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper),
+                                       view(numbers)};
     interpolation::Ties found;
     {
         const py::gil_scoped_release unlocked;
@@ -196,7 +191,7 @@ Array<double> tied_heights(const Array<double>& heights, const Array<double>& no
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::tied_heights(all_of(heights), to, all_of(sided), given, run(execution));
+        z = interpolation::tied_heights(view(heights), to, view(sided), given, run(execution));
     }
     return to_array(std::move(z));
 }
@@ -222,8 +217,7 @@ std::pair<Array<std::int32_t>, Array<double>> crowded_data(
     const interpolation::TiedSheets sheet{
         rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"), zeros, {}, {}};
     const std::vector<std::int32_t> one(static_cast<std::size_t>(places.shape(0)), 0);
-    const interpolation::TieData asked{rows<2>(places, "places"), all_of(lower), all_of(upper),
-                                       one};
+    const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), one};
     interpolation::CrowdedData found;
     {
         const py::gil_scoped_release unlocked;

@@ -2,21 +2,25 @@
 """The guide and the reference as web pages, for the zip.
 
 Links between them, to the examples and to the pictures stay; other links become plain text, because what they
-lead to is not in the zip.
+lead to is not in the zip. Large pictures are as wide as a page shows them, so that the zip stays small.
 """
 
 import html
 import re
+from functools import cache
+from io import BytesIO
 from pathlib import Path, PurePosixPath
 from posixpath import normpath, relpath
 from urllib.parse import urldefrag, urlsplit
 
 from markdown_it import MarkdownIt
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 # What the guide and the reference refer to beside themselves.
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
+LARGE, WIDTH = 20_000, 900  # bytes of a picture that is made smaller; pixels, a little more than a page has
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>{title}</title><style>
@@ -44,8 +48,23 @@ def web_pages():
     for name in names:
         page, pictures = _page(name, names)
         files[_target(name)] = page.encode()
-        files.update({picture: (ROOT / picture).read_bytes() for picture in pictures})
+        files.update(map(_in_zip, pictures))
     return files
+
+
+@cache
+def _in_zip(picture):
+    """The name and the bytes of a picture in the zip."""
+    content = (ROOT / picture).read_bytes()
+    if len(content) <= LARGE or picture.endswith(".svg"):
+        return picture, content
+    image = Image.open(BytesIO(content))
+    if getattr(image, "is_animated", False):
+        return picture, content
+    image.thumbnail((WIDTH, image.height))
+    smaller = BytesIO()
+    image.convert("RGB").save(smaller, "JPEG", quality=75, optimize=True, progressive=True)
+    return str(PurePosixPath(picture).with_suffix(".jpg")), smaller.getvalue()
 
 
 def _target(name):
@@ -66,7 +85,11 @@ def _page(name, names):
             title = text if token.tag == "h1" else title
         if token.type == "inline":
             token.children = _with_links(token.children, folder, names)
-            pictures |= {normpath(f"{folder}/{p.attrs['src']}") for p in token.children if p.type == "image"}
+            for part in token.children:
+                if part.type == "image":
+                    picture = normpath(f"{folder}/{part.attrs['src']}")
+                    pictures.add(picture)
+                    part.attrSet("src", relpath(_in_zip(picture)[0], folder))
     body = PARSER.renderer.render(tokens, PARSER.options, {})
     guide = relpath("docs/guide/index.html", folder)
     return PAGE.format(title=html.escape(title), guide=guide, body=body), pictures

@@ -127,7 +127,7 @@ class DrawnData(PanelCase):
         bpy.context.view_layer.update()
         point, normal = drawn_data.plane(bpy.context)
         place = np.array([30.0, point[1], 12.0])
-        shown = drawn_data.in_world(self.scene, place)[0]
+        shown = project_settings.in_world(self.scene, place)[0]
         self.assertAlmostEqual(shown[2], 48.0, places=4)
         ray = shown + np.array([1.0, -50.0, 7.0]), (-1.0, 50.0, -7.0)
         found = drawn_data.on_plane(self.scene, ray, (point, normal))

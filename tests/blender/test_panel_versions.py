@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A file of the present version of the settings, opened today: tests/data/versions/v5.blend, written by
+"""A file of the present version of the settings, opened today: tests/data/versions/v6.blend, written by
 make_version_fixture.py from the example two_layers, whose files are not beside it."""
 
 import math

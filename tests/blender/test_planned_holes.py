@@ -69,7 +69,7 @@ class PlannedHoles(PanelCase):
         row = self.model.planned_holes[0]
         self.assertEqual(planned_holes.kept(row).rows(), before)
         self.assertEqual(len(self.tubes()), 1)
-        row.length = 20.0  # the model is not at hand now
+        row.length = 20.0  # a model that was not built since the file was opened is not in memory
         self.assertIsNone(built_models.current(self.scene))
         self.assertIsNone(planned_holes.kept(row))
         self.refused(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from realmodel.core.base.errors import Cancelled, InputRefused
 from realmodel.core.base.work import run
-from realmodel.core.fields import FieldData, Lattice, solve_field
+from realmodel.core.fields import Lattice, LevelSetData, solve_field
 
 FOLDS = Path(__file__).resolve().parents[3] / "shared" / "data" / "folds"
 LATTICE = Lattice((0.0, 0.0, 0.0), (50.0, 50.0, 50.0), (21, 21, 17))
@@ -69,7 +69,7 @@ def _data(function, seed=1, holes=16, dips=60):
     places = rng.uniform(low + 20, high - 20, (dips, 3))
     gradients = _gradient(function, places)
     normals = gradients / np.linalg.norm(gradients, axis=1)[:, None]
-    return FieldData(NAMES, np.array(contacts), np.array(surfaces, np.int32), places, normals)
+    return LevelSetData(NAMES, np.array(contacts), np.array(surfaces, np.int32), places, normals)
 
 
 def _share_right(function, field, seed=2):
@@ -157,7 +157,7 @@ def test_many_contacts_are_met_by_few_of_them():
     places = rng.uniform(0, 1000, (6000, 2))
     z = 350.0 + 40 * np.sin(places[:, 0] / 130) * np.cos(places[:, 1] / 170)
     surfaces = np.repeat(np.arange(2, dtype=np.int32), 3000)
-    data = FieldData(("low", "high"), np.column_stack([places, z + 150 * surfaces]), surfaces)
+    data = LevelSetData(("low", "high"), np.column_stack([places, z + 150 * surfaces]), surfaces)
     field = _solve(data, tolerance=0.5)
     assert field.centers < 2500
     assert field.misfit < 1.0
@@ -275,7 +275,7 @@ def test_folds_of_known_truth(name):
     dip, azimuth = (np.radians([row[key] for row in rows]) for key in ("dip", "dip_direction"))
     polarity = np.array([row["polarity"] for row in rows])
     normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
-    data = FieldData(
+    data = LevelSetData(
         tuple(f"A{k + 1}" for k in range(5)),
         np.concatenate(points),
         np.repeat(np.arange(5, dtype=np.int32), [len(p) for p in points]),

@@ -2,6 +2,7 @@
 """Cross-validation by holes: whole boreholes are left out, and models without them say what is there."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,6 +56,17 @@ def test_the_hole_that_contradicts_the_others_is_found_by_them():
     assert contact.surface == "top of sand"
     assert contact.error == pytest.approx(-8.0, abs=1e-9)
     assert contact.depth == pytest.approx(2.0)
+
+
+def test_lost_core_and_what_is_switched_off_have_no_length():
+    given = logs(lambda x, y: 30 + 0.05 * x - 0.02 * y)
+    lost = np.repeat(np.arange(len(given) // 2), 2)
+    lost[1] = len(lost)  # the two ends of the clay in B0 are of two intervals
+    used = np.ones(len(given), bool)
+    used[4:6] = False  # the clay of B1
+    found = model_of(replace(given, intervals=lost, used=used)).cross_validate_holes()
+    sand = [given.places[row, 2] - 20.0 for row in (2, 6)]
+    assert [hole.length for hole in found.holes[:3]] == pytest.approx([*sand, 20.0])
 
 
 def test_groups_spread_over_the_table():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The list of data that a model does not have as they say."""
+"""The list of data that a model does not honor."""
 
 import numpy as np
 from realmodel.core import Dips, Observations, Project, Rock, Surface, build

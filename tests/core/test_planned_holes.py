@@ -155,6 +155,17 @@ def test_an_ensemble_says_how_probable_each_block_is_along_the_hole(tmp_path):
     assert float(rows[0]["probability top block"]) == pytest.approx(hole.intervals[0].probability, rel=1e-8)
 
 
+def test_an_interval_between_two_looks_has_probabilities_too(tmp_path):
+    found = ensemble(kriged(), realizations=2, seed=4)
+    top = found.model.planned_hole((30, 30, 60), length=75).contacts[0].depth
+    hole = found.planned_hole((30, 30, 60), length=top + 0.01)
+    assert not ((hole.depths >= top) & (hole.depths <= top + 0.01)).any()
+    hole.save(tmp_path / "h.csv")
+    (row,) = csv.DictReader((tmp_path / "h.csv").read_text().splitlines())
+    assert float(row["probability top block"]) == pytest.approx(hole.intervals[0].probability)
+    assert 0 < float(row["probability top block"]) <= 1
+
+
 def test_holes_of_a_faulted_model_are_in_its_compartments():
     model = build(load_project(SAMPLES / "fault_blocks" / "project.toml"))
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)

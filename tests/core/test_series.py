@@ -9,6 +9,8 @@ from realmodel.core import DipFile, InputRefused, Project, Rock, Series, SpaceDi
 from realmodel.core.project.project import check_project
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_space_dips
+from realmodel.core.structures.series_data import SeriesData
+from realmodel.core.surfaces.rock_input import RockInput
 
 SQUARE = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
 FOLDED = """
@@ -101,9 +103,10 @@ def test_a_field_needs_an_end(key, value):
         check_project(Project("p", [rock]))
 
 
-def test_a_written_series_is_the_same_when_it_is_read(tmp_path):
+@pytest.mark.parametrize("used", [None, np.array([True, False, True, True])])
+def test_a_written_series_is_the_same_when_it_is_read(tmp_path, used):
     generator = np.random.default_rng(7)
-    dips = SpaceDips(generator.normal(size=(4, 3)), generator.normal(size=(4, 3)))
+    dips = SpaceDips(generator.normal(size=(4, 3)), generator.normal(size=(4, 3)), used)
     surfaces = [Surface(name, points=generator.normal(size=(3, 3)), series="A") for name in ("a", "b")]
     rock = Rock("r", surfaces, SQUARE, base_elevation=0.0, series=[Series("A", dips=dips, resolution=0.3)])
     save_project(Project("p", [rock]), tmp_path / "p.toml")
@@ -112,6 +115,17 @@ def test_a_written_series_is_the_same_when_it_is_read(tmp_path):
     assert (series.name, series.resolution) == ("A", 0.3)
     np.testing.assert_array_equal(read.positions, dips.positions)
     np.testing.assert_array_equal(read.normals, dips.normals)
+    assert (read.used is None) == (used is None)
+    np.testing.assert_array_equal(read.in_use, dips.in_use)
+
+
+def test_dips_that_are_switched_off_say_nothing():
+    places, normals = np.arange(9.0).reshape(3, 3), np.eye(3)
+    series = Series("A", dips=SpaceDips(places, normals, np.array([False, True, True])))
+    rock = Rock("r", [Surface("a", points=[[5.0, 5.0, 5.0]], series="A")], SQUARE, series=[series])
+    data = SeriesData.of(RockInput(rock, [None]), series, [0])
+    np.testing.assert_array_equal(data.dips, places[1:])
+    assert data.item("dip", 0) == "dip 1"  # its row in the table
 
 
 @pytest.mark.parametrize(

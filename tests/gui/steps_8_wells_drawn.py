@@ -5,7 +5,7 @@ is planned and its table is read."""
 import bpy
 import numpy as np
 from driver import hue_differs
-from realmodel.bl import data_objects, drawn_data, planned_holes, section_holes, viewports
+from realmodel.bl import data_objects, drawn_data, planned_holes, project_settings, section_holes, viewports
 from realmodel.bl.display import cuts
 from steps_1_panel import idle, model, volumes
 from steps_2_view import in_the_viewport
@@ -44,7 +44,7 @@ def contacts_are_drawn(walk):
     plane = drawn_data.plane(bpy.context)
     wanted = [(30.0, 55.0), (50.0, 60.0), (70.0, 55.0)]
     places = [(x, plane[0][1], z) for x, z in wanted]
-    pixels = [walk.pixel_of(place) for place in drawn_data.in_world(bpy.context.scene, places)]
+    pixels = [walk.pixel_of(place) for place in project_settings.in_world(bpy.context.scene, places)]
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.draw_contacts)
     for x, y in [*pixels, (pixels[-1][0] + 40, pixels[-1][1] - 60)]:
@@ -200,7 +200,7 @@ def holes_are_picked(walk):
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.pick_holes)
     for name in [*names, "B3"]:
-        walk.click(*walk.pixel_of(drawn_data.in_world(bpy.context.scene, lines[name][0])[0]))
+        walk.click(*walk.pixel_of(project_settings.in_world(bpy.context.scene, lines[name][0])[0]))
         yield walk.redrawn(2)
     walk.key("BACK_SPACE")
     yield walk.redrawn(2)

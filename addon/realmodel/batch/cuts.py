@@ -166,24 +166,24 @@ class CutRequest:
         return "\n".join([line, *lines])
 
 
-def section_request(text: str, exaggeration: float = 1.0, writer: Writer = section_writer) -> SectionRequest:
+def section_request(text: str, writer: Writer = section_writer) -> SectionRequest:
     """X,Y,Z,NX,NY,NZ=FILE. writer: knows which files there are. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
     writer(file)
-    return SectionRequest("--section", Path(file), _plane("--section", what), exaggeration)
+    return SectionRequest("--section", Path(file), _plane("--section", what))
 
 
-def fence_request(text: str, exaggeration: float = 1.0, writer: Writer = section_writer) -> SectionRequest:
+def fence_request(text: str, writer: Writer = section_writer) -> SectionRequest:
     """X,Y,X,Y,...=FILE or LINE.csv=FILE, as section_request. Raises UsageError."""
     what, file = _divided("--fence", text, "X,Y,X,Y,...=FILE or LINE.csv=FILE")
     writer(file)
     numbers = _numbers(what)
     if numbers is None:
-        return SectionRequest("--fence", Path(file), Path(what), exaggeration)
+        return SectionRequest("--fence", Path(file), Path(what))
     if len(numbers) < 4 or len(numbers) % 2:
         raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
-    return SectionRequest("--fence", Path(file), line, exaggeration)
+    return SectionRequest("--fence", Path(file), line)
 
 
 def borehole_request(text: str, writer: Writer = borehole_writer) -> BoreholeRequest:

@@ -224,14 +224,10 @@ def _validation(options: argparse.Namespace, model, progress):
 
 def _requests(options: argparse.Namespace) -> list:
     """Sections, fences, boreholes and cuts, in this order. Raises UsageError."""
+    drawn = {"exaggeration": options.exaggeration, "hole_width": options.hole_width}
     return [
-        *(
-            replace(request, hole_width=options.hole_width)
-            for request in (
-                *(section_request(text, options.exaggeration) for text in options.section),
-                *(fence_request(text, options.exaggeration) for text in options.fence),
-            )
-        ),
+        *(replace(section_request(text), **drawn) for text in options.section),
+        *(replace(fence_request(text), **drawn) for text in options.fence),
         *(borehole_request(text) for text in options.borehole),
         *(
             replace(

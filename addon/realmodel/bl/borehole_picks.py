@@ -3,7 +3,9 @@
 
 import json
 
-from . import observed_blocks
+from . import caches, observed_blocks
+
+_paths = caches.new(most=8)  # by the texts that they are made from: viewports ask at each redraw
 
 
 def keep(row, holes):
@@ -57,7 +59,14 @@ def paths(row):
 
 
 def named_paths(row):
-    """{hole: its line}, as of `paths`."""
+    """{hole: its line}, as of `paths`; not to be changed."""
+    key = row.hole_picks, row.hole_ends, row.observations
+    if key not in _paths:
+        _paths[key] = _paths_of(row)
+    return _paths[key]
+
+
+def _paths_of(row):
     logs, _ = observed_blocks.shown(row)
     picked, ends = of_rock(row), ends_of(row)
     found = {}

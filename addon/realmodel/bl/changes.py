@@ -14,6 +14,7 @@ from . import (
     project_settings,
     reading_text,
     region_size,
+    series_settings,
     settings,
     structure_settings,
     surface_statistics,
@@ -49,6 +50,13 @@ def name(row, _context):
     if not settings.is_filling():
         names.update_references(row)
         live.touch(row.id_data)
+
+
+def series_run(row, first, last):
+    """The surfaces of a rock mass from one number to another are those of a series, and no others."""
+    with settings.filling():
+        series_settings.set_run(settings.rock_of(row), row, first, last)
+    live.touch(row.id_data)
 
 
 def model_unit(group, _context):

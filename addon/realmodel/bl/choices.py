@@ -18,6 +18,16 @@ def surfaces(row, _context, _text):
     return [other.name for other in settings.rock_of(row).surfaces if other != row]
 
 
+def surfaces_of_rock(row, _context, _text):
+    """The surfaces of the rock mass of a series, the youngest first, as in the list."""
+    return [surface.name for surface in reversed(settings.rock_of(row).surfaces)]
+
+
+def series(row, _context, _text):
+    """The series of the rock mass of a surface."""
+    return [each.name for each in settings.rock_of(row).series]
+
+
 def all_surfaces(row, _context, _text):
     """The surfaces of all rock masses, the youngest first, as in the list."""
     rocks = row.id_data.realmodel.rocks

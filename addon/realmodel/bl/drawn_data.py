@@ -48,13 +48,6 @@ def on_plane(scene, ray, plane):
     return start + (point - start) @ normal / towards * along
 
 
-def in_world(scene, places):
-    """(N, 3) where places (N, 3) of the model are shown."""
-    stretched = exaggeration.matrix(scene)
-    offsets = np.asarray(places, np.float64).reshape(-1, 3) - project_settings.model_origin(scene)
-    return offsets @ stretched[:3, :3].T + stretched[:3, 3]
-
-
 def add_contacts(scene, row, points):
     """Adds points (P, 3) in model coordinates to those that a surface is made from. Raises InputRefused where
     it is a ready mesh."""
@@ -74,10 +67,10 @@ def add_contacts(scene, row, points):
     live.touch(scene)
 
 
-def add_stick(scene, row, points):
-    """Adds a stick through points (P, 3) in model coordinates to those that a fault is fitted through, which
-    are an object from now on. Raises InputRefused where the fault is made of something else."""
-    if len(points) < 2:
+def add_sticks(scene, row, lines):
+    """Adds sticks through points, (P, 3) each in model coordinates, to those that a fault is fitted through,
+    which are an object from now on. Raises InputRefused where the fault is made of something else."""
+    if any(len(points) < 2 for points in lines):
         raise InputRefused("a stick needs two points", advice="draw a line along the fault")
     known = _sticks(scene, row)
     if known is not None:
@@ -90,7 +83,8 @@ def add_stick(scene, row, points):
             reading_text.fill(row, {})
             row.stick, row.interface_digest = "", ""
             project_settings.forget_shape(row)
-    _add_to_mesh(scene, row.object, points, _along(len(points)))
+    for points in lines:
+        _add_to_mesh(scene, row.object, points, _along(len(points)))
     data_objects.update(scene)
     live.touch(scene)
 

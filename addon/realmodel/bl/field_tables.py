@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from ..core import DipFile, Dips, InputRefused, ObservationFile, Observations
+from ..core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
 from ..core.readers import (
     MAP_ENDINGS,
     Picks,
@@ -13,6 +13,7 @@ from ..core.readers import (
     read_dips,
     read_dips_of_rock,
     read_observed_places,
+    read_space_dips,
     table_kind,
 )
 from ..core.readers.objects.object_file import is_object_file
@@ -32,7 +33,8 @@ _ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
 class FieldTables:
     """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
     dips: ObservationFile and DipFile. rock_dips: DipFiles that name surfaces or blocks; those of `dips` name
-    none. maps: MapFile, whose ground is a file or the name of a surface."""
+    none. series_dips: DipFiles of the field of a series. maps: MapFile, whose ground is a file or the name of
+    a surface."""
 
     boreholes: Boreholes | None = None
     assays: list = field(default_factory=list)
@@ -40,12 +42,20 @@ class FieldTables:
     observations: list = field(default_factory=list)
     dips: list = field(default_factory=list)
     rock_dips: list = field(default_factory=list)
+    series_dips: list = field(default_factory=list)
+
+    def give_dips_to_series(self, every):
+        """Dips are those of a field: all of them, or those that name neither surfaces nor blocks."""
+        self.series_dips, self.dips = self.dips, []
+        if every:
+            self.series_dips, self.rock_dips = self.series_dips + self.rock_dips, []
 
 
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: of one surface, rock_dips: with their surfaces and blocks; None where there are none. new: units
+    dips: of one surface, rock_dips: with their surfaces and blocks, series_dips: SpaceDips; None where there
+    are none. new: units
     that no surface, block or body is called, to be added. values: IntervalValues of tables of intervals and
     assays. maps: DrapedMap of each map. warnings: sentences."""
 
@@ -53,6 +63,7 @@ class Found:
     observations: Observations
     dips: Dips | None
     rock_dips: Dips | None
+    series_dips: SpaceDips | None
     left_out: list
     new: list
     values: list
@@ -156,6 +167,7 @@ def _read(scene, rock, tables, units):
         named, not_used = read_dips_of_rock(file, units, unit)
         of_rock.append(named)
         left_out += not_used
+    of_series = [read_space_dips(file, unit) for file in tables.series_dips]
     known = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [each.block for each in left_out if each.kind == "unknown_block"]
     meant = dict.fromkeys(units.names.get(code, code) for code in codes)
@@ -164,6 +176,7 @@ def _read(scene, rock, tables, units):
         Observations.joined(seen),
         Dips.joined(dips) if dips else None,
         Dips.joined(of_rock) if of_rock else None,
+        SpaceDips.joined(of_series) if of_series else None,
         left_out,
         [name for name in meant if name not in known],
         [read_interval_values(each, unit) for each in logged],

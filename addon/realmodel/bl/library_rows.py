@@ -102,6 +102,11 @@ def hex_color(color):
     return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
 
 
+def rgb(code):
+    """Three sRGB numbers from 0 to 1 of "#rrggbb"."""
+    return tuple(int(code[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+
+
 def take_id(row):
     """Whether a row's new ID can be taken; then what had the property has it under that ID, else the row has
     its old ID again."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""References by name from settings and picks to surfaces, faults and rock masses: renaming a row updates
-them."""
+"""References by name from settings and picks to surfaces, series, faults and rock masses: renaming a row
+updates them."""
 
 from ..core.settings.methods import OPTIONS
 from ..core.settings.setting import property_name
@@ -21,7 +21,8 @@ def update_references(row):
     scene, old = row.id_data, row.known_name
     row.known_name = row.name
     kind = settings.kind_of(row)
-    alike = [other for other in _named(scene) if settings.kind_of(other) == kind]
+    rows = settings.rock_of(row).series if kind == "series" else _named(scene)
+    alike = [other for other in rows if settings.kind_of(other) == kind]
     if not old or any(other.name == old for other in alike):
         return
     if kind == "surface":
@@ -38,7 +39,9 @@ def update_references(row):
 
 
 def _named(scene):
-    yield from scene.realmodel.rocks
+    for rock in scene.realmodel.rocks:
+        yield rock
+        yield from rock.series
     yield from (row for _, row in settings.interface_rows(scene))
 
 
@@ -50,6 +53,8 @@ def _references(scene, row, kind):
         yield from ((other, key) for other in rock.surfaces for key in _OF_SURFACES)
         yield from ((fault, key) for fault in group.faults for key in ("youngest", "elevation"))
         yield from ((body, "after") for body in group.bodies)
+    elif kind == "series":
+        yield from ((surface, "series") for surface in settings.rock_of(row).surfaces)
     elif kind == "fault":
         yield from ((end, "name") for fault in group.faults for end in fault.ends_at)
     elif kind == "rock":

@@ -19,35 +19,18 @@ _NOTHING = ("Planned hole", "#404040")
 
 
 def collar(row):
-    """(3,) the collar of a hole in model coordinates."""
+    """[x, y, z] of the collar of a hole, model coordinates."""
     return json.loads(row.collar) if row.collar else [0.0, 0.0, 0.0]
-
-
-def collar_text(axis):
-    """The getter of a text field: text, as Blender's numbers have 32 bits, which are too coarse for map
-    coordinates."""
-    return lambda row: f"{collar(row)[axis]:.3f}"
-
-
-def move_collar(axis):
-    """The setter of that field. What is no number changes nothing."""
-
-    def set_text(row, text):
-        try:
-            value = float(text.replace(",", ""))
-        except ValueError:
-            return
-        if np.isfinite(value):
-            given = collar(row)
-            given[axis] = value
-            set_collar(row, given)
-            update(row.id_data, row)
-
-    return set_text
 
 
 def set_collar(row, place):
     row.collar = json.dumps([float(value) for value in place])
+
+
+def move_collar(row, place):
+    """Moves the collar of a hole, and shows what it meets there."""
+    set_collar(row, place)
+    update(row.id_data, row)
 
 
 def axis_of(row):
@@ -57,7 +40,8 @@ def axis_of(row):
 
 
 def update(scene, row):
-    """Looks up what a hole meets now, where the model is at hand, and shows all holes."""
+    """Shows all holes. What this one meets is asked of the model, if that is in memory; if not, it is not
+    known until the next build."""
     _look_up(scene, row)
     show(scene)
 
@@ -157,17 +141,7 @@ def _show(scene, name, axis, parts, size):
     ends = np.array([(0.0, axis.length), *((begin, end) for _, begin, end in parts)]).ravel()
     places = axis.places(ends) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
-    thin = marks.lines(places, pairs[:1], _AXIS * size, _SIDES)
-    thick = marks.lines(places, pairs[1:], _RADIUS * size, _SIDES)
-    shape = type(thin)(
-        np.concatenate([thin.coordinates, thick.coordinates]),
-        np.concatenate([thin.offsets, thick.offsets[1:] + thin.offsets[-1]]),
-        np.concatenate([thin.corners, thick.corners + len(thin.coordinates)]).astype(np.int32),
-    )
-    mesh = bodies.add(scene, KIND, name, shape).data
-    ids = sorted({number for number, *_ in parts})
-    for material in (colors.plain_material(*_NOTHING), *(colors.of_property(scene, each) for each in ids)):
-        mesh.materials.append(material)
-    slots = np.array([0, *(1 + ids.index(number) for number, *_ in parts)], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(slots, _SIDES))
-    mesh.update()
+    radii = size * np.where(pairs[:, 0] == 0, _AXIS, _RADIUS)
+    mesh = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES)).data
+    of_parts = [colors.of_property(scene, number) for number, *_ in parts]
+    bodies.give_materials(mesh, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)

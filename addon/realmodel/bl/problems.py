@@ -9,7 +9,16 @@ import numpy as np
 from mathutils import Vector
 
 from ..core import InputRefused
-from . import build_job, data_objects, exaggeration, notices, project_settings, shapes, viewports
+from . import (
+    build_job,
+    data_objects,
+    exaggeration,
+    notices,
+    project_settings,
+    series_settings,
+    shapes,
+    viewports,
+)
 from .display import visible
 
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
@@ -17,13 +26,15 @@ _FRAMED = 0.05  # of the object's size, at least, around a bad place
 
 def forget():
     activity = bpy.context.window_manager.realmodel
-    activity.problem = activity.problem_object = activity.problem_triangles = activity.problem_place = ""
+    for name in ("problem", "problem_item", "problem_object", "problem_triangles", "problem_place"):
+        setattr(activity, name, "")
 
 
 def remember(scene, error):
     """Stores the objects and triangles of a refusal of a scene's model, for `show`."""
     activity = bpy.context.window_manager.realmodel
     activity.problem = notices.in_panel_words(build_job.message(error))
+    activity.problem_item = (error.item or "") if isinstance(error, InputRefused) else ""
     row = build_job.refused_surface(scene, error)
     is_given = row is not None and row.source in ("MESH_OBJECT", "TRACE_OBJECT")
     item = None if row is None else (row.object if is_given else row.interface)
@@ -32,6 +43,15 @@ def remember(scene, error):
         activity.problem_triangles = json.dumps([int(t) for t in error.triangles])
     if isinstance(error, InputRefused) and error.place is not None:
         activity.problem_place = json.dumps([float(value) for value in error.place])
+
+
+def of_series(rock, row):
+    """The last refusal, where it speaks of a series (its row) or of one of its surfaces; else empty."""
+    activity = bpy.context.window_manager.realmodel
+    members = [f"surface '{rock.surfaces[number].name}'" for number in series_settings.members(rock, row)]
+    parts = activity.problem_item.split(", ")
+    is_of_it = parts[0] == f"rock '{rock.name}'" and {f"series '{row.name}'", *members} & set(parts[1:2])
+    return activity.problem if is_of_it else ""
 
 
 def has_place(context):

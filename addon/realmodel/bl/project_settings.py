@@ -23,6 +23,7 @@ from ..core.surfaces.prepare import read_rocks
 from . import (
     borehole_picks,
     built_models,
+    exaggeration,
     library_rows,
     method_settings,
     names,
@@ -75,6 +76,13 @@ def model_origin(scene):
     return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
 
 
+def in_world(scene, places):
+    """(N, 3) where places (N, 3) of the model are shown."""
+    stretched = exaggeration.matrix(scene)
+    offsets = np.asarray(places, np.float64).reshape(-1, 3) - model_origin(scene)
+    return offsets @ stretched[:3, :3].T + stretched[:3, 3]
+
+
 def user_objects(scene):
     """The objects of the user that a model is made from: where they stand fixes its origin."""
     found = [row.region for row in scene.realmodel.rocks]
@@ -113,12 +121,13 @@ def compose(scene, depsgraph, whole=True):
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
             rock.dips = surface_dips.of_row(row)
-            rock.series = series_settings.of_row(row)
+            rock.series = series_settings.of_rock(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
+        fields = series_settings.fields(row)
         for at, surface_row in enumerate(row.surfaces):
-            surface = _plain_surface(surface_row, series_settings.fields(row))
+            surface = _plain_surface(surface_row, fields)
             with naming(surface_item(rock, surface)):
                 _shape(source, composed, (number, at), surface, surface_row)
             rock.surfaces.append(surface)
@@ -137,6 +146,10 @@ def _plain_surface(row, fields):
     """A surface with everything but its shape. fields: the names of series whose surfaces are level sets."""
     surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
     surface.series = row.series or None
+    if row.source not in method_settings.READY_MESHES:
+        surface.dips = surface_dips.of_row(row)
+        if row.left_out:
+            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     if surface.series in fields:
         return surface
     if method_settings.has_method(row):
@@ -145,9 +158,6 @@ def _plain_surface(row, fields):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
-        surface.dips = surface_dips.of_row(row)
-        if row.left_out:
-            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
     return surface
 
 
@@ -195,6 +205,11 @@ def _shape(source, composed, place, surface, row):
     if row.interface_digest and in_use(row.interface):
         given, triangles = shapes.triangulation(row.interface, source.depsgraph)
         if shapes.digest(given, triangles) != row.interface_digest:
+            if isinstance(surface, Surface) and series_settings.is_level_set(row):
+                what = f"its interface was edited, but it is a level set of series '{row.series}'"
+                raise InputRefused(
+                    what, advice="undo that and move its contacts, or take it out of the series"
+                )
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
@@ -205,7 +220,7 @@ def _shape(source, composed, place, surface, row):
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
-    if row.source in ("TRACE_OBJECT", "STICKS_OBJECT"):
+    if row.source in settings.LINE_OBJECTS:
         _lines_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
@@ -418,7 +433,7 @@ def add_rock(group, rock):
         borehole_picks.keep_ends(row, rock.hole_ends)
         observed_blocks.keep(row, rock.observed)
         surface_dips.keep(row, rock.dips)
-        series_settings.keep(row, rock.series)
+        series_settings.fill(row, rock.series)
     return row
 
 

@@ -1,50 +1,130 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The series of a rock mass, stored in its row."""
+"""Converts the series of a rock mass between its rows and realmodel.core; which surfaces belong to them."""
 
-import json
+import numpy as np
 
-from ..core import InputRefused, Series, SpaceDips
-from ..core.settings.series import FIELD
-from . import stored_arrays
+from ..core import InputRefused, Rock, Series, SpaceDips, Surface
+from ..core.base.errors import naming
+from ..core.project.series import check_level_set, check_series
+from ..core.settings.schema import ROCK, SERIES
+from ..core.settings.series import AUTO, FIELD
+from . import method_settings, settings, stored_arrays
 
-_KEYS = ("name", "kind", "dips", "resolution")
-
-
-def keep(row, series):
-    """Stores realmodel.core.Series with dips as arrays."""
-    row.series = json.dumps([_entry(each) for each in series]) if series else ""
+_STANDS_FOR = np.zeros((3, 2))  # any region, where only whether there is one counts
 
 
-def _entry(series):
-    dips = series.space_dips()
-    packed = None if dips is None else stored_arrays.pack(positions=dips.positions, normals=dips.normals)
-    return {"name": series.name, "kind": series.kind, "resolution": series.resolution, "dips": packed}
+def fill(rock, series):
+    """Fills the rows of a rock mass from realmodel.core.Series whose dips are arrays."""
+    rock.series.clear()
+    rock.active_series = 0
+    for each in series:
+        row = rock.series.add()
+        resolution = None if each.resolution == AUTO else each.resolution
+        for key, value in (("name", each.name), ("kind", each.kind), ("resolution", resolution)):
+            method_settings.set_value(row, key, SERIES, value)
+        keep_dips(row, each.space_dips())
 
 
-def of_row(row):
-    """The stored series. Raises InputRefused for damaged text."""
-    return [
-        Series(each["name"], each["kind"], _dips(each["dips"]), each["resolution"]) for each in _entries(row)
-    ]
+def of_rock(rock):
+    """The Series of a rock mass. Raises InputRefused for damaged text."""
+    return [_series(row) for row in rock.series]
 
 
-def fields(row):
-    """The names of the series whose surfaces are level sets. Raises InputRefused for damaged text."""
-    return {each["name"] for each in _entries(row) if each["kind"] == FIELD}
+def _series(row):
+    resolution = method_settings.value(row, "resolution", SERIES) if row.kind == FIELD else None
+    with naming(f"series '{row.name}'"):
+        return Series(row.name, row.kind, dips_of(row), AUTO if resolution is None else resolution)
 
 
-def _entries(row):
-    if not row.series:
-        return []
+def keep_dips(row, dips):
+    """Stores SpaceDips in the row of a series, or None."""
+    row.dips = ""
+    if dips is not None and len(dips):
+        given = {key: each for key, each in vars(dips).items() if each is not None}
+        row.dips = stored_arrays.pack(**given)
+
+
+def dips_of(row):
+    """The stored SpaceDips of a series; None where there are none. Raises InputRefused for damaged text."""
+    return SpaceDips(**stored_arrays.unpack(row.dips)) if row.dips else None
+
+
+def add_dips(row, dips):
+    """Adds SpaceDips to those that a series has."""
+    known = dips_of(row)
+    keep_dips(row, dips if known is None else SpaceDips.joined([known, dips]))
+
+
+def active(rock):
+    """The row of the active series of a rock mass; None where it has none."""
+    return rock.series[min(max(rock.active_series, 0), len(rock.series) - 1)] if len(rock.series) else None
+
+
+def fields(rock):
+    """The names of the series of a rock mass whose surfaces are level sets."""
+    return {row.name for row in rock.series if row.kind == FIELD}
+
+
+def is_level_set(surface):
+    """Whether the row of a surface is of a level set of a field."""
+    return bool(surface.series) and surface.series in fields(settings.rock_of(surface))
+
+
+def of_surface(surface):
+    """The row of the series of a surface's row; None where it is in none."""
+    return next((row for row in settings.rock_of(surface).series if row.name == surface.series), None)
+
+
+def members(rock, row):
+    """The numbers of the surfaces of a series, from the oldest."""
+    return [number for number, surface in enumerate(rock.surfaces) if surface.series == row.name]
+
+
+def set_run(rock, row, first, last):
+    """Makes the surfaces from one number to another those of a series."""
+    for number, surface in enumerate(rock.surfaces):
+        if first <= number <= last:
+            surface.series = row.name
+        elif surface.series == row.name:
+            surface.series = ""
+
+
+def refusal(rock, row):
+    """Why a build refuses a series as it stands, as one sentence, by what needs no look at its data; empty
+    where it does not."""
+    surfaces = [_outline_of(surface) for surface in rock.surfaces]
+    has_region = rock.region is not None or rock.region_file or rock.region_stored
     try:
-        entries = json.loads(row.series)
-        return [{key: each[key] for key in _KEYS} for each in entries]
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputRefused(
-            f"what the .blend keeps of its series cannot be read: {error}",
-            advice="open the project file again",
-        ) from error
+        given = Rock(
+            rock.name,
+            surfaces,
+            region=_STANDS_FOR if has_region else None,
+            base_elevation=method_settings.value(rock, "base_elevation", ROCK),
+            series=[_series(row)],
+        )
+        check_series(given)
+        for number in members(rock, row) if row.kind == FIELD else ():
+            surface = surfaces[number]
+            check_level_set(given, surface, lambda *told, own=surface.item: _refused(own, *told))
+    except InputRefused as error:
+        about = f"{error.item}: " if (error.item or "").startswith("surface") else ""
+        return f"{about}{error.what}; {error.advice}" if error.advice else f"{about}{error.what}"
+    return ""
 
 
-def _dips(text):
-    return None if text is None else SpaceDips(**stored_arrays.unpack(text))
+def _outline_of(row):
+    """A Surface with what matters to its series."""
+    surface = Surface(row.name, series=row.series or None)
+    if row.source in method_settings.READY_MESHES:
+        surface.vertices, surface.triangles = np.empty((0, 3)), np.empty((0, 3), np.int32)
+        return surface
+    surface.points = np.empty((0, 3))
+    if not is_level_set(row):
+        surface.method = row.method
+    elif row.dips:
+        surface.dips = row.dips
+    return surface
+
+
+def _refused(item, what, _key=None, advice=None):
+    return InputRefused(what, item=item, advice=advice)

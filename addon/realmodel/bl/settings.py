@@ -8,15 +8,13 @@ import numpy as np
 
 from .. import preferences
 
-VERSION = 5  # of the settings in a .blend
+VERSION = 6  # of the settings in a .blend
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
 IMAGE = "realmodel_image"  # on an object: it is an image that was placed by its coordinates
-OF_OBJECTS = (  # sources that are objects of the user
-    *("POINTS_OBJECT", "MESH_OBJECT", "TRACE_OBJECT"),
-    "STICKS_OBJECT",
-)
+LINE_OBJECTS = ("TRACE_OBJECT", "STICKS_OBJECT")  # sources of faults: objects with lines
+OF_OBJECTS = ("POINTS_OBJECT", "MESH_OBJECT", *LINE_OBJECTS)  # sources that are objects of the user
 TRACES = ("TRACE_OBJECT", "TRACE_FILE")  # sources of faults that are lines
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
@@ -58,9 +56,7 @@ def is_region_object(_row, item):
 
 def is_fault_object(row, item):
     """Poll of the pointer of a fault: to a mesh, or to a curve or mesh with its trace or its sticks."""
-    return (is_region_object if row.source in ("TRACE_OBJECT", "STICKS_OBJECT") else is_mesh_object)(
-        row, item
-    )
+    return (is_region_object if row.source in LINE_OBJECTS else is_mesh_object)(row, item)
 
 
 def active_rock(scene):
@@ -82,9 +78,10 @@ def surface_of(row):
     return row.id_data.path_resolve(row.path_from_id().partition(".filters[")[0])
 
 
-def rock_of(surface):
-    """The rock mass that a surface's row belongs to."""
-    return surface.id_data.path_resolve(surface.path_from_id().rpartition(".surfaces[")[0])
+def rock_of(row):
+    """The rock mass that the row of a surface or of a series belongs to."""
+    within = ".series[" if kind_of(row) == "series" else ".surfaces["
+    return row.id_data.path_resolve(row.path_from_id().rpartition(within)[0])
 
 
 def surface_rows(scene):
@@ -125,10 +122,11 @@ def row_at(scene, place):
 
 
 def kind_of(row):
-    """ "surface", "fault", "body" or "rock"."""
+    """ "surface", "series", "fault", "body" or "rock"."""
     path = row.path_from_id()
-    if ".surfaces[" in path:
-        return "surface"
+    for kind, within in (("surface", ".surfaces["), ("series", ".series[")):
+        if within in path:
+            return kind
     return "fault" if ".faults[" in path else "body" if ".bodies[" in path else "rock"
 
 

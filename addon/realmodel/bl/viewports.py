@@ -132,10 +132,15 @@ def ray(area, at):
     return start, along
 
 
-def pixel(area, place):
-    """(x, y) of a place of the world in the window region of a viewport, or None behind the eye."""
+def pixels(area, places):
+    """(N, 2) of places (N, 3) of the world in the window region of a viewport; what is
+    behind the eye is infinitely far."""
     region = next(r for r in area.regions if r.type == "WINDOW")
-    return view3d_utils.location_3d_to_region_2d(region, area.spaces.active.region_3d, place)
+    matrix = np.array(area.spaces.active.region_3d.perspective_matrix)
+    found = np.column_stack([places, np.ones(len(places))]) @ matrix.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        seen = (found[:, :2] / found[:, 3:] + 1.0) / 2.0 * (region.width, region.height)
+    return np.where(found[:, 3:] > 0.0, seen, np.inf)
 
 
 def show_status():

@@ -17,6 +17,7 @@ from ..bl import (
     observed_blocks,
     project_settings,
     reading_text,
+    series_settings,
     settings,
     stored_arrays,
     surface_dips,
@@ -40,9 +41,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     """Read boreholes, vertical or not: tables of collars, of surveys, of picks (the depths at which they met
     the surfaces), of logged intervals and of assays, or the drillholes of an OMF or geoh5 file; tables of
     places in known blocks, such as outcrops; dips, which count for the surfaces or blocks that their rows
-    name, or for the active surface where none names any; and geological maps. Choose all of them at once:
-    each is told by its columns. Surfaces get these data beside their own, and are added where they are not
-    there yet"""
+    name, or for the active surface or its series where none names any; and geological maps. Choose all of
+    them at once: each is told by its columns. Surfaces get these data beside their own, and are added where
+    they are not there yet"""
 
     bl_label = "Import Field Data"
 
@@ -105,6 +106,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         description="Unit of all the tables",
         items=items(READING["units"].parts["z"].words),
     )
+    series: StringProperty(
+        name="Dips Of Series",
+        description="Series of the kind Field that the dips are of, at any angle and with polarity, whatever "
+        "their rows name; empty: that of the active surface, where no row names a surface or a block",
+        search=lambda self, context, _text: self.fields(context),
+        options={"SKIP_SAVE"},
+    )
     add_surfaces: BoolProperty(
         name="Add Surfaces",
         description="Add surfaces that are named in the tables but not in the list, the oldest first; a unit "
@@ -120,6 +128,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         except RealModelError:
             return []
 
+    def fields(self, context):
+        row = settings.active_rock(context.scene)
+        return [] if row is None else sorted(series_settings.fields(row))
+
     def surfaces(self, context):
         row = settings.active_rock(context.scene)
         return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
@@ -127,6 +139,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     def act(self, context):
         scene = context.scene
         tables = self._tables(context)
+        series = _series_for_dips(scene, self.series)
+        if series is not None:
+            tables.give_dips_to_series(every=bool(self.series))
         surface = _surface_for_dips(scene).name if tables.dips else ""
         rock = settings.active_rock(scene)
         found = field_tables.read(
@@ -146,6 +161,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             warnings += method_settings.dips_unused(row)
         if found.rock_dips is not None:
             surface_dips.add(rock, found.rock_dips)
+        if found.series_dips is not None:
+            series_settings.add_dips(series, found.series_dips)
+            given.append(found.series_dips.positions)
         borehole_picks.keep(rock, found.picks.holes)
         borehole_picks.keep_ends(rock, found.picks.ends)
         for draped, file in zip(found.maps, tables.maps, strict=True):
@@ -161,7 +179,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         arrived(context, rock, given)
         for text in warnings:
             self.report({"WARNING"}, text)
-        self.report({"INFO"}, _summary(found, surface))
+        self.report({"INFO"}, _summary(found, surface or (series.name if series is not None else "")))
 
     def _tables(self, context):
         """The chosen tables, and those that are named. Raises InputRefused."""
@@ -201,7 +219,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             "ground": ground or None,
         }
 
-    def draw(self, _context):
+    def draw(self, context):
         layout = self.layout
         box = layout.box().column(align=True)
         shown = [path for path in self.paths() if path.is_file()]
@@ -212,7 +230,8 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
         has_maps = any(field_tables.is_map(path) for path in shown)
-        for name in (*(_OF_MAPS if has_maps else ()), *_SHOWN):
+        of_series = ("series",) if self.fields(context) else ()
+        for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
             layout.prop(self, name)
 
     def check(self, _context):
@@ -250,8 +269,23 @@ def _surface_for_dips(scene):
     return row
 
 
-def _summary(found, surface):
-    """What was read, in one sentence."""
+def _series_for_dips(scene, name):
+    """The row of a series of the kind Field: of this name or, without one, that of the active surface; None
+    where that is in none. Raises InputRefused."""
+    rock, surface = settings.active_rock(scene), settings.active_surface(scene)
+    if not name:
+        is_of_field = surface is not None and series_settings.is_level_set(surface)
+        return series_settings.of_surface(surface) if is_of_field else None
+    there = [] if rock is None else [row for row in rock.series if row.name in series_settings.fields(rock)]
+    found = next((row for row in there if row.name == name), None)
+    if found is None:
+        advice = f"there are {', '.join(row.name for row in there)}" if there else "add one first (Series, +)"
+        raise InputRefused(f"there is no series '{name}' of the kind Field", advice=advice)
+    return found
+
+
+def _summary(found, of):
+    """What was read, in one sentence. of: the name of the surface or of the series whose dips were read."""
     said = []
     names = dict.fromkeys((*found.picks.points, *found.new))
     if found.picks.points:
@@ -263,7 +297,9 @@ def _summary(found, surface):
     if found.maps:
         said.append(f"{sum(len(draped.triangles) for draped in found.maps)} triangles of a map")
     if found.dips is not None:
-        said.append(f"{len(found.dips)} dips of '{surface}'")
+        said.append(f"{len(found.dips)} dips of '{of}'")
+    if found.series_dips is not None:
+        said.append(f"{len(found.series_dips)} dips of series '{of}'")
     columns = dict.fromkeys(name for values in found.values for name in values.columns)
     if columns:
         said.append(f"the columns {', '.join(columns)} of intervals")

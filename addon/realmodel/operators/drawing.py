@@ -9,7 +9,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import drawn_data, placed_images, settings, viewports
+from ..bl import drawn_data, placed_images, project_settings, settings, viewports
 from ..bl.display import exaggeration_changed, visible
 from ..core import InputRefused
 from .in_viewport import InViewport
@@ -58,7 +58,7 @@ class _Drawing(InViewport):
         del self._places[-1:]
 
     def marks(self, context):
-        return drawn_data.in_world(context.scene, self._places).tolist()
+        return project_settings.in_world(context.scene, self._places)
 
     def drawn(self, context):
         """The lines (N, 3) that were drawn, or those of the active object. Raises InputRefused."""
@@ -96,8 +96,7 @@ class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):
     def act(self, context):
         row = settings.active_structure(context.scene)
         lines = self.drawn(context)
-        for line in lines:
-            drawn_data.add_stick(context.scene, row, line)
+        drawn_data.add_sticks(context.scene, row, lines)
         self.report({"INFO"}, f"Added {len(lines)} stick{'s' * (len(lines) > 1)} to {row.name}")
 
 

@@ -4,10 +4,11 @@
 import bpy
 import numpy as np
 
-from ..bl import data_objects, exaggeration, live, project_settings
+from ..bl import data_objects, live, project_settings, viewports
 from ..bl.display import capture
 from ..bl.field import data, edits, handle, heights
 from ..core import InputRefused
+from .in_viewport import Pointing
 from .reporting import Reporting, place_property
 
 _NEAR = 24  # pixels between the mouse and a datum, at most
@@ -37,9 +38,7 @@ def _shown_places(scene):
         groups += [group] * len(at)
         numbers += range(len(at))
         places.append(at)
-    offsets = np.concatenate(places) - project_settings.model_origin(scene)
-    stretched = exaggeration.matrix(scene)
-    return groups, numbers, offsets @ stretched[:3, :3].T + stretched[:3, 3]
+    return groups, numbers, project_settings.in_world(scene, np.concatenate(places))
 
 
 def _changed(scene):
@@ -49,7 +48,7 @@ def _changed(scene):
     live.touch(scene)
 
 
-class REALMODEL_OT_datum_pick(Reporting, bpy.types.Operator):
+class REALMODEL_OT_datum_pick(Pointing, bpy.types.Operator):
     """Pick a datum in the viewport - a point, a dip, an outcrop or an interval - to move it, or to switch it
     off; move its sphere as any object (G)"""
 
@@ -70,55 +69,37 @@ class REALMODEL_OT_datum_pick(Reporting, bpy.types.Operator):
     def invoke(self, context, _event):
         if bpy.app.background or capture.viewport(context) is None:
             return self.execute(context)
-        context.window_manager.modal_handler_add(self)
-        context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set("Pick Datum: click at a datum     Esc: leave")
-        return {"RUNNING_MODAL"}
+        return self.wait(context, "EYEDROPPER", "Pick Datum: click at a datum     Esc: leave")
 
     def modal(self, context, event):
         if event.type in {"ESC", "RIGHTMOUSE"}:
-            return self._leave(context, {"CANCELLED"})
+            return self.leave(context, {"CANCELLED"})
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             found = _under_mouse(context, event)
             if found is None:
                 self.report({"INFO"}, "no datum is here; click nearer to one")
                 return {"RUNNING_MODAL"}
             self._activate(context, found)
-            return self._leave(context, {"FINISHED"})
+            return self.leave(context, {"FINISHED"})
         return {"PASS_THROUGH"}
-
-    def cancel(self, context):
-        self._leave(context, {"CANCELLED"})
 
     def _activate(self, context, datum):
         handle.activate(context, datum)
         self.report({"INFO"}, handle.text_of(context.scene, datum))
 
-    def _leave(self, context, result):
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
-        return result
-
 
 def _under_mouse(context, event):
     """The datum nearest to the mouse in whatever 3D viewport that is; None where none is near."""
-    for area in context.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
-        region = next(r for r in area.regions if r.type == "WINDOW")
-        mouse = np.array([event.mouse_x - region.x, event.mouse_y - region.y])
-        if (mouse < 0).any() or (mouse >= (region.width, region.height)).any():
-            continue
-        groups, numbers, places = _shown_places(context.scene)
-        matrix = np.array(area.spaces.active.region_3d.perspective_matrix)
-        found = np.column_stack([places, np.ones(len(places))]) @ matrix.T
-        with np.errstate(divide="ignore", invalid="ignore"):
-            pixels = (found[:, :2] / found[:, 3:] + 1.0) / 2.0 * (region.width, region.height)
-        away = np.where(found[:, 3] > 0.0, np.linalg.norm(pixels - mouse, axis=1), np.inf)
-        if len(away) and away.min() <= _NEAR:
-            best = int(away.argmin())
-            return groups[best].datum(numbers[best])
-    return None
+    there = viewports.under_mouse(context, event)
+    if there is None:
+        return None
+    area, mouse = there
+    groups, numbers, places = _shown_places(context.scene)
+    away = np.linalg.norm(viewports.pixels(area, places) - mouse, axis=1)
+    if not (len(away) and away.min() <= _NEAR):
+        return None
+    best = int(away.argmin())
+    return groups[best].datum(numbers[best])
 
 
 class REALMODEL_OT_datum_switch(Reporting, bpy.types.Operator):

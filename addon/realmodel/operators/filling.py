@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from ..bl.boolean_job import VOLUME
 from ..bl.fill_job import FilledShape, FillJob
 from ..bl.fill_preview import FillPreview
 from ..core import RealModelError, Strata
@@ -218,7 +219,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         return FillJob(context.scene, shape, strata, self.base_depth, self.rock_looks, self.masks)
 
     def tell_done(self, result):
-        beds = sum("realmodel_volume" in item for item in result.objects)
+        beds = sum(VOLUME in item for item in result.objects)
         self.report({"INFO"}, f"{beds} beds: see {result.name}")
 
     def _show(self):

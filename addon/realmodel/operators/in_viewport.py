@@ -17,7 +17,25 @@ _ENTER = {"RET", "NUMPAD_ENTER", "SPACE"}
 _BACK = {"BACK_SPACE", "DEL"}
 
 
-class InViewport(Reporting):
+class Pointing(Reporting):
+    """An operator that waits for the mouse in a viewport: the cursor and the status bar say so."""
+
+    def wait(self, context, cursor, text):
+        context.window_manager.modal_handler_add(self)
+        context.window.cursor_modal_set(cursor)
+        context.workspace.status_text_set(text)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        self.leave(context, {"CANCELLED"})
+
+    def leave(self, context, result):
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+        return result
+
+
+class InViewport(Pointing):
     """An operator that is run by clicks.
 
     `begin(context)` may raise RealModelError. `clicked(context, area, at, is_held)` takes a position in a
@@ -43,17 +61,14 @@ class InViewport(Reporting):
             return {"CANCELLED"}
         self._handler = DrawHandler(lambda: self._draw(bpy.context), "POST_PIXEL")
         self._handler.register()
-        context.window.cursor_modal_set("CROSSHAIR")
-        self._say(context)
-        context.window_manager.modal_handler_add(self)
         viewports.redraw()
-        return {"RUNNING_MODAL"}
+        return self.wait(context, "CROSSHAIR", self._text())
 
     def modal(self, context, event):
         if event.type == "ESC" or (event.type == "RIGHTMOUSE" and event.value == "PRESS"):
-            return self._leave(context, {"CANCELLED"})
+            return self.leave(context, {"CANCELLED"})
         if event.type in _ENTER and event.value == "PRESS":
-            self._leave(context, {})
+            self.leave(context, {})
             return self.execute(context)
         if (event.type in _BACK or (event.type == "Z" and event.ctrl)) and event.value == "PRESS":
             self.remove_last()
@@ -78,28 +93,26 @@ class InViewport(Reporting):
         self._say(context, self.clicked(context, area, at, is_held))
         return {"RUNNING_MODAL"}
 
-    def cancel(self, context):
-        self._leave(context, {"CANCELLED"})
+    def _text(self):
+        return f"{self.keys}     Backspace: remove the last     Enter: done     Esc: leave"
 
     def _say(self, context, problem=None):
-        text = f"{self.keys}     Backspace: remove the last     Enter: done     Esc: leave"
+        text = self._text()
         context.workspace.status_text_set(f"{problem}     {text}" if problem else text)
         for area in viewports.areas():
             area.tag_redraw()
 
-    def _leave(self, context, result):
+    def leave(self, context, result):
         if self._handler is not None:
             self._handler.unregister()
             self._handler = None
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
         viewports.redraw()
-        return result
+        return super().leave(context, result)
 
     def _draw(self, context):
-        area, region = context.area, context.region
-        seen = [viewports.pixel(area, place) for place in self.marks(context)]
-        points = np.array([tuple(each) for each in seen if each is not None]).reshape(-1, 2)
+        region = context.region
+        points = viewports.pixels(context.area, self.marks(context))
+        points = points[np.isfinite(points).all(axis=1)]
         if not len(points):
             return
         drawing = Drawing(region.width, region.height)

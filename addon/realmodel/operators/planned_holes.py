@@ -78,8 +78,7 @@ class REALMODEL_OT_planned_hole_collar(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene, row = context.scene, planned_holes.active(context.scene)
-        planned_holes.set_collar(row, _cursor(scene) + project_settings.model_origin(scene))
-        planned_holes.update(scene, row)
+        planned_holes.move_collar(row, _cursor(scene) + project_settings.model_origin(scene))
 
 
 class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):

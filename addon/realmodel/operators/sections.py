@@ -8,7 +8,6 @@ from mathutils import Quaternion, Vector
 
 from ..bl import (
     display,
-    drawn_data,
     exaggeration,
     project_settings,
     section_holes,
@@ -120,7 +119,7 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
 
 def some_holes(context):
     there = any(rock.hole_picks or rock.observations for rock in context.scene.realmodel.rocks)
-    return None if there else "there are no boreholes; import some first (Surfaces, Import Boreholes)"
+    return None if there else "there are no boreholes; import some first (Import Field Data)"
 
 
 def chosen_holes(context):
@@ -156,10 +155,8 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
     def _nearest(self, context, area, at):
         best = _PIXELS, None
         for name, line in self._lines.items():
-            seen = [
-                viewports.pixel(area, place) for place in drawn_data.in_world(context.scene, line).tolist()
-            ]
-            seen = np.array([tuple(each) for each in seen if each is not None]).reshape(-1, 2)
+            seen = viewports.pixels(area, project_settings.in_world(context.scene, line))
+            seen = seen[np.isfinite(seen).all(axis=1)]
             best = min(best, (_distance(np.array(at, float), seen), name), key=lambda found: found[0])
         return best[1]
 
@@ -168,7 +165,7 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
 
     def marks(self, context):
         tops = [self._lines[name][0] for name in self._names]
-        return drawn_data.in_world(context.scene, tops).tolist()
+        return project_settings.in_world(context.scene, tops)
 
     def act(self, context):
         if not self._names:

@@ -8,6 +8,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl import display, project_settings, settings, units, viewports
 from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
+from .in_viewport import Pointing
 from .reporting import (
     Reporting,
     a_model,
@@ -198,7 +199,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
         display.mode_changed(scene)
 
 
-class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
+class REALMODEL_OT_coordinates(Pointing, bpy.types.Operator):
     """Show the coordinates of the model, its block, property and thickness: under the mouse until you click,
     or at the 3D cursor"""
 
@@ -227,14 +228,13 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
                 return self.execute(context)
         if not len(context.scene.realmodel.results):
             return self.execute(context)
-        context.window_manager.modal_handler_add(self)
-        context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set("Coordinates: point at the model     Click: keep     Esc: leave")
-        return {"RUNNING_MODAL"}
+        return self.wait(
+            context, "EYEDROPPER", "Coordinates: point at the model     Click: keep     Esc: leave"
+        )
 
     def modal(self, context, event):
         if event.type in {"ESC", "RIGHTMOUSE"}:
-            return self._leave(context, {"CANCELLED"})
+            return self.leave(context, {"CANCELLED"})
         if event.type in {"MOUSEMOVE", "LEFTMOUSE", "RET", "NUMPAD_ENTER"}:
             place = _under_mouse(context, event)
             text = "no block here" if place is None else place_text(context.scene, place)
@@ -244,17 +244,9 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
                     return {"RUNNING_MODAL"}
                 coordinates.remember(context.scene, place)
                 self.report({"INFO"}, text)
-                return self._leave(context, {"FINISHED"})
+                return self.leave(context, {"FINISHED"})
             return {"RUNNING_MODAL"}
         return {"PASS_THROUGH"}
-
-    def cancel(self, context):
-        self._leave(context, {"CANCELLED"})
-
-    def _leave(self, context, result):
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
-        return result
 
 
 def _under_mouse(context, event):

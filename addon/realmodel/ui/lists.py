@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows, units
+from ..bl import library_rows, series_settings, units
 from .panel import right_label
 
 
@@ -49,6 +49,10 @@ class REALMODEL_UL_surfaces(YoungestOnTop, bpy.types.UIList):
     def draw_row(self, context, row, item):
         draw_swatch(row, library_rows.find(context.scene, item.property_id))
         row.prop(item, "name", text="", emboss=False)
+        if item.series:
+            row.label(
+                text="", icon="OUTLINER_OB_CURVES" if series_settings.is_level_set(item) else "LINENUMBERS_ON"
+            )
         if item.rule != "erosional":
             row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")

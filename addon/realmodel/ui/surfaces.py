@@ -77,10 +77,13 @@ def _draw_surface(layout, context, surface):
         if project_settings.stored_shape(surface) and not surface.filepath:
             hint(layout, "The data are stored in the .blend.")
     rock = settings.active_rock(context.scene)
-    if rock.series:
+    if len(rock.series):
         layout.prop(surface, "series")
-    if surface.series in series_settings.fields(rock):
+    if series_settings.is_level_set(surface):
         hint(layout, "A level set of the field of its series.")
+        if surface.dips:
+            _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")
+            layout.operator("realmodel.series_take_dips", icon="FORWARD")
     elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
@@ -164,7 +167,8 @@ class _OfTheMethod(_OfASurface):
 
     @classmethod
     def shown(cls, surface):
-        return method_settings.has_method(surface) and any(cls.options(surface))
+        has_method = method_settings.has_method(surface) and not series_settings.is_level_set(surface)
+        return has_method and any(cls.options(surface))
 
     @classmethod
     def options(cls, surface):

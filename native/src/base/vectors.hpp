@@ -62,6 +62,16 @@ inline Vec3 unit(const Vec3& a) {
     const double size = length(a);
     return size > 0 ? Vec3{a[0] / size, a[1] / size, a[2] / size} : Vec3{};
 }
+/// Of length 1 and perpendicular to a vector that has a length.
+inline Vec3 perpendicular(const Vec3& a) {
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+        if (std::abs(a[k]) < std::abs(a[least])) least = k;
+    }
+    Vec3 other{};
+    other[least] = 1;
+    return unit(cross(a, other));
+}
 constexpr double squared_distance(const Vec2& a, const Vec2& b) {
     return dot(minus(b, a), minus(b, a));
 }

@@ -75,13 +75,7 @@ Vec3 fold_axis(std::span<const Vec3> normals) {
 }
 
 Anisotropy along_axis(const Vec3& axis, double ratio) {
-    std::size_t least = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-        if (std::abs(axis[k]) < std::abs(axis[least])) least = k;
-    }
-    Vec3 other{};
-    other[least] = 1;
-    const Vec3 second = unit(cross(axis, other));
+    const Vec3 second = perpendicular(axis);
     return {{axis, second, cross(axis, second)}, {ratio, 1, 1}};
 }
 

@@ -36,21 +36,25 @@ constexpr int kMostRounds = 40;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
 
+/// The cube of some size that a contact lies in, and its surface.
+using Cube = std::array<std::int64_t, 4>;
+Cube cube_of(const KnownData& known, std::size_t contact, double size) {
+    Cube cube{0, 0, 0, known.surface_of(contact)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        cube[axis] = static_cast<std::int64_t>(std::floor(known.contacts()[contact][axis] / size));
+    return cube;
+}
+
 /// At most about `most` of some contacts: of each surface one in each of equal cubes.
 std::vector<std::size_t> thinned(const KnownData& known, std::size_t most) {
-    const std::vector<Vec3>& at = known.contacts();
     std::vector<std::size_t> kept;
     for (double size = 1.0 / 64;; size *= 1.25) {
-        std::map<std::array<std::int64_t, 4>, std::size_t> first;
-        for (std::size_t n = 0; n < at.size(); ++n) {
-            std::array<std::int64_t, 4> key{0, 0, 0, known.surface_of(n)};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                key[axis] = static_cast<std::int64_t>(std::floor(at[n][axis] / size));
-            first.emplace(key, n);
-        }
+        std::map<Cube, std::size_t> first;
+        for (std::size_t n = 0; n < known.contacts().size(); ++n)
+            first.emplace(cube_of(known, n, size), n);
         if (first.size() > most && size < 4) continue;
         kept.clear();
-        for (const auto& [key, n] : first)
+        for (const auto& [cube, n] : first)
             kept.push_back(n);
         std::sort(kept.begin(), kept.end());
         return kept;
@@ -65,8 +69,6 @@ public:
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
-        for (std::size_t n = 0; n < known.contacts().size(); ++n)
-            surface_of_[known.contacts()[n]] = known.surface_of(n);
         const std::size_t most = static_cast<std::size_t>(std::max(options.most_centers, 1));
         const std::size_t all = known.contacts().size();
         if (all <= std::min<std::size_t>(most, 2 * kFirstCenters)) {
@@ -114,8 +116,8 @@ public:
                     value *= unit;
             },
             execution_);
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
-            out.levels.push_back(unit * level(k));
+        for (const double level : levels())
+            out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
@@ -125,21 +127,27 @@ public:
 
 private:
     struct State {
-        bool active = false, stays = false;
+        bool active = false, was_released = false, stays = false;
     };
 
     void begin(double from, double to, const char* text) const {
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
     }
 
-    double level(std::int32_t surface) const { return level_in(*spline_, surface); }
     double level_in(const Spline& spline, std::int32_t surface) const {
         return spline.of({{{known_.contacts()[known_.reference(surface)], 1, true}}, {}, 0, false});
     }
 
+    std::vector<double> levels() const {
+        std::vector<double> out;
+        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
+            out.push_back(level_in(*spline_, k));
+        return out;
+    }
+
     /// A part of the data that likelihoods are compared by: contacts that are spread, and those
-    /// nearest to them.
-    std::vector<Functional> sample() const {
+    /// nearest to them, without the references.
+    std::vector<std::size_t> sample() const {
         const std::vector<Vec3>& at = known_.contacts();
         std::set<std::size_t> numbers;
         for (const std::size_t n : thinned(known_, kSampledContacts / 2)) {
@@ -157,23 +165,24 @@ private:
             }
             numbers.insert(nearest);
         }
-        std::vector<Functional> out;
+        std::vector<std::size_t> out;
         for (const std::size_t n : numbers) {
-            if (n != known_.reference(known_.surface_of(n))) out.push_back(known_.on_surface(n));
+            if (n != known_.reference(known_.surface_of(n))) out.push_back(n);
         }
         return out;
     }
 
-    /// The fixed functionals, of many dips only some, and others.
-    std::vector<Functional> joined(std::vector<Functional> fixed,
-                                   std::span<const Functional> others) const {
+    /// The fixed functionals, of many dips only some, and the sample.
+    std::vector<Functional> sampled(std::span<const double> gaps) const {
+        std::vector<Functional> fixed = known_.fixed(gaps);
         const std::size_t dips = known_.data().dips.size();
         const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
         std::vector<Functional> out;
         for (std::size_t n = 0; n < fixed.size(); ++n) {
             if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
         }
-        out.insert(out.end(), others.begin(), others.end());
+        for (const std::size_t n : sample_)
+            out.push_back(known_.on_surface(n));
         return out;
     }
 
@@ -182,13 +191,11 @@ private:
     /// together.
     void find_likely() {
         const auto look = [&] {
-            likely_ = most_likely(joined(known_.fixed(gaps_), sample_), known_.data().normals,
-                                  execution_);
+            likely_ = most_likely(sampled(gaps_), known_.data().normals, execution_);
         };
         look();
         if (known_.data().surfaces < 3) return;
-        const Spline spline(joined(known_.fixed(gaps_), sample_), map_of(likely_.anisotropy),
-                            likely_.errors, execution_);
+        const Spline spline(sampled(gaps_), map_of(likely_.anisotropy), likely_.errors, execution_);
         double low = 1e300, high = 0;
         const std::vector<double> apart = distances();
         for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
@@ -197,24 +204,23 @@ private:
             high = std::max(high, steep);
         }
         if (high <= kUneven * low) return;
-        find_gaps({kIsotropic, {1e-6, 1e-3}});
+        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}});
         look();
-        find_gaps(likely_);
+        find_gaps(apart, likely_);
         look();
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.
-    void find_gaps(const Likely& likely) {
+    /// @param apart  how far each surface is from the next
+    void find_gaps(const std::vector<double>& apart, const Likely& likely) {
         const std::int32_t last = known_.data().surfaces - 1;
-        gaps_ = distances();
-        std::vector<Functional> all = joined(known_.fixed(gaps_), sample_);
-        Spline spline(all, map_of(likely.anisotropy), likely.errors, execution_);
+        gaps_ = apart;
+        Spline spline(sampled(gaps_), map_of(likely.anisotropy), likely.errors, execution_);
         for (int round = 0; round < kGapRounds; ++round) {
             const std::vector<double> steep = steepness(spline);
             for (std::int32_t k = 0; k < last; ++k)
                 gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
-            all = joined(known_.fixed(gaps_), sample_);
-            spline.set_right(all);
+            spline.set_right(sampled(gaps_));
         }
     }
 
@@ -244,10 +250,8 @@ private:
     /// How steep a field is on the two surfaces of each layer.
     std::vector<double> steepness(const Spline& spline) const {
         std::vector<std::vector<double>> on(known_.data().surfaces);
-        for (const Functional& f : sample_) {
-            const Vec3& at = f.values[0].at;
-            on[surface_of_.at(at)].push_back(length(spline.gradient(at)));
-        }
+        for (const std::size_t n : sample_)
+            on[known_.surface_of(n)].push_back(length(spline.gradient(known_.contacts()[n])));
         std::vector<double> out;
         for (std::size_t k = 0; k + 1 < on.size(); ++k) {
             std::vector<double> both = on[k];
@@ -287,21 +291,15 @@ private:
                 spline_->values_at(here, std::span<double>(out.data() + from, to - from));
             },
             0.0);
+        const std::vector<double> level_of = levels();
         for (std::size_t n = 0; n < at.size(); ++n)
-            out[n] = std::abs(out[n] - level_of_[known_.surface_of(n)]);
+            out[n] = std::abs(out[n] - level_of[known_.surface_of(n)]);
         return out;
-    }
-
-    void set_levels() {
-        level_of_.clear();
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
-            level_of_.push_back(level(k));
     }
 
     /// Those of the contacts that are missed most, no two of them near each other, of all surfaces
     /// by turns.
     bool add_centers() {
-        set_levels();
         const std::vector<double> missed = misfits();
         misfit_ = *std::max_element(missed.begin(), missed.end());
         const auto have =
@@ -311,16 +309,11 @@ private:
         const std::vector<std::size_t> order = by_turns(missed);
         // Cubes as large as a center's share of the contacts' sheets.
         const double size = 1 / std::sqrt(static_cast<double>(have + most));
-        std::set<std::array<std::int64_t, 4>> taken;
+        std::set<Cube> taken;
         std::size_t left = std::min(most - have, have);
         for (const std::size_t n : order) {
             if (left == 0) break;
-            std::array<std::int64_t, 4> key{0, 0, 0, known_.surface_of(n)};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                key[axis] =
-                    static_cast<std::int64_t>(std::floor(known_.contacts()[n][axis] / size));
-            }
-            if (!taken.insert(key).second) continue;
+            if (!taken.insert(cube_of(known_, n, size)).second) continue;
             is_center_[n] = 1;
             --left;
         }
@@ -362,7 +355,7 @@ private:
         std::sort(missed.begin(), missed.end());
         missed.resize(std::min(missed.size(), kMostActivated));
         for (const auto& [lack, n] : missed) {
-            if (released_[n]) states_[n].stays = true;
+            if (states_[n].was_released) states_[n].stays = true;
             states_[n].active = true;
         }
         return !missed.empty();
@@ -378,7 +371,7 @@ private:
             const double force = spline_->force(row++);
             if (force >= 0 || states_[n].stays) continue;
             states_[n].active = false;
-            released_[n] = 1;
+            states_[n].was_released = true;
             any = true;
         }
         return any;
@@ -401,8 +394,7 @@ private:
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
-        const Spline spline(joined(known_.fixed({}), sample_), map_of(kIsotropic), {1e-6, 1e-3},
-                            execution_);
+        const Spline spline(sampled({}), map_of(kIsotropic), {1e-6, 1e-3}, execution_);
         const double mean_gap = known_.total_gap() / last;
         for (std::int32_t k = 0; k < last; ++k) {
             if (level_in(spline, k + 1) - level_in(spline, k) >= -kWrongOrder * mean_gap) continue;
@@ -419,7 +411,6 @@ private:
     /// Most dips against which the field falls; or one whose nearest neighbors have its attitude,
     /// but the other polarity.
     void refuse_polarities() {
-        released_.assign(inequalities_.size(), 0);
         std::vector<std::int64_t> against;
         for (const Inequality& inequality : inequalities_) {
             if (inequality.kind == Kind::kPolarity && spline_->of(inequality.functional) < 0)
@@ -477,14 +468,11 @@ private:
     FieldOptions options_;
     Execution execution_;
     std::vector<char> is_center_;
-    std::vector<Functional> sample_;
-    std::map<Vec3, std::int32_t> surface_of_;
+    std::vector<std::size_t> sample_;
     std::vector<double> gaps_;
     Likely likely_;
     std::vector<Inequality> inequalities_;
     std::vector<State> states_;
-    std::vector<char> released_;
-    std::vector<double> level_of_;
     std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;

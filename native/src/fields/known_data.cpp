@@ -128,13 +128,7 @@ void KnownData::check_contradictions() const {
 void KnownData::add_dips() {
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         const Vec3& normal = data_.normals[n];
-        std::size_t least = 0;
-        for (std::size_t k = 1; k < 3; ++k) {
-            if (std::abs(normal[k]) < std::abs(normal[least])) least = k;
-        }
-        Vec3 other{};
-        other[least] = 1;
-        const Vec3 at = frame_.to_local(data_.dips[n]), first = unit(cross(normal, other));
+        const Vec3 at = frame_.to_local(data_.dips[n]), first = perpendicular(normal);
         planes_.push_back(Functional::slope(at, first, true));
         planes_.push_back(Functional::slope(at, cross(normal, first), true));
     }

@@ -121,13 +121,13 @@ private:
 };
 
 /// Where a level set passes between two corners.
-Position position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
-    const Position a = lattice.position(crossing[0]);
+Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
+    const Vec3 a = lattice.position(crossing[0]);
     if (crossing[0] == crossing[1]) return a;
-    const Position b = lattice.position(crossing[1]);
+    const Vec3 b = lattice.position(crossing[1]);
     const double from = lattice.value(crossing[0]), to = lattice.value(crossing[1]);
     const double share = (level - from) / (to - from);
-    Position p{};
+    Vec3 p{};
     for (std::size_t k = 0; k < 3; ++k)
         p[k] = std::clamp(a[k] + share * (b[k] - a[k]), std::min(a[k], b[k]), std::max(a[k], b[k]));
     return p;
@@ -219,10 +219,11 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
     constexpr double kNear = 1e-7;  // of the largest difference to a neighbor
     const RefinedLattice lattice(field, levels);
     std::vector<double> moved(field.values.begin(), field.values.end());
+    const std::array<int, 3>& counts = field.lattice.counts;
     std::size_t number = 0;
-    for (std::int32_t k = 0; k < field.counts[2]; ++k) {
-        for (std::int32_t j = 0; j < field.counts[1]; ++j) {
-            for (std::int32_t i = 0; i < field.counts[0]; ++i, ++number) {
+    for (std::int32_t k = 0; k < counts[2]; ++k) {
+        for (std::int32_t j = 0; j < counts[1]; ++j) {
+            for (std::int32_t i = 0; i < counts[0]; ++i, ++number) {
                 const double own = field.values[number];
                 double differs = 0;
                 for (const CellIndex& step : {CellIndex{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
@@ -230,7 +231,7 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
                         const CellIndex at{i + way * step[0], j + way * step[1], k + way * step[2]};
                         bool is_node = true;
                         for (std::size_t axis = 0; axis < 3; ++axis)
-                            is_node &= at[axis] >= 0 && at[axis] < field.counts[axis];
+                            is_node &= at[axis] >= 0 && at[axis] < counts[axis];
                         if (is_node)
                             differs =
                                 std::max(differs, std::abs(lattice.value(lattice.node(at)) - own));

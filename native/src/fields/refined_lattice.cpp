@@ -28,18 +28,15 @@ void check_finite(std::span<const double> numbers, const char* what, std::size_t
 }
 
 void check_field(const LatticeField& field, std::span<const double> levels) {
-    double nodes = 1;
+    const auto& [origin, spacing, counts] = field.lattice;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double last = field.origin[axis] + field.spacing[axis] * field.counts[axis];
-        if (field.counts[axis] < 2 || field.counts[axis] > kMostNodes)
+        const double last = origin[axis] + spacing[axis] * counts[axis];
+        if (counts[axis] < 2 || counts[axis] > kMostNodes)
             refuse_lattice("a lattice needs 2 to 1048576 nodes along each axis");
-        if (!(field.spacing[axis] > 0) || !std::isfinite(field.origin[axis]) ||
-            !std::isfinite(last))
+        if (!(spacing[axis] > 0) || !std::isfinite(origin[axis]) || !std::isfinite(last))
             refuse_lattice("a lattice needs finite coordinates, and spacings above 0");
-        nodes *= field.counts[axis];
     }
-    if (static_cast<double>(field.values.size()) != nodes)
-        refuse_lattice("values: one for each node");
+    if (field.values.size() != field.lattice.nodes()) refuse_lattice("values: one for each node");
     if (field.points.size() != 3 * field.point_values.size())
         refuse_lattice("points: a position and a value for each");
     check_finite(field.values, "values", 1);
@@ -49,23 +46,12 @@ void check_field(const LatticeField& field, std::span<const double> levels) {
     if (!std::ranges::is_sorted(levels)) refuse_lattice("levels: ascending");
 }
 
-/// How far p is from the plane of three corners, by the sign of the tetrahedron's volume.
-double volume(const Position& a, const Position& b, const Position& c, const Position& d) {
-    std::array<Position, 3> v{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        v[0][k] = b[k] - a[k];
-        v[1][k] = c[k] - a[k];
-        v[2][k] = d[k] - a[k];
-    }
-    return v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) -
-           v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
-           v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
-}
-
 }  // namespace
 
 RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double> levels)
-    : origin_(field.origin), spacing_(field.spacing), counts_(field.counts) {
+    : origin_(field.lattice.origin),
+      spacing_(field.lattice.spacing),
+      counts_(field.lattice.counts) {
     check_field(field, levels);
     stride_ = {1, counts_[0] + 2, (counts_[0] + 2L) * (counts_[1] + 2L)};
     nodes_ = stride_[2] * (counts_[2] + 2);
@@ -96,7 +82,7 @@ void RefinedLattice::add_layer(const LatticeField& field, std::span<const double
     }
 }
 
-Position RefinedLattice::position(std::int64_t corner) const {
+Vec3 RefinedLattice::position(std::int64_t corner) const {
     if (corner >= nodes_) return points_[static_cast<std::size_t>(corner - nodes_)];
     const auto x = static_cast<std::int32_t>(corner % stride_[1]);
     const auto y = static_cast<std::int32_t>(corner % stride_[2] / stride_[1]);
@@ -123,7 +109,7 @@ Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corne
     return found;
 }
 
-std::vector<CellIndex> RefinedLattice::cells_at(const Position& p) const {
+std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
     std::array<std::vector<std::int32_t>, 3> along;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto last = counts_[axis] - 2;
@@ -178,7 +164,7 @@ std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedr
     return found;
 }
 
-void RefinedLattice::add_point(std::size_t point, const Position& p) {
+void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     const auto cells = cells_at(p);
     if (cells.empty())
         throw InputError("outside", "a point is outside of the lattice", -1,
@@ -235,22 +221,22 @@ void RefinedLattice::add_point(std::size_t point, const Position& p) {
 /// By the tetrahedron that p is in but for rounding. Of those that are flat but for rounding their
 /// neighbors have the same values.
 double RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
-                                     const Position& p) const {
+                                     const Vec3& p) const {
     const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
     double best = -HUGE_VAL, found = 0;
     for (const Tetrahedron& tetrahedron : tetrahedra) {
-        std::array<Position, 4> at{};
+        std::array<Vec3, 4> at{};
         for (std::size_t i = 0; i < 4; ++i) {
             at[i] = position(tetrahedron[i]);
             if (at[i] == p) return value(tetrahedron[i]);
         }
-        const double whole = volume(at[0], at[1], at[2], at[3]);
+        const double whole = sixfold_volume(at[0], at[1], at[2], at[3]);
         if (whole < least_whole) continue;
         double least = HUGE_VAL, sum = 0;
         for (std::size_t i = 0; i < 4; ++i) {
             auto with = at;
             with[i] = p;
-            const double weight = volume(with[0], with[1], with[2], with[3]) / whole;
+            const double weight = sixfold_volume(with[0], with[1], with[2], with[3]) / whole;
             least = std::min(least, weight);
             sum += weight * value(tetrahedron[i]);
         }
@@ -262,7 +248,7 @@ double RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
     return found;
 }
 
-double RefinedLattice::at(const Position& p) const {
+double RefinedLattice::at(const Vec3& p) const {
     const auto cells = cells_at(p);
     if (cells.empty()) return std::numeric_limits<double>::quiet_NaN();
     const CellIndex& cell = cells.front();

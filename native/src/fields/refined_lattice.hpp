@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "exact/space_points.hpp"
 #include "realmodel/fields/level_sets.hpp"
 
 namespace realmodel::fields {
 
-using Position = std::array<double, 3>;
 /// The corners of a tetrahedron, of positive volume.
 using Tetrahedron = std::array<std::int64_t, 4>;
 /// The lowest corner of a cell, by its steps along x, y, z from the lattice's first node.
@@ -45,7 +45,7 @@ public:
         return corner < nodes_ ? values_[static_cast<std::size_t>(corner)]
                                : point_values_[static_cast<std::size_t>(corner - nodes_)];
     }
-    Position position(std::int64_t corner) const;
+    Vec3 position(std::int64_t corner) const;
     /// The tetrahedra of a cell that points divide, nullptr for any other cell.
     const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
         const auto found = divided_.find(node(cell));
@@ -55,28 +55,28 @@ public:
     /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.
     std::array<std::int64_t, 8> corners(const CellIndex& cell) const;
     /// The function at a position of the lattice; NaN outside.
-    double at(const Position& p) const;
+    double at(const Vec3& p) const;
 
 private:
     double coordinate(std::size_t axis, std::int32_t step) const {
         return origin_[axis] + spacing_[axis] * step;
     }
     void add_layer(const LatticeField& field, std::span<const double> levels);
-    void add_point(std::size_t point, const Position& p);
+    void add_point(std::size_t point, const Vec3& p);
     /// The cells of the lattice whose boxes contain a position, -1 none.
-    std::vector<CellIndex> cells_at(const Position& p) const;
+    std::vector<CellIndex> cells_at(const Vec3& p) const;
     std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
     std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
                                                      exact::SpacePointId p);
     exact::SpacePointId exact(std::int64_t corner);
-    double in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Position& p) const;
+    double in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Vec3& p) const;
 
     std::array<double, 3> origin_, spacing_;
     std::array<std::int32_t, 3> counts_;
     std::array<std::int64_t, 3> stride_;
     std::int64_t nodes_;  ///< of lattice and layer
     std::vector<double> values_;
-    std::vector<Position> points_;
+    std::vector<Vec3> points_;
     std::vector<double> point_values_;
     std::map<std::int64_t, std::size_t> point_at_node_;
     std::map<std::int64_t, std::vector<Tetrahedron>> divided_;  ///< by the cell's lowest corner

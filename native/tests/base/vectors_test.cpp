@@ -23,6 +23,13 @@ TEST(VectorsTest, LengthsAndDistances) {
     EXPECT_EQ(distance({1e200, 0}, {-1e200, 0}), 2e200);
 }
 
+TEST(VectorsTest, PerpendicularVectors) {
+    for (const Vec3& v : {Vec3{0, 0, 2}, {3, -1, 0}, {1e-3, 5, 7}}) {
+        EXPECT_NEAR(dot(perpendicular(v), v), 0, 1e-15);
+        EXPECT_NEAR(length(perpendicular(v)), 1, 1e-15);
+    }
+}
+
 TEST(VectorsTest, NearestPointOfASegment) {
     EXPECT_EQ(nearest_share({0, 0}, {4, 0}, {1, 7}), 0.25);
     EXPECT_EQ(nearest_share({0, 0}, {4, 0}, {-1, 0}), 0);

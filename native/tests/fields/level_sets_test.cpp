@@ -10,12 +10,13 @@
 #include <numeric>
 #include <random>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
 namespace {
 
-using Point = std::array<double, 3>;
+using Point = Vec3;
 
 /// A lattice with the values of a function at its nodes, and points with values of their own.
 struct Sampled {
@@ -24,9 +25,7 @@ struct Sampled {
 
     Sampled(const std::array<std::int32_t, 3>& counts, const Point& spacing,
             const std::function<double(const Point&)>& f) {
-        field.origin = {-1, 2, 0.5};
-        field.spacing = spacing;
-        field.counts = counts;
+        field.lattice = {{-1, 2, 0.5}, spacing, counts};
         for (std::int32_t k = 0; k < counts[2]; ++k) {
             for (std::int32_t j = 0; j < counts[1]; ++j) {
                 for (std::int32_t i = 0; i < counts[0]; ++i)
@@ -35,10 +34,7 @@ struct Sampled {
         }
     }
     Point node(const std::array<std::int32_t, 3>& at) const {
-        Point p{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            p[axis] = field.origin[axis] + field.spacing[axis] * at[axis];
-        return p;
+        return field.lattice.position(at[0], at[1], at[2]);
     }
     void add(const Point& p, double value) {
         points.insert(points.end(), p.begin(), p.end());
@@ -57,14 +53,9 @@ struct Sampled {
 
 double volume(const LevelSet& set) {
     double sum = 0;
-    for (const auto& t : set.triangles) {
-        std::array<Point, 3> p{};
-        for (std::size_t i = 0; i < 3; ++i)
-            p[i] = set.vertices[static_cast<std::size_t>(t[i])];
-        sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
-               p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
-               p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-    }
+    const auto at = [&](std::int32_t v) { return set.vertices[static_cast<std::size_t>(v)]; };
+    for (const auto& t : set.triangles)
+        sum += sixfold_volume({0, 0, 0}, at(t[0]), at(t[1]), at(t[2]));
     return sum / 6;
 }
 
@@ -173,14 +164,14 @@ TEST(LevelSetsTest, PointsAreVerticesWhereverTheyLie) {
 TEST(LevelSetsTest, TheFieldIsLinearOnTetrahedra) {
     const auto f = [](const Point& p) { return 2 * p[0] - 0.5 * p[1] + 0.25 * p[2]; };
     Sampled field({4, 5, 6}, {0.7, 0.3, 0.9}, f);
+    const Lattice& lattice = field.field.lattice;
     std::mt19937_64 generator(6);
     std::vector<double> positions;
     for (std::size_t i = 0; i < 100; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::uniform_real_distribution<double> random(
-                field.field.origin[axis],
-                field.field.origin[axis] +
-                    field.field.spacing[axis] * (field.field.counts[axis] - 1));
+                lattice.origin[axis],
+                lattice.origin[axis] + lattice.spacing[axis] * (lattice.counts[axis] - 1));
             positions.push_back(random(generator));
         }
         if (i % 3 == 0) {

@@ -60,6 +60,18 @@ def add(scene, kind, name, shape):
     return item
 
 
+def give_materials(mesh, materials, faces):
+    """The material of each part of a mesh, which has so many faces."""
+    slots = {}
+    for material in materials:
+        if material.name not in slots:
+            slots[material.name] = len(slots)
+            mesh.materials.append(material)
+    given = np.array([slots[material.name] for material in materials], np.int32)
+    mesh.polygons.foreach_set("material_index", np.repeat(given, faces))
+    mesh.update()
+
+
 def _take_material(item, block):
     material = block.material_slots[0].material if len(block.material_slots) else None
     slots = item.data.materials

@@ -88,7 +88,7 @@ def key(scene):
         else:
             _, color = _entry(scene, by, row)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
-            color = tuple(int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+            color = library_rows.rgb(color)
         entries.setdefault(name, color)
         places[name] = min(places.get(name, number[row.rock]), number[row.rock])
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
@@ -147,10 +147,10 @@ def _entry(scene, by, row):
     """(name, "#rrggbb") of the color of a block."""
     if by == "ROCK":
         number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
-        return f"Rock mass {row.rock}", _hue(number)
+        return f"Rock mass {row.rock}", hue(number)
     if by == "BLOCK":
         number = next(n for n, other in enumerate(scene.realmodel.results) if other == row)
-        return f"Block {row.name}", _hue(number)
+        return f"Block {row.name}", hue(number)
     place, last = settings.time_of_block(scene, row), settings.last_stage(scene)
     at = place / last if last else 0.0
     hsv = [old + at * (young - old) for old, young in zip(_OLD, _YOUNG, strict=True)]
@@ -161,7 +161,8 @@ def _has_rock(scene, row):
     return any(rock.name == row.rock for rock in scene.realmodel.rocks)
 
 
-def _hue(number):
+def hue(number):
+    """The color "#rrggbb" of the thing of this number, which that of the next ones is unlike."""
     brightness = 0.9 if number % 2 else 0.7
     return library_rows.hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
 

@@ -63,37 +63,17 @@ def plane_in_model(scene, matrix=None):
     return point + project_settings.model_origin(scene), normal / length
 
 
-def place_text(axis):
-    """The getter of a text field: a coordinate of the plane in the model. Text, as Blender's numbers have 32
-    bits, which are too coarse for map coordinates."""
-
-    def get(view):
-        scene = view.id_data
-        return "" if plane_of(scene) is None else f"{plane_in_model(scene)[0][axis]:.3f}"
-
-    return get
+def place(scene):
+    """(3,) where the plane is, in model coordinates; None where there is none."""
+    return None if plane_of(scene) is None else plane_in_model(scene)[0]
 
 
-def move_to(axis):
-    """The setter of that field: moves the plane. What is no number changes nothing."""
-
-    def set_text(view, text):
-        scene = view.id_data
-        plane = plane_of(scene)
-        try:
-            value = float(text.replace(",", ""))
-        except ValueError:
-            return
-        if plane is None or not np.isfinite(value):
-            return
-        point, _ = plane_in_model(scene)
-        point[axis] = value
-        matrix = plane.matrix_world.copy()
-        offset = np.append(point - project_settings.model_origin(scene), 1.0)
-        matrix.translation = (exaggeration.matrix(scene) @ offset)[:3]
-        plane.matrix_world = matrix
-
-    return set_text
+def move(scene, place):
+    """Moves the plane to a place in model coordinates; it stays parallel."""
+    plane = plane_of(scene)
+    matrix = plane.matrix_world.copy()
+    matrix.translation = project_settings.in_world(scene, place)[0]
+    plane.matrix_world = matrix
 
 
 def add_plane(scene):

@@ -80,8 +80,8 @@ def places_of(coordinates):
 
 
 def lines(places, pairs, radius, sides=3):
-    """A bar with this number of sides along each pair (E, 2) of places (V, 3), as `points`. Pairs of equal
-    places have none."""
+    """A bar with this number of sides along each pair (E, 2) of places (V, 3), as `points`. radius: of all
+    bars, or (E,) of each. Pairs of equal places have none."""
     begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
     length = np.linalg.norm(along, axis=1)
@@ -91,7 +91,8 @@ def lines(places, pairs, radius, sides=3):
     side /= np.linalg.norm(side, axis=1)[:, None]
     other = np.cross(along, side)
     angles = 2 * np.pi * np.arange(sides) / sides
-    ring = radius * (
+    radius = np.broadcast_to(radius, len(length))[length > 0]
+    ring = radius[:, None, None] * (
         np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
     )
     coordinates = np.concatenate([begin[:, None] + ring, end[:, None] + ring], axis=1)

@@ -3,7 +3,6 @@
 layers beneath these; or by a column of the tables of intervals. Where the model is cut, those within a width
 of the plane, on it. And the names of the holes."""
 
-import colorsys
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
 from ...core.results.section_holes import near_plane
-from .. import borehole_picks, interval_values, library_rows, observed_blocks, project_settings
+from .. import borehole_picks, caches, interval_values, library_rows, observed_blocks, project_settings
 from ..display import bodies, colors, cuts, marks
 from . import heights
 
@@ -20,8 +19,8 @@ _RADIUS = 0.005  # of the size of all
 _SIDES = 8
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _MOST_WORDS = 24  # of a column of words that have a color of their own
-_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 _OTHERS = "#b0b0b0"  # words beyond these
+_scales = caches.new(most=8)  # by column and the texts of the values: viewports ask at each redraw
 
 
 def show(scene):
@@ -43,15 +42,7 @@ def show(scene):
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _RADIUS * heights.extent(scene), _SIDES)
     mesh = bodies.add(scene, BOREHOLES, "Boreholes", shape).data
-    materials = [tubes[number][0] for number in kept.tolist()]
-    slots = {material.name: None for material in materials}
-    slots = {name: number for number, name in enumerate(slots)}
-    by_name = {material.name: material for material in materials}
-    for name in slots:
-        mesh.materials.append(by_name[name])
-    given = np.array([slots[material.name] for material in materials], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
-    mesh.update()
+    bodies.give_materials(mesh, [tubes[number][0] for number in kept.tolist()], _SIDES)
 
 
 def is_on_cut(scene):
@@ -78,7 +69,7 @@ def key(scene):
         return None
     limits, words = _scale(scene, name)
     if limits is None:
-        return ColorKey(name, [(word, _rgb(_hue(n))) for n, word in enumerate(words)])
+        return ColorKey(name, [(word, library_rows.rgb(colors.hue(n))) for n, word in enumerate(words)])
     if not limits[1] > limits[0]:
         return None
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
@@ -127,6 +118,13 @@ def _by_column(scene):
 def _scale(scene, name):
     """The range (low, high) of a column of numbers and no words; or None, and the words of another, the most
     frequent first."""
+    known = name, *(rock.interval_values for rock in scene.realmodel.rocks)
+    if known not in _scales:
+        _scales[known] = _scale_of(scene, name)
+    return _scales[known]
+
+
+def _scale_of(scene, name):
     parts = []
     for rock in scene.realmodel.rocks:
         values = interval_values.of_rock(rock)
@@ -150,16 +148,7 @@ def _shades(values, limits):
 
 def _hues(values, words):
     numbers = {word: number for number, word in enumerate(words)}
-    return [_hue(numbers[word]) if word in numbers else _OTHERS for word in values.astype(str).tolist()]
-
-
-def _hue(number):
-    brightness = 0.9 if number % 2 else 0.7
-    return library_rows.hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
-
-
-def _rgb(code):
-    return tuple(int(code[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+    return [colors.hue(numbers[word]) if word in numbers else _OTHERS for word in values.astype(str).tolist()]
 
 
 def _of_picks(rock, logs):

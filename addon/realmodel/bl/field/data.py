@@ -8,9 +8,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core import RealModelError, Surface
+from ...core import RealModelError
 from ...core.settings.dips import Dips
-from .. import borehole_picks, caches, data_objects, observed_blocks, stored_arrays, surface_dips
+from .. import (
+    borehole_picks,
+    borehole_points,
+    caches,
+    data_objects,
+    observed_blocks,
+    stored_arrays,
+    surface_dips,
+)
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
 ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block
@@ -149,12 +157,7 @@ def _stamp(row):
 def own_points(scene, row):
     """(P, 3) the points of a surface that are used, without contacts that follow from observations. Raises
     InputRefused."""
-    if row.stored:
-        arrays = stored_arrays.unpack(row.stored)
-        given = Surface(row.name, points=arrays["points"], contacts=arrays.get("contacts"))
-        points = given.own_points()
-    else:
-        points = data_objects.read_points(scene, row) if row.source == "POINTS_FILE" else None
+    points = borehole_points.own_points(scene, row)
     if points is None:
         return np.empty((0, 3))
     off = set(map(tuple, left_out(row).tolist()))

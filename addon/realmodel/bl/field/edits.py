@@ -51,7 +51,7 @@ def move(scene, datum, place):
     place = np.asarray(place, np.float64)
     if datum.kind == data.INTERVAL:
         observations = observed_blocks.of_rock(rock)
-        moved, place = _moved_end(observations, int(group.rows[number]))(place)
+        moved, place = _with_end_moved(observations, int(group.rows[number]), place)
         observed_blocks.keep(rock, moved)
     elif datum.kind == data.PLACE:
         observations = observed_blocks.of_rock(rock)
@@ -120,9 +120,9 @@ def _switched(observations, first, used):
     return replace(observations, used=in_use)
 
 
-def _moved_end(observations, first):
-    """A function of a place: the Observations with the upper end of the interval that begins in row `first`
-    moved there, as far as its hole and its neighbors allow, and the place where it is then."""
+def _with_end_moved(observations, first, place):
+    """The Observations with the upper end of the interval that begins in row `first` moved to a place, as far
+    as its hole and its neighbors allow, and the place where it is then."""
     rows = data.interval_rows(observations).tolist()
     number = next(n for n, (begin, _) in enumerate(rows) if begin == first)
     last = rows[number][1]
@@ -133,21 +133,17 @@ def _moved_end(observations, first):
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     depths = observations.depths[start : last + 1]
-
-    def moved(place):
-        at = min(max(_nearest(line, along, place), 1e-3 * along[-1]), (1.0 - 1e-3) * along[-1])
-        new = np.array([np.interp(at, along, line[:, axis]) for axis in range(3)])
-        depth = float(np.interp(at, along, depths)) if np.isfinite(depths).all() else float("nan")
-        places, all_depths = observations.places.copy(), observations.depths.copy()
-        kept = np.ones(len(places), bool)
-        for row in range(start, last + 1):
-            if row in (first, first - 1 if meets else first):
-                places[row], all_depths[row] = new, depth
-            elif start < row < last:  # between the ends of an inclined interval
-                kept[row] = along[row - start] < at if row < first else along[row - start] > at
-        return replace(observations, places=places, depths=all_depths).some(kept), new
-
-    return moved
+    at = min(max(_nearest(line, along, place), 1e-3 * along[-1]), (1.0 - 1e-3) * along[-1])
+    new = np.array([np.interp(at, along, line[:, axis]) for axis in range(3)])
+    depth = float(np.interp(at, along, depths)) if np.isfinite(depths).all() else float("nan")
+    places, all_depths = observations.places.copy(), observations.depths.copy()
+    kept = np.ones(len(places), bool)
+    for row in range(start, last + 1):
+        if row in (first, first - 1 if meets else first):
+            places[row], all_depths[row] = new, depth
+        elif start < row < last:  # between the ends of an inclined interval
+            kept[row] = along[row - start] < at if row < first else along[row - start] > at
+    return replace(observations, places=places, depths=all_depths).some(kept), new
 
 
 def _nearest(line, along, place):

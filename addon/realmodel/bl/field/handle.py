@@ -76,8 +76,7 @@ def show_misfit(context):
     if datum is not None:
         activate(context, datum)
     if row.place:
-        offset = np.array(json.loads(row.place)) - project_settings.model_origin(scene)
-        _look_at(context, (exaggeration.matrix(scene) @ np.append(offset, 1.0))[:3])
+        _look_at(context, project_settings.in_world(scene, json.loads(row.place))[0])
 
 
 def text_of(scene, datum):

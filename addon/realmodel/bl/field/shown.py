@@ -81,7 +81,7 @@ def _boreholes(scene):
 def _contacts(scene):
     """Points of surfaces, contacts that follow from logs, and observed places."""
     places, materials = [], []
-    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    of_block = _property_ids(scene)
     for group in data.groups(scene):
         if group.kind in data.DIPS:
             continue
@@ -94,13 +94,12 @@ def _contacts(scene):
     _add_points(scene, CONTACTS, "Contacts", np.array(places).reshape(-1, 3), materials)
 
 
-def _properties(scene):
-    yield from (row for _, row in settings.surface_rows(scene))
-    yield from scene.realmodel.bodies
-
-
-def _names(row):
-    return {row.name, getattr(row, "block", "") or row.name}
+def _property_ids(scene):
+    """{name of a surface, of its block, or of a body: its property}"""
+    rows = [*(row for _, row in settings.surface_rows(scene)), *scene.realmodel.bodies]
+    return {
+        name: row.property_id for row in rows for name in (row.name, getattr(row, "block", "") or row.name)
+    }
 
 
 def _add_points(scene, kind, name, places, materials, larger=1.0):
@@ -111,25 +110,13 @@ def _add_points(scene, kind, name, places, materials, larger=1.0):
         places - project_settings.model_origin(scene), larger * heights.extent(scene), stretch
     )
     item = bodies.add(scene, kind, name, shape)
-    _give_materials(item.data, materials, len(shape.offsets) // len(places))
+    bodies.give_materials(item.data, materials, len(shape.offsets) // len(places))
     return item
-
-
-def _give_materials(mesh, materials, faces):
-    """The material of each part of a mesh, which has so many faces."""
-    slots = {}
-    for material in materials:
-        if material.name not in slots:
-            slots[material.name] = len(slots)
-            mesh.materials.append(material)
-    given = np.array([slots[material.name] for material in materials], np.int32)
-    mesh.polygons.foreach_set("material_index", np.repeat(given, faces))
-    mesh.update()
 
 
 def _dips(scene):
     places, gradients, materials = [], [], []
-    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    of_block = _property_ids(scene)
     for group in data.groups(scene):
         if group.kind not in data.DIPS:
             continue
@@ -147,11 +134,11 @@ def _dips(scene):
     radius = _DISC * heights.extent(scene)
     shape = marks.discs(places, np.concatenate(gradients), radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
-    _give_materials(item.data, materials, 1)
+    bodies.give_materials(item.data, materials, 1)
 
 
 def _maps(scene):
-    of_block = {name: row.property_id for row in _properties(scene) for name in _names(row)}
+    of_block = _property_ids(scene)
     lift = np.array([0.0, 0.0, _LIFT * heights.extent(scene)])
     for rock in scene.realmodel.rocks:
         draped = map_settings.of_rock(rock)
@@ -166,7 +153,7 @@ def _maps(scene):
             colors.of_property(scene, of_block[name]) if name in of_block else colors.plain_material(*_OFF)
             for name in draped.names
         ]
-        _give_materials(item.data, [own[unit] for unit in draped.unit.tolist()], 1)
+        bodies.give_materials(item.data, [own[unit] for unit in draped.unit.tolist()], 1)
 
 
 def _misfits(scene):

@@ -32,6 +32,12 @@ def begins_run(rows: np.ndarray) -> np.ndarray:
     return found
 
 
+def are_among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(N,) bool: the rows (N, K) that are rows of others (M, K)."""
+    known = set(map(tuple, others.tolist()))
+    return np.array([tuple(row) in known for row in rows.tolist()], bool)
+
+
 def ranks_in_runs(sizes: np.ndarray) -> np.ndarray:
     """The numbers from 0 on within each of runs of these sizes (N,), one run after another."""
     return np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)

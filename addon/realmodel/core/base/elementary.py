@@ -7,6 +7,8 @@ are numbers or arrays, angles in radians. Raise BuildFailed where the compiled p
 
 from __future__ import annotations
 
+import math
+
 from .work import native_module
 
 
@@ -28,3 +30,11 @@ def atan2(y, x):
 
 def hypot(x, y):
     return native_module().hypot(x, y)
+
+
+def cube_root(value: float) -> float:
+    """Of a number above 0, by Newton's method."""
+    root = math.ldexp(1.0, math.frexp(value)[1] // 3)
+    for _ in range(20):
+        root = (2.0 * root + value / (root * root)) / 3.0
+    return root

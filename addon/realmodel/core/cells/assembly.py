@@ -12,6 +12,7 @@ from ..base.build_warning import BuildWarning
 from ..base.work import Cancel, Progress, Work, refused_as, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
+from ..structures.parts.part_models import LID
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
@@ -23,7 +24,6 @@ from .labels import cell_compartments, warnings_where_rock_is
 from .model_data import ModelData, SomeModel
 from .stack_refusals import refused_stack
 
-CUT = -3  # in face_surface: rock that reaches above all that was given
 _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
 
@@ -182,7 +182,7 @@ def _warnings(
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         warnings.append(BuildWarning(text, kind, rock, named, items))
     warnings += warnings_where_rock_is(inputs, built, structures)
-    is_cut_off = bool((built.complex.face_surface == CUT).any())
+    is_cut_off = bool((built.complex.face_surface == LID).any())
     for entry in (entry for entry in inputs if is_cut_off and entry.fields):
         tops = [own for own in entry.fields if own.numbers.stop == len(entry.surfaces)] or entry.fields
         what = (

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.work import Work
 from ..model.planned_hole import PlannedHole
 from ..proof.closed_form import ClosedForm, blocks_of_all
-from ..results.planned_holes import HoleAxis, HoleContact
+from ..results.planned_holes import HoleAxis, HoleContact, mean_share
 from .realization import Realizer
 
 _STEPS = 500  # places along a hole
@@ -35,19 +35,11 @@ def hole_of_realizations(work: Work, realizer: Realizer, count: int, hole: Plann
         contacts.append(_contacts(work, forms, axis, depths, blocks))
     shares = counts / count
     intervals = [
-        replace(each, probability=_mean(shares[:, each.block], depths, each.begin, each.end))
+        replace(each, probability=mean_share(shares[:, each.block], depths, each.begin, each.end))
         for each in hole.intervals
     ]
     spread = [_spread(contact, hole.contacts, contacts) for contact in hole.contacts]
     return replace(hole, intervals=intervals, contacts=spread, depths=depths, probability=shares)
-
-
-def _mean(share: np.ndarray, depths: np.ndarray, begin: float, end: float) -> float:
-    """The mean of a share between two depths; of a stretch between two places that at its middle."""
-    inside = (depths >= begin) & (depths <= end)
-    if inside.any():
-        return float(share[inside].mean())
-    return float(np.interp(0.5 * (begin + end), depths, share))
 
 
 def _contacts(

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from ..results.model_boreholes import Interval
-from ..results.planned_holes import COLUMNS, PlannedHoleData
+from ..results.planned_holes import COLUMNS, PlannedHoleData, mean_share
 from .endings import by_ending
 from .shapes.parts import distinct_names
 
@@ -50,7 +50,7 @@ def _write_planned(hole: PlannedHoleData, file: BinaryIO) -> None:
             for value in row.values()
         ]
         if hole.probability is not None and hole.depths is not None:
-            inside = (hole.depths >= row["from"]) & (hole.depths <= row["to"])
-            values += [f"{share:.9g}" for share in hole.probability[inside].mean(axis=0).tolist()]
+            ends = row["from"], row["to"]
+            values += [f"{mean_share(share, hole.depths, *ends):.9g}" for share in hole.probability.T]
         rows.writerow(values)
     file.write(text.getvalue().encode("utf-8"))

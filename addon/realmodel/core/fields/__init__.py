@@ -5,18 +5,19 @@ Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a 
 tetrahedron of the lattice, and the level of each surface.
 """
 
-from .lattice import Lattice, ScalarField
+from .lattice import Lattice, ScalarField, rises
 from .level_sets import are_on, level_solids, with_contacts, within_lattice
-from .solve import Anisotropy, FieldData, SolvedField, solve_field
+from .solve import Anisotropy, LevelSetData, SolvedField, solve_field
 
 __all__ = [
     "Anisotropy",
-    "FieldData",
     "Lattice",
+    "LevelSetData",
     "ScalarField",
     "SolvedField",
     "are_on",
     "level_solids",
+    "rises",
     "solve_field",
     "with_contacts",
     "within_lattice",

@@ -126,3 +126,16 @@ class ScalarField:
             return native_module().field_at(lattice, values, own, positions)
         nodes, weights = self.lattice.located(points)
         return (self.values[nodes] * weights).sum(axis=1)
+
+
+def rises(field: ScalarField, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(P, 3) by how much a field rises along x, y and z around points (P, 3), and over which distances
+    (P, 3): an edge of the lattice, or what of it is in its box."""
+    rise, far = np.empty((len(points), 3)), np.empty((len(points), 3))
+    low, high = field.lattice.corners
+    for axis, step in enumerate(field.lattice.spacing):
+        move = 0.5 * step * np.eye(3)[axis]
+        ahead, behind = (np.clip(points + way, low, high) for way in (move, -move))
+        rise[:, axis] = field.at(ahead) - field.at(behind)
+        far[:, axis] = ahead[:, axis] - behind[:, axis]
+    return rise, far

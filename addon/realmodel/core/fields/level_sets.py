@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ..base.algebra import are_among
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
@@ -64,10 +65,7 @@ def _through(field: ScalarField, contacts: np.ndarray, levels: np.ndarray) -> np
 
 def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:
     """(C,) bool: which contacts (C, 3) are vertices of a level set."""
-    both = np.concatenate([level_set.vertices, contacts]) + 0.0
-    _, place = np.unique(both, axis=0, return_inverse=True)
-    place = place.ravel()
-    return np.isin(place[len(level_set.vertices) :], place[: len(level_set.vertices)])
+    return are_among(contacts, level_set.vertices)
 
 
 def level_solids(work: Work, field: ScalarField) -> list[Sheet]:

@@ -22,7 +22,7 @@ def _item(kind: str, row: int) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class FieldData:
+class LevelSetData:
     """What is known of a field whose level sets are surfaces, oldest first.
 
     names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
@@ -67,7 +67,7 @@ class SolvedField(ScalarField):
 
 def solve_field(
     lattice: Lattice,
-    data: FieldData,
+    data: LevelSetData,
     work: Work,
     tolerance: float = 0.0,
     anisotropy: Anisotropy | None = None,
@@ -110,7 +110,7 @@ def solve_field(
     )
 
 
-def _refusal(error, data: FieldData) -> InputRefused:
+def _refusal(error, data: LevelSetData) -> InputRefused:
     """The native error with the names of surfaces and data."""
     if error.kind == "no_direction":
         return InputRefused(
@@ -131,7 +131,7 @@ def _refusal(error, data: FieldData) -> InputRefused:
     return make(error, data) if make else InputRefused(str(error), place=error.place)
 
 
-def _contradicting(error, data: FieldData) -> InputRefused:
+def _contradicting(error, data: LevelSetData) -> InputRefused:
     names = [data.names[data.contact_surfaces[row]] for row in error.items]
     if len(names) == 1:
         what = f"it contradicts contacts of surface '{names[0]}' next to it"
@@ -147,7 +147,7 @@ def _contradicting(error, data: FieldData) -> InputRefused:
     )
 
 
-def _wrong_order(error, data: FieldData) -> InputRefused:
+def _wrong_order(error, data: LevelSetData) -> InputRefused:
     older, younger = data.names[error.surface], data.names[error.surface + 1]
     return InputRefused(
         f"near {place_text(error.place)} it lies on the older side of surface '{older}', which is listed as "
@@ -158,7 +158,7 @@ def _wrong_order(error, data: FieldData) -> InputRefused:
     )
 
 
-def _against_order(error, data: FieldData) -> InputRefused:
+def _against_order(error, data: LevelSetData) -> InputRefused:
     return InputRefused(
         f"at {len(error.items)} of {len(data.dips)} dips rock gets younger the other way than from the first "
         f"to the last of them, as at {place_text(error.place)}",
@@ -168,7 +168,7 @@ def _against_order(error, data: FieldData) -> InputRefused:
     )
 
 
-def _polarity(error, data: FieldData) -> InputRefused:
+def _polarity(error, data: LevelSetData) -> InputRefused:
     return InputRefused(
         f"at {place_text(error.place)} rock gets younger the other way than at the nearest dips, which have "
         "its attitude",
@@ -178,7 +178,7 @@ def _polarity(error, data: FieldData) -> InputRefused:
     )
 
 
-def _outside(error, data: FieldData) -> InputRefused:
+def _outside(error, data: LevelSetData) -> InputRefused:
     kind = str(error).split()[0]
     return InputRefused(
         f"{place_text(error.place)} lies outside the lattice of the field",

@@ -17,7 +17,7 @@ import numpy as np
 from ..base.work import Work, native_module
 from ..settings.dips import Dips
 from ..settings.variogram import Variogram
-from .mis_ties import without_mis_ties
+from .mis_ties import mean_heights, without_mis_ties
 
 _LEAST, _MOST = 1e-3, 0.5  # of the sill of heights: the variance of one thickness
 _FEW = 8  # thicknesses at shared positions: fewer show no variance
@@ -93,9 +93,7 @@ class JointData:
 def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     """(P, 3) the points of all sheets around their offsets, the mean of those at one position."""
     every = np.concatenate([each - np.array([0, 0, c]) for each, c in zip(points, offsets, strict=True)])
-    plan, place = np.unique(every[:, :2] + 0.0, axis=0, return_inverse=True)
-    place = place.reshape(-1)
-    return np.column_stack([plan, np.bincount(place, every[:, 2]) / np.bincount(place)])
+    return mean_heights(every + 0.0)
 
 
 def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:

@@ -137,6 +137,12 @@ def _mixed(points: np.ndarray, groups: int) -> np.ndarray:
     return ((mixed >> np.uint64(32)) * np.uint64(groups) >> np.uint64(32)).astype(np.int64)
 
 
+def first_at_each_place(points: np.ndarray) -> np.ndarray:
+    """The first of the points (P, 3) at each place in plan, in their order."""
+    _, first = np.unique(points[:, :2] + 0.0, axis=0, return_index=True)
+    return np.ascontiguousarray(points[np.sort(first)])
+
+
 def mean_heights(points: np.ndarray) -> np.ndarray:
     """Points (P, 3) with the mean of the heights at each place: a rough surface where they contradict."""
     place, first, _ = _places(points)

@@ -13,7 +13,7 @@ from ..base.errors import place_text
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Bounds
 from .bounded import consistent
-from .mis_ties import contradictions, without_mis_ties
+from .mis_ties import contradictions, first_at_each_place, without_mis_ties
 
 _TOLERANCE = 1e-10  # of the height range of the data: nearer is right
 _DIGITS = 4  # of the last digits of heights, if that is more
@@ -48,9 +48,7 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
     mean counts; those that contradict one another do not."""
     points, _ = without_mis_ties(points)
     wrong = contradictions(points) if len(points) else np.zeros(0, bool)
-    kept = points[~wrong]
-    _, first = np.unique(kept[:, :2] + 0.0, axis=0, return_index=True)
-    kept = kept[np.sort(first)]
+    kept = first_at_each_place(points[~wrong])
     places, lower, upper, heights = kept[:, :2], kept[:, 2], kept[:, 2], [points[:, 2]]
     if bounds is not None and len(bounds):
         given = consistent(kept, bounds)

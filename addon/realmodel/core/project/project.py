@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.algebra import are_among
 from ..base.errors import InputRefused
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
@@ -176,8 +177,7 @@ class Surface(Shaped):
         if np.array_equal(points[max(count, 0) :], contacts):  # as they are added
             own = points[:count]
         else:
-            known = set(map(tuple, contacts.tolist()))
-            own = points[[tuple(point) not in known for point in points.tolist()]]
+            own = points[~are_among(points, contacts)]
         return own if len(own) else None
 
     def method_options(self) -> tuple[str, dict]:

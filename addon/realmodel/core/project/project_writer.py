@@ -297,7 +297,11 @@ def _block_codes(rock: Rock) -> dict[str, str]:
 
 def space_dips_text(dips: SpaceDips) -> bytes:
     """Dips in space as CSV: their normals, of which angles would not give back each bit."""
-    return b"x,y,z,normal_x,normal_y,normal_z\n" + _rows(np.hstack([dips.positions, dips.normals]), ",")
+    names, numbers = "x,y,z,normal_x,normal_y,normal_z", np.hstack([dips.positions, dips.normals])
+    if dips.in_use.all():
+        return f"{names}\n".encode() + _rows(numbers, ",")
+    rows = [[*map(repr, row), str(int(use))] for row, use in zip(numbers.tolist(), dips.in_use, strict=True)]
+    return "\n".join(map(",".join, [[f"{names},use"], *rows, [""]])).encode()
 
 
 def observations_text(rock: Rock) -> bytes:
@@ -334,9 +338,5 @@ def _rows(numbers: np.ndarray, apart: str) -> bytes:
     """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
-        text.write(_joined(row, apart) + "\n")
+        text.write(apart.join(map(repr, row)) + "\n")
     return text.getvalue().encode()
-
-
-def _joined(row: list[float], apart: str) -> str:
-    return apart.join(map(repr, row))

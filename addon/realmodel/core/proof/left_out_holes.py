@@ -16,9 +16,10 @@ from ..readers.tables.observations import Observations
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.observed.derived import BlockNumbers
 from .closed_form import AIR, ClosedForm, surface_forms
+from .observed import sources_of
+from .seen_places import PLACES, in_one_interval, places_along
 
 DEFAULT_FOLDS = 20  # holes are left out in so many groups, where they are more
-_SAMPLES = 16  # places at which an interval is looked at
 
 
 @dataclass(frozen=True)
@@ -188,12 +189,11 @@ def _surface_without(surface: Surface, met: set[tuple]) -> Surface:
 def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
     observed = rock.observed
     length, share = 0.0, None
-    sources: dict[tuple, float | None] = {}
+    sources: dict[tuple, tuple[str, float | None]] = {}
     if observed is not None:
         own = observed.some(observed.holes == hole)
         length, share = _length_in_block(work, rock, form, own)
-        depths = [None if depth != depth else depth for depth in own.depths.tolist()]
-        sources = dict(zip(map(tuple, own.places.tolist()), depths, strict=True))
+        sources = sources_of(own)
     contacts = []
     for number, surface in enumerate(rock.surfaces):
         places = [place for place in map(tuple, surface.contact_array().tolist()) if place in sources]
@@ -208,7 +208,8 @@ def _judged(work: Work, rock: Rock, form: ClosedForm, hole: str) -> LeftOutHole:
         above = form.above(work, number, np.array(places))
         for place, away in zip(places, above.tolist(), strict=True):
             error = None if away != away else away
-            contacts.append(LeftOutContact(surface.name, sources.get(place), place, error))
+            _, depth = sources.get(place, ("", None))
+            contacts.append(LeftOutContact(surface.name, depth, place, error))
     return LeftOutHole(rock.name, hole, length, share, tuple(contacts))
 
 
@@ -219,14 +220,11 @@ def _length_in_block(
     blocks = BlockNumbers(rock).of(own.blocks)
     if form.base_elevation is None:
         blocks[blocks == 0] = -1  # without a base there is no such block
-    ends = 1 + np.flatnonzero((own.blocks[1:] == own.blocks[:-1]) & (blocks[1:] >= 0))
+    ends = np.flatnonzero(in_one_interval(own, own.in_use & (blocks >= 0)))
     if not len(ends):
         return 0.0, None
-    begin, way = own.places[ends - 1], own.places[ends] - own.places[ends - 1]
-    lengths = norm(way)
-    shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    places = (begin[:, None] + shares[None, :, None] * way[:, None]).reshape(-1, 3)
-    found = form.blocks_at(work, places).reshape(-1, _SAMPLES)
+    lengths = norm(own.places[ends] - own.places[ends - 1])
+    found = form.blocks_at(work, places_along(own, ends)).reshape(-1, PLACES)
     numbers = np.array(form.blocks)
     right = (found == numbers[blocks[ends]][:, None]) & (found != AIR)
     total = float(lengths.sum())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The data of a built model that it does not have as they say."""
+"""The data that a built model does not honor."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NO_ROCK = "no rock"
 
 @dataclass(frozen=True)
 class Misfit:
-    """A datum that a built model does not have as it says. kind: "point" (of a surface, contacts too),
+    """A datum that a built model does not honor. kind: "point" (of a surface, contacts too),
     "bound", "block" (a place or an interval), "dip", or "left_out". rock: its rock mass. name: its surface or
     block. hole, depth: where it comes from; "" and None where it has none. row: of a point, a dip and an
     observation its row in the data of the surface or the rock mass, from 0; None where there is none. place:
@@ -50,7 +50,7 @@ class Misfit:
 def misfits(
     model: ModelData, tolerance: float | None = None, dip_tolerance: float = DIP_TOLERANCE
 ) -> list[Misfit]:
-    """The data that a built model does not have as they say: points and contacts off their surfaces, bounds
+    """The data that a built model does not honor: points and contacts off their surfaces, bounds
     that are not kept, intervals and places in another block, dips, and observations that are left out, but
     not those that are switched off. In this order, the largest of each kind first. Of surfaces that are level
     sets of a field, blocks and what is left out are listed alone.

@@ -15,7 +15,7 @@ from ..surfaces.observed.derived import BlockNumbers
 from ..surfaces.rock_input import RockInput
 from .closed_form import AIR, ClosedForm
 
-_PLACES = 16  # at which an interval is looked at
+PLACES = 16  # at which an interval is looked at
 _OFF_GROUND = 0.1  # of an edge length
 NEAR = 1e-9  # of the range of heights: a place so near to a block lies in it, a bound so near is kept
 
@@ -96,23 +96,34 @@ def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray)
     )
 
 
+def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:
+    """(R,) bool, the rows that are in one interval with the one before. used: (R,) bool, those that count."""
+    follows = given.goes_on & used
+    follows[1:] &= used[:-1]
+    return follows
+
+
+def places_along(given: Observations, ends: np.ndarray) -> np.ndarray:
+    """(PLACES E, 3) places on the way to each of some rows (E,) from the one before."""
+    shares = (np.arange(PLACES) + 0.5) / PLACES
+    begin, way = given.places[ends - 1], given.places[ends] - given.places[ends - 1]
+    return (begin[:, None] + shares[None, :, None] * way[:, None]).reshape(-1, 3)
+
+
 def _samples(given: Observations, used: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Places at which observations are looked at (N, 3), of which observation each is (N,), the first and the
     last row of each observation (O, 2), and (N,) bool whether a place may be seen on the ground, as it is in
     no hole. used: (R,) bool, the rows that count. An interval is the way along a hole through its
     rows."""
-    follows = given.goes_on & used
-    follows[1:] &= used[:-1]
+    follows = in_one_interval(given, used)
     ends = np.flatnonzero(follows)
-    shares = (np.arange(_PLACES) + 0.5) / _PLACES
-    begin, way = given.places[ends - 1], given.places[ends] - given.places[ends - 1]
-    along = (begin[:, None] + shares[None, :, None] * way[:, None]).reshape(-1, 3)
+    along = places_along(given, ends)
     # a place without a hole, or one that is alone in its block in a hole, and on no boundary
     in_interval = follows | np.append(follows[1:], False)
     _, place, times = np.unique(given.places, axis=0, return_inverse=True, return_counts=True)
     alone = np.flatnonzero(used & ~in_interval & (times[place.ravel()] == 1))
     first = np.cumsum(~follows) - 1  # the number of the observation that a row is of
-    rows = np.concatenate([np.repeat(ends, _PLACES), alone])
+    rows = np.concatenate([np.repeat(ends, PLACES), alone])
     numbers, owner = np.unique(first[rows], return_inverse=True)
     on_ground = np.concatenate([np.zeros(len(along), bool), given.holes[alone] == ""])
     places = np.concatenate([along, given.places[alone]])

@@ -13,7 +13,7 @@ from .meshes.off import read_off
 from .objects.object_file import OBJECT_ENDINGS, objects_in
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks
-from .tables.dips import gradient_of, names_units, read_dips, read_dips_of_rock, read_space_dips
+from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_kind import TABLE_KINDS, table_kind
@@ -33,6 +33,7 @@ __all__ = [
     "gradient_of",
     "is_mesh_file",
     "names_units",
+    "normal_of",
     "objects_in",
     "preview_table",
     "read_boreholes",

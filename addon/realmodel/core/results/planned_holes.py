@@ -150,6 +150,15 @@ class PlannedHoleData:
         return data_frame(self.rows(), COLUMNS)
 
 
+def mean_share(share: np.ndarray, depths: np.ndarray, begin: float, end: float) -> float:
+    """The mean of a share (N,) at depths (N,) between two depths; where none of these is between them, the
+    share in their middle."""
+    inside = (depths >= begin) & (depths <= end)
+    if inside.any():
+        return float(share[inside].mean())
+    return float(np.interp(0.5 * (begin + end), depths, share))
+
+
 def intervals_on(section: SectionData, axis: HoleAxis) -> list[HoleInterval]:
     """The blocks along a hole, by the section of the model by the upright plane through it."""
     away = section.vertices - np.array(axis.collar)

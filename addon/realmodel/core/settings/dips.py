@@ -41,13 +41,30 @@ class DipFile(FieldTable):
 @dataclass(frozen=True, eq=False)
 class SpaceDips:
     """Dips in space, at any angle. positions: (D, 3) float64. normals: (D, 3) float64 of the bedding, of any
-    length, toward younger rock."""
+    length, toward younger rock. used: (D,) bool, False where one is switched off, which says nothing then;
+    None: all are used."""
 
     positions: np.ndarray
     normals: np.ndarray
+    used: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
+
+    @property
+    def in_use(self) -> np.ndarray:
+        """(D,) bool: which are not switched off."""
+        return _in_use(self)
+
+    @classmethod
+    def joined(cls, parts: Sequence[SpaceDips]) -> SpaceDips:
+        """Several, `parts`, one after another."""
+        positions, normals = (
+            np.concatenate([np.empty((0, 3)), *(getattr(part, key) for part in parts)])
+            for key in ("positions", "normals")
+        )
+        used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
+        return cls(positions, normals, None if used.all() else used)
 
     def checked(self) -> SpaceDips:
         """The same as arrays of float64. Raises InputRefused."""
@@ -59,7 +76,7 @@ class SpaceDips:
         bad |= ~normals.any(axis=1)
         if bad.any():
             raise InputRefused(f"dip {np.flatnonzero(bad)[0]} is not finite, or has no normal", item="dips")
-        return SpaceDips(positions, normals)
+        return SpaceDips(positions, normals, _checked_use(self.used, len(positions)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +110,7 @@ class Dips:
     @property
     def in_use(self) -> np.ndarray:
         """(D,) bool: which are not switched off."""
-        return np.ones(len(self), bool) if self.used is None else np.asarray(self.used, bool)
+        return _in_use(self)
 
     def used_only(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
@@ -146,10 +163,7 @@ class Dips:
             None if names is None else _texts(names, len(positions), f"{what} of dips")
             for what, names in (("surfaces", self.surfaces), ("blocks", self.blocks))
         )
-        used = None if self.used is None else np.ascontiguousarray(self.used, bool)
-        if used is not None and used.shape != (len(positions),):
-            raise InputRefused(f"{len(positions)} dips have {used.size} of 'used'", item="dips")
-        return Dips(positions, gradients, z, surfaces, blocks, used)
+        return Dips(positions, gradients, z, surfaces, blocks, _checked_use(self.used, len(positions)))
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""
@@ -178,6 +192,17 @@ def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:
     if isinstance(given, (str, Path)):
         return DipFile(given)
     return given if isinstance(given, DipFile) else None
+
+
+def _in_use(dips: Dips | SpaceDips) -> np.ndarray:
+    return np.ones(len(dips), bool) if dips.used is None else np.asarray(dips.used, bool)
+
+
+def _checked_use(used, count: int) -> np.ndarray | None:
+    given = None if used is None else np.ascontiguousarray(used, bool)
+    if given is not None and given.shape != (count,):
+        raise InputRefused(f"{count} dips have {given.size} of 'used'", item="dips")
+    return given
 
 
 def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:

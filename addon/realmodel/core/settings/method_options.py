@@ -51,7 +51,7 @@ def checked(option: str, setting: Setting, value):
         if not isinstance(value, (bool, np.bool_)):
             raise OptionRefused(f"'{option}' must be true or false, not {value!r}", option=option)
         return bool(value)
-    if setting.kind in ("text", "any_surface", "rock_mass"):
+    if setting.kind in ("text", "any_surface", "rock_mass", "series"):
         if not is_name(value):
             raise OptionRefused(f"'{option}' must be a name, not {value!r}", option=option)
         return value

@@ -210,7 +210,7 @@ SURFACE = {
     "dips": _OTHER,
     "left_out": _OTHER,
     "series": Setting(
-        kind="text",
+        kind="series",
         label="Series",
         tip="Name of the series that the surface belongs to; empty: none",
         more="See [Series](#series)",

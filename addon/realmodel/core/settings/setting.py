@@ -14,10 +14,11 @@ Words = Mapping[str, tuple[str, str]]  # label and tooltip in the panel, by word
 class Setting:
     """default: its value where it is not given. kind: "number", "length", "whole", "truth" (true or false),
     "word" (one of `words`), "text", "surface" (the name of another one, or an elevation), "any_surface" (of
-    any rock mass), "rock_mass", "column" (of a file), "layer", "direction" (degrees, or a point of the
-    compass), "table" (of `parts`), "columns" (of the x, y and z of a file), and "other", with code of its own
-    wherever it is used. above, below: bounds that it does not reach; else it is at least low and at most
-    high. check(name, value) instead of these returns the value as it is used, or raises OptionRefused.
+    any rock mass), "rock_mass", "series" (of the same rock mass), "column" (of a file), "layer", "direction"
+    (degrees, or a point of the compass), "table" (of `parts`), "columns" (of the x, y and z of a file), and
+    "other", with code of its own wherever it is used. above, below: bounds that it does not reach; else it is
+    at least low and at most high. check(name, value) instead of these returns the value as it is used, or
+    raises OptionRefused.
 
     For the panel: label and tip; start, low and high: the value before it is given, and its bounds. switch:
     label and tip of a tick, off where the setting is not given; beside: the setting whose tick this one

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import SolvedField
+from ..fields import SolvedField, rises
 from .series_data import SeriesData
 
 _STEEP = (8.0, 4.0, 2.0)  # times the usual steepness of f: steeper is a conflict; one after another is tried
@@ -82,13 +82,8 @@ def _said(data: SeriesData, field: SolvedField) -> tuple[np.ndarray, np.ndarray]
 
 def _steepness(data: SeriesData, field: SolvedField) -> float:
     """How steep f usually is near contacts."""
-    rise = np.zeros((len(data.contacts), 3))
-    corners = field.lattice.corners
-    for axis, step in enumerate(field.lattice.spacing):
-        move = 0.5 * step * np.eye(3)[axis]
-        ahead, behind = (np.clip(data.contacts + way, *corners) for way in (move, -move))
-        rise[:, axis] = (field.at(ahead) - field.at(behind)) / step
-    return float(np.median(norm(rise)))
+    rise, _ = rises(field, data.contacts)
+    return float(np.median(norm(rise / field.lattice.spacing)))
 
 
 def _conflicts(data: SeriesData, low: np.ndarray, high: np.ndarray, most: float) -> Iterator[np.ndarray]:

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from ..base.algebra import are_among
+from ..base.elementary import cube_root
 from ..base.errors import InputRefused, naming
 from ..base.work import Work, refused_as
 from ..fields import (
@@ -118,7 +120,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
         with naming(f"{entry.rock.item}, {series.item}"):
             field, kept, left_out = without_contradictions(
-                own, lambda given: solve_field(lattice, given.field_data(), work)
+                own, lambda given: solve_field(lattice, given.level_set_data(), work)
             )
         leave_out(entry, series, own, left_out)
         points = field.critical_points
@@ -135,8 +137,7 @@ def _through_data(entry: RockInput, series: Series, data: SeriesData, field: Sol
     too: they hold in the end. Warns of what is not honored."""
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
         made = with_contacts(field, data.contacts, data.surfaces)
-        contacts = set(map(tuple, data.contacts.tolist()))
-        kept = np.array([tuple(place) not in contacts for place in data.bounds.tolist()], bool)
+        kept = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(kept), bool)
         kept[field.bounds_missed] = False
         for _ in range(_ROUNDS):
@@ -176,23 +177,15 @@ def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -
     high = np.maximum([*plan.max(axis=0), top], places.max(axis=0))
     size = high - low
     is_auto = series.resolution == AUTO
-    step = _cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
+    step = cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
     origin = low - _MARGIN * step
     counts = np.ceil((high - origin) / step + 0.3).astype(np.int64) + 1
     if counts.astype(float).prod() > _MOST_NODES:
-        coarser = step * _cube_root(float(counts.astype(float).prod()) / _MOST_NODES)
+        coarser = step * cube_root(float(counts.astype(float).prod()) / _MOST_NODES)
         what = f"its lattice would have {counts.astype(float).prod():,.0f} nodes"
         advice = f"use a resolution of {coarser:.2g} or more"
         raise series.refused(what, "resolution", advice, f"{entry.rock.item}, {series.item}")
     return Lattice(tuple(origin.tolist()), (step,) * 3, tuple(counts.tolist()))
-
-
-def _cube_root(value: float) -> float:
-    """By Newton's method: the same on all machines."""
-    root = math.ldexp(1.0, math.frexp(value)[1] // 3)
-    for _ in range(20):
-        root = (2.0 * root + value / (root * root)) / 3.0
-    return root
 
 
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:

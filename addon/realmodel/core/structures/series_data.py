@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import FieldData, ScalarField
+from ..fields import LevelSetData, ScalarField
 from ..project.project import Rock
 from ..project.series import Series
 from ..readers.tables.observations import Bounds, LeftOut, source_text
+from ..settings.dips import SpaceDips
 from ..surfaces.rock_input import RockInput
 
 _MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hardly more
@@ -44,8 +45,9 @@ class SeriesData:
         """step: how far places within an interval are apart at most."""
         rock = entry.rock
         points = [rock.surfaces[number].point_array() for number in numbers]
-        dips = series.space_dips()
-        positions, normals = (np.empty((0, 3)),) * 2 if dips is None else (dips.positions, dips.normals)
+        dips = series.space_dips() or SpaceDips(np.empty((0, 3)), np.empty((0, 3)))
+        of_dips = np.flatnonzero(dips.in_use)
+        positions, normals = dips.positions[of_dips], dips.normals[of_dips]
         given = [rock.surfaces[number].bounds for number in numbers]
         step = max(step, sum(_length(each) for each in given if each is not None) / _MOST_BOUNDS)
         none = np.empty((0, 3)), np.empty(0, np.int64)
@@ -59,7 +61,7 @@ class SeriesData:
             np.concatenate([np.arange(len(each)) for each in points]),
             positions,
             normals / norm(normals)[:, None],
-            np.arange(len(positions)),
+            of_dips,
             np.concatenate([places for places, _ in placed]),
             _owners([len(places) for places, _ in placed]),
             np.concatenate([each[rows] for each, (_, rows) in zip(lower, placed, strict=True)]),
@@ -97,10 +99,10 @@ class SeriesData:
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
         return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
 
-    def field_data(self) -> FieldData:
+    def level_set_data(self) -> LevelSetData:
         """The same for the solver."""
         none = np.int32(-1)
-        return FieldData(
+        return LevelSetData(
             [self.rock.surfaces[number].name for number in self.numbers],
             self.contacts,
             self.surfaces,

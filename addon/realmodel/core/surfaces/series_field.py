@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import ScalarField
+from ..fields import ScalarField, rises
 
 
 @dataclass(eq=False)
@@ -56,11 +56,7 @@ class SeriesField:
         rise = np.zeros((len(points), 3))
         for field, compartments in self.distinct().items():
             here = np.flatnonzero(np.isin(where, compartments))
-            low, high = field.lattice.corners
-            for axis, step in enumerate(field.lattice.spacing):
-                move = 0.5 * step * np.eye(3)[axis]
-                ahead, behind = (np.clip(points[here] + way, low, high) for way in (move, -move))
-                far = ahead[:, axis] - behind[:, axis]
-                rise[here, axis] = (field.at(ahead) - field.at(behind)) / np.where(far > 0, far, np.inf)
+            change, far = rises(field, points[here])
+            rise[here] = change / np.where(far > 0, far, np.inf)
         steep = norm(rise)
         return self.excess(surface, points, where) / np.where(steep > 0, steep, 1.0)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.algebra import are_among
 from ..base.errors import InputRefused, naming
 from ..base.mapped_arrays import JoinPieces, MappedArrays, in_memory, in_pieces
 from ..base.sheet import Sheet
@@ -124,9 +125,9 @@ class SurfaceInput:
 
 def _without(pieces: Iterable[np.ndarray], left_out) -> Iterator[np.ndarray]:
     """Pieces (P, 3) of points without those at places (Q, 3)."""
-    places = set(map(tuple, np.asarray(left_out, np.float64).reshape(-1, 3).tolist()))
+    places = np.asarray(left_out, np.float64).reshape(-1, 3)
     for piece in pieces:
-        yield piece[[tuple(point) not in places for point in piece.tolist()]]
+        yield piece[~are_among(piece, places)]
 
 
 # Reads surfaces in any order: pairs of number and surface. It reports its progress to the Work.

@@ -9,17 +9,15 @@
 
 #include "realmodel/base/array.hpp"
 #include "realmodel/base/execution.hpp"
+#include "realmodel/fields/lattice.hpp"
 
 namespace realmodel::fields {
 
-/// A function in space that is linear on tetrahedra: six in each cell of a regular lattice, around
-/// the diagonal from its lowest corner to its highest (H. Freudenthal 1942; H. W. Kuhn 1960), and
-/// what points with values of their own divide these into.
+/// A function in space that is linear on a lattice's tetrahedra, and on what points with values of
+/// their own divide these into.
 struct LatticeField {
-    std::array<double, 3> origin, spacing;
-    std::array<std::int32_t, 3> counts;  ///< of nodes along x, y, z; two at least
-    /// One for each node: node (i, j, k) has the number i + nx (j + ny k).
-    std::span<const double> values;
+    Lattice lattice;
+    std::span<const double> values;        ///< one for each node
     std::span<const double> points;        ///< 3 P coordinates within the lattice
     std::span<const double> point_values;  ///< one for each
 };

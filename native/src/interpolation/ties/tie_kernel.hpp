@@ -2,12 +2,12 @@
 // The kernel of corrections, and sums of it.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "interpolation/data_points.hpp"
 #include "spatial/point_bins.hpp"
 
@@ -22,8 +22,7 @@ struct SheetNode {
 /// Wendland's function of smoothness 2, which is 0 from `radius` on, between two nodes of sheets:
 /// as large again for each fault on whose one side both are, 0 across a fault of full weight.
 inline double tie_kernel(const SheetNode& a, const SheetNode& b, double radius) {
-    const double dx = a.position[0] - b.position[0], dy = a.position[1] - b.position[1];
-    const double share = std::sqrt(dx * dx + dy * dy) / radius;
+    const double share = length(minus(a.position, b.position)) / radius;
     if (!(share < 1)) return 0;
     const double left = 1 - share, squared = left * left;
     double value = squared * squared * (4 * share + 1);

@@ -4,23 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/keep_single.hpp"
+#include "base/vectors.hpp"
 #include "spatial/mesh_locator.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
 
-double distance(const Position& a, const Position& b) {
-    const double dx = a[0] - b[0], dy = a[1] - b[1];
-    return std::sqrt(dx * dx + dy * dy);
-}
-
 double mesh_area(const TiedSheets& sheets) {
     double area = 0;
-    for (const auto& t : sheets.triangles) {
-        const Position &a = sheets.nodes[t[0]], &b = sheets.nodes[t[1]], &c = sheets.nodes[t[2]];
-        area += (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    }
+    for (const auto& t : sheets.triangles)
+        area += twice_area(sheets.nodes[t[0]], sheets.nodes[t[1]], sheets.nodes[t[2]]);
     return std::abs(area) / 2;
 }
 
@@ -41,20 +36,18 @@ TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
         const auto first =
             static_cast<std::int64_t>(data.sheets[i]) * static_cast<std::int64_t>(count);
         TieRow& row = rows[i];
-        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, 0, true};
+        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
         for (std::size_t k = 0; k < 3; ++k) {
             const Position& p = sheets.nodes[corners[k]];
             keys[i][k] = first + corners[k];
             row.is_known =
                 row.is_known && !std::isnan(sheets.heights[static_cast<std::size_t>(keys[i][k])]);
             row.shortest_edge =
-                std::min(row.shortest_edge, distance(p, sheets.nodes[corners[(k + 1) % 3]]));
-            row.reach = std::max(row.reach, distance(p, data.places[i]));
+                std::min(row.shortest_edge, length(minus(p, sheets.nodes[corners[(k + 1) % 3]])));
         }
         if (row.is_known) every.insert(every.end(), keys[i].begin(), keys[i].end());
     }
-    std::sort(every.begin(), every.end());
-    every.erase(std::unique(every.begin(), every.end()), every.end());
+    sort_unique(every);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         for (std::size_t k = 0; k < 3 && rows[i].is_known; ++k) {
             const auto at = std::lower_bound(every.begin(), every.end(), keys[i][k]);
@@ -95,8 +88,7 @@ std::vector<std::int32_t> nodes_around(std::span<const Position> nodes,
             found.insert(found.end(), corners.begin(), corners.end());
         }
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
 }
 

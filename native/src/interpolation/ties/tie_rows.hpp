@@ -19,7 +19,6 @@ struct TieRow {
     std::array<double, 3> weights{};
     double lower = 0, upper = 0;
     double shortest_edge = 0;
-    double reach = 0;       ///< to the farthest corner
     bool is_known = false;  ///< there is a triangle with heights
 
     bool is_contact() const { return lower == upper; }

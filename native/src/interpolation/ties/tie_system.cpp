@@ -5,6 +5,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "base/keep_single.hpp"
 #include "spatial/point_bins.hpp"
 
 namespace realmodel::interpolation {
@@ -36,8 +37,7 @@ TieSystem::TieSystem(const TieRows& rows, std::span<const std::int32_t> members,
                             if (a >= b) near.push_back(a);
                         });
         }
-        std::sort(near.begin(), near.end());
-        near.erase(std::unique(near.begin(), near.end()), near.end());
+        sort_unique(near);
         for (const std::int32_t a : near) {
             const double value = rows.product(rows.rows[members[a]], row, radius);
             if (value != 0) entries.emplace_back(a, b, a == b ? value * (1 + ridge) : value);
@@ -79,8 +79,8 @@ double TieSystem::likeness(std::int32_t a, std::int32_t b) const {
 
 std::vector<std::int32_t> TieSystem::related(std::int32_t at) const {
     std::vector<std::int32_t> found;
-    for (std::int32_t column = 0; column <= at; ++column)
-        if (column < at && matrix_.coeff(at, column) != 0) found.push_back(column);
+    for (std::int32_t column = 0; column < at; ++column)
+        if (matrix_.coeff(at, column) != 0) found.push_back(column);
     for (Matrix::InnerIterator entry(matrix_, at); entry; ++entry)
         if (entry.row() != at) found.push_back(static_cast<std::int32_t>(entry.row()));
     return found;

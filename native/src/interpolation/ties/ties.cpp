@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/keep_single.hpp"
 #include "interpolation/node_loop.hpp"
 #include "interpolation/ties/tie_rows.hpp"
 #include "interpolation/ties/tie_system.hpp"
@@ -253,8 +254,7 @@ private:
             }
             victims.push_back(victim);
         }
-        std::sort(victims.begin(), victims.end());
-        victims.erase(std::unique(victims.begin(), victims.end()), victims.end());
+        sort_unique(victims);
         for (const std::int32_t victim : victims)
             state_[active_[victim]] = State::kGivenUp;
         remove(active_, victims);

@@ -47,6 +47,16 @@ def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
     return -(sin(angle) / cos(angle)) * unit_vector(dip_direction) + 0.0  # no -0
 
 
+def normal_of(dip: float, dip_direction: float, is_overturned: bool = False) -> np.ndarray:
+    """(3,) the normal, toward younger rock, of bedding that dips so many degrees, up to 180, in a direction
+    in degrees clockwise from north (+y). Beyond 90 degrees it is overturned by itself, whether or not
+    `is_overturned` says so, too."""
+    angle = math.radians(dip)
+    down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(dip_direction)
+    upright = np.array([*down, cos(angle)])
+    return -upright if is_overturned and dip <= 90 else upright
+
+
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
     """The dips of a table, all of one surface, in the model's unit. Raises InputRefused naming file and
     line."""
@@ -109,13 +119,14 @@ def read_space_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = n
     """The dips in space of a table, in the model's unit. Raises InputRefused naming file and line."""
     file = Path(given.file)
     plan, height = factors(given.units, model_unit)
-    places, normals = [], []
+    places, normals, used = [], [], []
     for row in rows(given, file, DIPS, ("x", "y", "z"), step):
         places.append((plan * row.number("x"), plan * row.number("y"), height * row.number("z")))
         normals.append(_normal(row))
+        used.append(row.is_used)
     if not places:
         raise InputRefused("there are no dips in it", file=file)
-    return SpaceDips(np.array(places), np.array(normals))
+    return SpaceDips(np.array(places), np.array(normals), None if all(used) else np.array(used))
 
 
 def _normal(row: Row) -> np.ndarray:
@@ -136,11 +147,7 @@ def _normal(row: Row) -> np.ndarray:
     dip = row.number("dip")
     if not 0 <= dip <= 180:
         raise row.refuse(f"the dip {dip:g} is not from 0 to 180 degrees", "leave the row out")
-    angle = math.radians(dip)
-    down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(_direction_of(row))
-    # beyond 90 degrees it is overturned by itself, whether or not its polarity says so, too
-    upright = np.array([*down, cos(angle)])
-    return -upright if polarity < 0 and dip <= 90 else upright
+    return normal_of(dip, 0.0 if dip in (0, 180) else _direction_of(row), polarity < 0)
 
 
 def _direction_of(row: Row) -> float:

@@ -82,8 +82,8 @@ OBSERVED = {
     "depth": ("depth", "md"),
     "use": ("use",),
 }
-# What stands in a column where there is no value; in small letters.
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
+# What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 

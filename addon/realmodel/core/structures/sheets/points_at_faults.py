@@ -16,7 +16,7 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.work import Work, native_module, on_threads
-from ...heights.mis_ties import mean_heights
+from ...heights.mis_ties import first_at_each_place, mean_heights
 from ...project.project import Surface
 from ...settings.dips import Dips
 from ...surfaces.rock_input import RockInput
@@ -263,8 +263,7 @@ def _spacing(points: np.ndarray) -> float:
 
 def at_height(dips: Dips, height) -> np.ndarray:
     """(D, 3) the places of dips; heights, or one, of those that have none."""
-    own = np.full(len(dips), np.nan) if dips.z is None else dips.z
-    return np.column_stack([dips.positions, np.where(np.isfinite(own), own, height)])
+    return np.column_stack([dips.positions, np.where(np.isfinite(dips.heights), dips.heights, height)])
 
 
 def sided_dips(work: Work, surface: Surface, entry: RockInput) -> tuple[Dips | None, np.ndarray]:
@@ -278,10 +277,6 @@ def sided_dips(work: Work, surface: Surface, entry: RockInput) -> tuple[Dips | N
     if len(points):
         nearest = (1, 0, 0.0)
         positions = np.ascontiguousarray(dips.positions)
-        height = work.native(native_module().idw, _one_at_each_place(points), positions, neighborhood=nearest)
+        given = first_at_each_place(points)
+        height = work.native(native_module().idw, given, positions, neighborhood=nearest)
     return dips, sides_of(work, at_height(dips, height), faults)
-
-
-def _one_at_each_place(points: np.ndarray) -> np.ndarray:
-    _, first = np.unique(points[:, :2], axis=0, return_index=True)
-    return np.ascontiguousarray(points[np.sort(first)])

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The series of the active rock mass."""
+
+import bpy
+
+from ..bl import notices, problems, series_settings, settings
+from ..core import RealModelError
+from ..core.settings.schema import ROCK, SERIES
+from ..core.settings.series import FIELD, KINDS
+from . import setting_rows
+from .lists import OfRows
+from .panel import FoldedPanel, hint, right_label, wrapped
+
+
+class REALMODEL_UL_series(OfRows, bpy.types.UIList):
+    """Series of a rock mass, with how many surfaces they have."""
+
+    def draw_row(self, _context, row, item):
+        row.prop(item, "name", text="", emboss=False)
+        count = len(series_settings.members(settings.rock_of(item), item))
+        right_label(row, f"{KINDS[item.kind][0]}, {count}")
+
+
+class REALMODEL_PT_series(FoldedPanel, bpy.types.Panel):
+    bl_label = "Series"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+
+    @classmethod
+    def poll(cls, context):
+        return settings.active_surface(context.scene) is not None
+
+    def draw_in(self, layout, context, _group):
+        rock = settings.active_rock(context.scene)
+        if not len(rock.series):
+            hint(
+                layout,
+                "A series is a run of surfaces that were folded together. In a field they may stand upright, "
+                "overturned or lie on their side.",
+            )
+            layout.operator("realmodel.series_add", icon="ADD").kind = FIELD
+            return
+        row = layout.row()
+        row.template_list("REALMODEL_UL_series", "", rock, "series", rock, "active_series", rows=2)
+        buttons = row.column(align=True)
+        buttons.operator("realmodel.series_add", text="", icon="ADD").kind = FIELD
+        buttons.operator("realmodel.series_remove", text="", icon="REMOVE")
+        buttons.separator()
+        buttons.operator("realmodel.series_move", text="", icon="TRIA_UP").direction = "UP"
+        buttons.operator("realmodel.series_move", text="", icon="TRIA_DOWN").direction = "DOWN"
+        _draw_series(layout, rock, series_settings.active(rock))
+
+
+def _draw_series(layout, rock, row):
+    layout.prop(row, "kind")
+    column = layout.column(align=True)
+    column.prop(row, "youngest")
+    column.prop(row, "oldest")
+    if row.kind == FIELD:
+        setting_rows.draw(layout, row, "resolution", SERIES)
+        if not row.resolution:
+            hint(layout, "0: by the size of the rock mass")
+    if row.kind == FIELD or row.dips:
+        _draw_dips(layout, row)
+    if row.kind == FIELD:
+        _draw_needs(layout, rock)
+    _draw_refusal(layout, rock, row)
+
+
+def _draw_dips(layout, row):
+    line = layout.row(align=True)
+    try:
+        dips = series_settings.dips_of(row)
+        text = "No dips" if dips is None else f"{len(dips):,} dips"
+    except RealModelError as error:
+        text = str(error)
+    line.label(text=text)
+    if row.dips:
+        line.operator("realmodel.series_dips_remove", text="", icon="X")
+    if row.kind == FIELD:
+        line = layout.row(align=True)
+        line.operator("realmodel.boreholes_read", text="Import Dips...", icon="IMPORT").series = row.name
+        line.operator("realmodel.dip_add", text="", icon="PIVOT_CURSOR")
+
+
+def _draw_needs(layout, rock):
+    """What a field needs of its rock mass and has not yet: here, as the panel of rock masses is folded."""
+    if not rock.use_base:
+        setting_rows.draw(layout, rock, "base_elevation", ROCK)
+    if rock.region is None and not (rock.region_file or rock.region_stored):
+        layout.operator("realmodel.region_around", icon="SHADING_BBOX")
+
+
+def _draw_refusal(layout, rock, row):
+    """Why a build refuses the series, or has refused it."""
+    text = notices.in_panel_words(series_settings.refusal(rock, row)) or problems.of_series(rock, row)
+    if not text:
+        return
+    column = layout.box().column(align=True)
+    column.alert = True
+    for line in wrapped(text, 2):
+        column.label(text=line)
