@@ -101,6 +101,7 @@ def draw(folder):
             save(figure, folder / "method_kriging_deviation.png")
             save_drawing(plots.variogram(result.variogram, "m"), folder / "method_variogram.svg")
     draw_extrapolation(given[-14:], vertices, triangles, folder)
+    draw_true_thickness(folder)
     save_drawing(plots.cross_validation(cross_validate(given), "m"), folder / "method_cross_validation.svg")
     save_drawing(
         plots.mesh_quality(plots.smallest_angles(vertices, triangles)), folder / "method_mesh_quality.svg"
@@ -159,6 +160,25 @@ def draw_extrapolation(wells, vertices, triangles, folder):
         height_map(shape, kept, wells, axes, limits=_LIMITS)
         axes.set_title(f'extrapolate = "{choice}"', fontsize="medium")
     save(figure, folder / "method_extrapolate.png")
+
+
+def draw_true_thickness(folder):
+    """Beside each other, a layer of one thickness in a fold, measured vertically and perpendicular to it."""
+    plan, triangles = mesh_region([[0, -20], [600, -20], [600, 20], [0, 20]], edge_length=4)
+    own = 90 * np.cos(plan[:, 0] / 65)
+    line = np.column_stack([np.linspace(1.0, 599.0, 600), np.zeros(600)])
+    sheet = (np.column_stack([plan, own]), triangles)
+    bottom = interpolate(None, line, "parallel", to=sheet, thickness=0).z
+    figure = Figure(figsize=(8.8, 2.6), layout="constrained")
+    for true, axes in zip((False, True), figure.subplots(1, 2, sharey=True), strict=True):
+        z = interpolate(None, plan, "parallel", triangles, to=sheet, thickness=60.0, true_thickness=true).z
+        top = interpolate(None, line, "parallel", to=(np.column_stack([plan, z]), triangles), thickness=0).z
+        axes.fill_between(line[:, 0], bottom, top, color="#d8a657", linewidth=0.0)
+        for heights in (bottom, top):
+            axes.plot(line[:, 0], heights, color="black", linewidth=1.0)
+        axes.set_aspect("equal")
+        axes.set_title("true_thickness = true" if true else "vertical thickness", fontsize="medium")
+    save(figure, folder / "method_true_thickness.png")
 
 
 if __name__ == "__main__":

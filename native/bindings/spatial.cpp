@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nearest_points, nearest_triangles, meeting_boxes, orient2d.
+// nearest_points, nearest_triangles, heights_at_distance, meeting_boxes, orient2d.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -29,19 +29,38 @@ py::tuple nearest_points(const Array<double>& points, const Array<double>& posit
                           to_array(std::move(found.distance), count));
 }
 
+/// Triangles (T, 3, 3).
+std::span<const spatial::SpaceTriangle> space_triangles(const Array<double>& triangles) {
+    if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3)
+        throw py::value_error("triangles: an array of shape (any, 3, 3) is needed");
+    return {reinterpret_cast<const spatial::SpaceTriangle*>(triangles.data()),
+            static_cast<std::size_t>(triangles.shape(0))};
+}
+
 py::tuple nearest_triangles(const Array<double>& triangles, const Array<double>& positions,
                             double reach, WatchedExecution* execution) {
     const auto to = rows<3>(positions, "positions");
-    if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3)
-        throw py::value_error("triangles: an array of shape (any, 3, 3) is needed");
-    const std::span corners(reinterpret_cast<const spatial::SpaceTriangle*>(triangles.data()),
-                            static_cast<std::size_t>(triangles.shape(0)));
+    const auto corners = space_triangles(triangles);
     spatial::Nearest found;
     {
         const py::gil_scoped_release unlocked;
         found = spatial::nearest_triangles(corners, to, reach, run(execution));
     }
     return py::make_tuple(to_array(std::move(found.number)), to_array(std::move(found.distance)));
+}
+
+Array<double> heights_at_distance(const Array<double>& triangles, const Array<double>& positions,
+                                  const Array<double>& own, const Array<double>& distance,
+                                  WatchedExecution* execution) {
+    const auto corners = space_triangles(triangles);
+    const auto to = rows<2>(positions, "positions");
+    const auto heights = view(own), away = view(distance);
+    std::vector<double> found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = spatial::heights_at_distance(corners, to, heights, away, run(execution));
+    }
+    return to_array(std::move(found));
 }
 
 /// The boxes around polygons (N, K, 2 or 3).
@@ -95,6 +114,13 @@ Returns number (N, count) int32, of points at one distance the lowest first, -1 
 
 Returns number (N,) int32, of triangles at one distance the lowest, -1 for none, and distance (N,)
 float64, infinite for none. Raises Cancelled.)");
+    module.def("heights_at_distance", &heights_at_distance, arg("triangles"), arg("positions"),
+               arg("own"), arg("distance"), arg("execution") = py::none(),
+               R"(The greatest heights at which positions (N, 2) are at a distance from a sheet.
+
+triangles (T, 3, 3): of the sheet, which goes on far enough around the positions. own: (N,) its heights
+there; distance: (N,). Returns (N,) float64: at them no triangle is nearer, up to rounding; NaN where own
+is NaN, and own where the distance is not positive. Raises InputError: kind "bad_index"; Cancelled.)");
     module.def(
         "meeting_boxes", &meeting_boxes, arg("first"), arg("second"),
         R"(The pairs (K, 2) int64 of polygons (N, K, D) and (M, L, D), D 2 or 3, whose boxes meet.

@@ -68,6 +68,7 @@ drift = "quadratic"
 variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
 rule = "conformable"
 minimum_thickness = 0.35
+true_thickness = true
 tie = false
 correlation = -0.3
 
@@ -353,6 +354,7 @@ def _surface(surface):
                 "property",
                 "block",
                 "minimum_thickness",
+                "true_thickness",
                 "tie",
                 "correlation",
             )

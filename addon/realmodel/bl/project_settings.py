@@ -40,7 +40,8 @@ from . import (
 )
 from .origin import KEY as ORIGIN_KEY
 
-_OF_INTERPOLATED = ("minimum_thickness", "tie", "correlation")  # of surfaces; a ready mesh has none
+# of surfaces; a ready mesh has none
+_OF_INTERPOLATED = ("minimum_thickness", "true_thickness", "tie", "correlation")
 
 
 @dataclass
@@ -158,6 +159,7 @@ def _plain_surface(row, fields):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
+        surface.true_thickness &= surface.has_thickness  # it stays set where it has no effect
     return surface
 
 

@@ -286,7 +286,8 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
         for surface in entry.rock.surfaces:
             how = None
             if surface.interpolated:
-                how = (surface.method_options(), surface.minimum_thickness, surface.tie)
+                thickness = (surface.minimum_thickness, surface.true_thickness)
+                how = (surface.method_options(), thickness, surface.tie)
             digest.update(repr((entry.rock.base_elevation, surface.rule, how)).encode())
             if surface.bounds is not None:
                 for array in (surface.contact_array(), surface.bounds.places, surface.bounds.is_lower):

@@ -87,6 +87,8 @@ def _draw_surface(layout, context, surface):
     elif surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+        if surface.method == "parallel" or surface.use_minimum_thickness:
+            setting_rows.draw(layout, surface, "true_thickness", SURFACE)
         setting_rows.draw(layout, surface, "tie", SURFACE)
         setting_rows.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:

@@ -7,40 +7,14 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "spatial/box_tree.hpp"
 #include "spatial/nearest_points.hpp"
+#include "spatial/space_triangles.hpp"
 
 namespace realmodel::spatial {
 
 namespace {
-
-double distance(const Vec3& p, const SpaceTriangle& triangle) {
-    SpaceTriangle edges, apart;
-    std::size_t longest = 0, nearest = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        edges[i] = minus(triangle[(i + 1) % 3], triangle[i]);
-        apart[i] = minus(p, triangle[i]);
-        if (dot(edges[i], edges[i]) > dot(edges[longest], edges[longest])) longest = i;
-        if (dot(apart[i], apart[i]) < dot(apart[nearest], apart[nearest])) nearest = i;
-    }
-    Vec3 normal = cross(edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
-    const double size = length(normal);
-    for (double& each : normal)
-        each /= size;
-    bool inside = true;
-    double to_border = HUGE_VAL;
-    for (std::size_t i = 0; i < 3; ++i) {
-        inside &= dot(cross(edges[i], apart[i]), normal) >= 0;
-        const double square = dot(edges[i], edges[i]);
-        const double share =
-            square > 0 ? std::clamp(dot(apart[i], edges[i]) / square, 0.0, 1.0) : 0.0;
-        const Vec3 off = minus(p, moved(triangle[i], share, edges[i]));
-        to_border = std::min(to_border, length(off));
-    }
-    return inside ? std::abs(dot(apart[nearest], normal)) : to_border;
-}
 
 void require_finite(std::span<const PlanPosition> positions, const char* what) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -80,14 +54,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
 
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<const Vec3> positions,
                           double reach, const Execution& execution) {
-    constexpr double kSlack = 1 + 1e-9;  // distances to boxes are rounded
-    checked_number(triangles.size(), "triangles");
-    std::vector<Box> boxes(triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (const Vec3& corner : triangles[t])
-            boxes[t].include(corner);
-    }
-    const BoxTree tree(std::move(boxes), execution.progress);
+    const BoxTree tree(boxes_of(triangles), execution.progress);
     Nearest found{std::vector<std::int32_t>(positions.size(), -1),
                   std::vector<double>(positions.size(), HUGE_VAL)};
     parallel_ranges(
@@ -98,11 +65,11 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<co
                 tree.approach(
                     positions[i],
                     [&] {
-                        const double bound = std::min(least, reach) * kSlack;
+                        const double bound = std::min(least, reach) * kRoundedDistance;
                         return bound * bound;
                     },
                     [&](std::int32_t t) {
-                        const double away = distance(positions[i], triangles[index(t)]);
+                        const double away = triangle_distance(positions[i], triangles[index(t)]);
                         if (!(away < reach) || away > least || (away == least && t > number))
                             return;
                         least = away;

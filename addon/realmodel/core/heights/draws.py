@@ -21,11 +21,12 @@ from ..settings.variogram import Variogram
 from . import Interpolation, heights
 from .bounded import Heights, active_bounds, consistent, holds_bounds, runner
 from .from_neighbours import dip_use, structure
-from .interpolation import Result, Task
+from .interpolation import Result, Task, run_method
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
 from .run import with_dips
 from .surface_reference import heights_of
+from .true_thickness import lifted, measured
 from .turning_bands import Frame, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
@@ -36,13 +37,15 @@ _NUGGET = -1  # where a noise has the numbers of the nugget; those of lines coun
 class _Known:
     """The data of a surface that do not change between realizations: the interpolated heights, the method and
     the options that reproduce them, counts, (P,) bool, the points that they use, and the variogram. For a
-    surface parallel to another one these are of its thickness."""
+    surface parallel to another one these are of its thickness, and where that is perpendicular to the other
+    one, thickness: (N,) the interpolated one at the nodes."""
 
     result: Interpolation
     method: str
     settings: dict
     variogram: Variogram | None
     counts: np.ndarray
+    thickness: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,11 @@ class Draw:
             own.method,
             replace(free, points=drawn, dips=self._drawn_dips(free, field, own), companions=None),
         )
-        z = z + (at_nodes - interpolated.z)
+        error = at_nodes - interpolated.z
+        if own.thickness is not None:
+            below = heights_of(task, task.settings["to"], task.nodes, "to")
+            return replace(own.result, z=lifted(task, below, own.thickness + error))
+        z = z + error
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
 
     def _supports(
@@ -131,15 +138,19 @@ class Draw:
 
     def _of_result(self, method: str, task: Task, result: Interpolation) -> _Known:
         points, settings = task.points, task.settings
-        counts = np.ones(len(points), bool)
+        counts, thickness = np.ones(len(points), bool), None
         if "thickness_method" in settings:
             if settings["thickness"] is not None:
                 return _Known(result, method, settings, None, counts)
             under = heights_of(task, settings["to"], np.ascontiguousarray(points[:, :2]), "to")
             counts = np.isfinite(under)
-            points = points - np.column_stack([np.zeros((len(points), 2)), under])
+            points = points.copy()
+            points[counts] = measured(task, points[counts], under[counts])
             method = settings["thickness_method"]
             settings = checked_options(method, {})
+            if task.true_thickness:
+                shown = replace(task, points=without_mis_ties(points[counts])[0], settings=settings)
+                thickness = run_method(method, shown).z
         elif result.method != method:
             method = result.method
             settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
@@ -154,7 +165,7 @@ class Draw:
                 settings["neighbours"] = result.neighbours
         if variogram is not None and variogram.sill <= 0:
             variogram = None
-        return _Known(result, method, settings, variogram, counts)
+        return _Known(result, method, settings, variogram, counts, thickness)
 
     def _field(self, task: Task, field: GaussianField, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and the nodes; at equal positions it is equal."""

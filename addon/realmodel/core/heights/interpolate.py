@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.errors import InputRefused, UsageError, place_text
@@ -10,7 +12,7 @@ from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
 from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
-from ..settings.method_options import check_threads
+from ..settings.method_options import OptionRefused, check_threads
 from ..settings.methods import METHODS, check_method, checked_options
 from . import Interpolation, Task, heights
 
@@ -25,6 +27,7 @@ def interpolate(
     *,
     dips: Dips | None = None,
     bounds: Bounds | None = None,
+    true_thickness: bool = False,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     **options,
@@ -37,6 +40,7 @@ def interpolate(
     neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
     16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
     dips, bounds: slopes of the surface, and heights that it lies above or below, for methods that use them.
+    true_thickness: the thickness of "parallel" is measured perpendicular to the other surface.
 
     Points at one place count once; where their heights differ a little (mis-ties of measured lines, up to
     a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
@@ -57,9 +61,17 @@ def interpolate(
     triangles = checked_triangles(triangles, len(nodes))
     dips = None if dips is None else dips.checked()
 
+    if true_thickness and method != "parallel":
+        raise OptionRefused(
+            f"'true_thickness' has no effect with method '{method}'",
+            option="true_thickness",
+            advice='use method "parallel"',
+        )
+
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            return heights(method, Task(work, points, nodes, settings, triangles, dips=dips, bounds=bounds))
+            given = Task(work, points, nodes, settings, triangles, dips=dips, bounds=bounds)
+            return heights(method, replace(given, true_thickness=true_thickness))
 
     return run(task, progress, cancel, threads=threads)
 

@@ -17,6 +17,7 @@ from ..base.mapped_arrays import in_pieces
 from ..settings.methods import checked_options
 from .interpolation import Result, Task, run_method
 from .surface_reference import heights_of
+from .true_thickness import lifted, measured, stretched
 
 # Of the greatest spread of the points: below this they lie in one line, and show no slope across it.
 _IN_LINE = 1e-6
@@ -159,19 +160,18 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans) -> Plane:
 
 def parallel(task: Task) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
-    spread by `thickness_method`."""
+    spread by `thickness_method`; upward, or perpendicular to that surface where the task says so."""
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
     if thickness is not None:
-        return Result(below + thickness)
+        return Result(lifted(task, below, thickness))
     under = heights_of(task, task.settings["to"], np.ascontiguousarray(task.points[:, :2]), "to")
     known = np.isfinite(under)
     if not known.any():
         raise InputRefused(
             "none of its points lies where the surface that it is parallel to has a height", item="points"
         )
-    points = task.points[known].copy()
-    points[:, 2] -= under[known]
+    points = measured(task, task.points[known], under[known])
     method = task.settings["thickness_method"]
     shown = run_method(method, replace(task, points=points, settings=checked_options(method, {})))
     warnings = list(shown.warnings)
@@ -181,4 +181,7 @@ def parallel(task: Task) -> Result:
             f"{left_out} of {len(known)} points lie where the surface that it is parallel to has no height: "
             "they are left out"
         )
-    return Result(below + shown.z, shown.variance, shown.variogram, warnings)
+    z, variance = lifted(task, below, shown.z), shown.variance
+    if task.true_thickness and variance is not None:
+        variance = variance * np.square(stretched(below, z, shown.z))
+    return Result(z, variance, shown.variogram, warnings)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.errors import InputRefused
+from ..base.sheet import Sheet
 from ..base.work import native_module
 from ..settings.method_options import OptionRefused
 from .interpolation import Task
@@ -17,6 +18,29 @@ def heights_of(task: Task, reference, places: np.ndarray, option: str) -> np.nda
     the nodes only, or elsewhere where the nodes have triangles."""
     if isinstance(reference, float):
         return np.full(len(places), reference)
+    if isinstance(reference, np.ndarray) and places is task.nodes:
+        return _of_nodes(task, reference, option)
+    vertices, triangles = _triangulated(task, reference, option)
+    if places is task.nodes and len(vertices) == len(places) and np.array_equal(vertices[:, :2], places):
+        return vertices[:, 2].copy()  # on one mesh: not a bit is lost
+    return task.run(native_module().surface_heights, vertices, triangles, np.ascontiguousarray(places))
+
+
+def sheet_of(task: Task, reference, option: str) -> Sheet | None:
+    """The triangles of a reference; None where it is a height."""
+    return None if isinstance(reference, float) else _triangulated(task, reference, option)
+
+
+def _of_nodes(task: Task, heights: np.ndarray, option: str) -> np.ndarray:
+    if len(heights) != len(task.nodes):
+        raise OptionRefused(
+            f"'{option}' has {len(heights)} heights for {len(task.nodes)} nodes", option=option
+        )
+    return heights
+
+
+def _triangulated(task: Task, reference, option: str) -> Sheet:
+    """The triangles of a reference that is no height."""
     if isinstance(reference, str):
         if reference not in task.surfaces:
             raise OptionRefused(
@@ -24,22 +48,14 @@ def heights_of(task: Task, reference, places: np.ndarray, option: str) -> np.nda
                 option=option,
                 advice="outside a project give vertices and triangles",
             )
-        reference = task.surfaces[reference]
+        return task.surfaces[reference]
     if isinstance(reference, np.ndarray):
-        if len(reference) != len(task.nodes):
-            raise OptionRefused(
-                f"'{option}' has {len(reference)} heights for {len(task.nodes)} nodes", option=option
-            )
-        if places is task.nodes:
-            return reference
+        heights = _of_nodes(task, reference, option)
         if task.triangles is None:
             raise InputRefused(
                 f"'{option}' is known at the nodes only, and they have no triangles", item=option
             )
-        reference = (np.column_stack([task.nodes, reference]), task.triangles)
-        known = np.isfinite(reference[0][:, 2])[task.triangles].all(axis=1)
-        reference = (reference[0], np.ascontiguousarray(task.triangles[known]))
-    vertices, triangles = reference
-    if places is task.nodes and len(vertices) == len(places) and np.array_equal(vertices[:, :2], places):
-        return vertices[:, 2].copy()  # on one mesh: not a bit is lost
-    return task.run(native_module().surface_heights, vertices, triangles, np.ascontiguousarray(places))
+        known = np.isfinite(heights)[task.triangles].all(axis=1)
+        vertices = np.column_stack([task.nodes, heights])
+        return Sheet(vertices, np.ascontiguousarray(task.triangles[known]))
+    return Sheet(*reference)

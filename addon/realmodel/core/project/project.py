@@ -71,7 +71,8 @@ class Surface(Shaped):
     Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. `left_out` (Q, 3)
     are points that are not used: those of its file, or its array, at these places, model units. With
     `minimum_thickness` an interpolated surface stays so far above the
-    older one; unless `tie` is false, it passes through its points and keeps its bounds also
+    older one; with `true_thickness` this, and the thickness of the method "parallel", is perpendicular to the
+    other surface; unless `tie` is false, it passes through its points and keeps its bounds also
     within triangles; `correlation` is that of the errors of its heights with those of the older one, in
     ensembles.
     `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
@@ -99,6 +100,7 @@ class Surface(Shaped):
     left_out: np.ndarray | Sequence | None = None
     series: str | None = None
     minimum_thickness: float | None = None
+    true_thickness: bool = False
     tie: bool = True
     correlation: float | None = None
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
@@ -126,6 +128,11 @@ class Surface(Shaped):
         """Whether its method makes nothing without points. Raises OptionRefused."""
         method, settings = self.method_options()
         return METHODS[method].needs_points(settings)
+
+    @builtins.property  # a field of this class is called property
+    def has_thickness(self) -> bool:
+        """Whether it keeps a thickness above another surface, or below it."""
+        return self.minimum_thickness is not None or self.method == "parallel"
 
     @builtins.property  # a field of this class is called property
     def ties(self) -> bool:
@@ -436,7 +443,10 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         _check_shape(rock, surface, refuse, bool(project.faults))
         _check_dips(surface, refuse)
     check_values(
-        surface, SURFACE, ("minimum_thickness", "tie", "correlation", "rule", "property", "block"), refuse
+        surface,
+        SURFACE,
+        ("minimum_thickness", "true_thickness", "tie", "correlation", "rule", "property", "block"),
+        refuse,
     )
     check_property(project.library, surface.property, refuse)
 
@@ -459,6 +469,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
         given = [] if continues else given
         of_points = ("minimum_thickness", "correlation", "left_out")
         given += [key for key in of_points if getattr(surface, key) is not None]
+        given += ["true_thickness"] if surface.true_thickness else []
         given += [] if surface.tie else ["tie"]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
@@ -467,6 +478,9 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
             _check_continuation(surface, refuse)
         return
     _check_method(surface, refuse, no_points)
+    if surface.true_thickness and not surface.has_thickness:
+        what = "'true_thickness' has no effect, as the surface keeps no thickness above another one"
+        raise refuse(what, "true_thickness", 'add minimum_thickness, or use method = "parallel"')
     length = rock.edge_length if rock.triangles is None else rock.triangles
     for key, value in (("region", rock.region), ("edge_length", length)):
         if value is None:

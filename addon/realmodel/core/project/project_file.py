@@ -34,7 +34,9 @@ from .structure_entries import Body, Fault
 SomeTable = TypeVar("SomeTable", bound=FieldTable)
 
 FORMAT = 1
-_OF_SURFACE = ("series", "rule", "property", "block", "minimum_thickness", "tie", "correlation")
+_OF_SURFACE = (
+    *("series", "rule", "property", "block", "minimum_thickness", "true_thickness", "tie", "correlation"),
+)
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 
 

@@ -202,6 +202,7 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
         values["left_out"] = np.asarray(given.left_out, np.float64).tolist()
     values |= {
         "minimum_thickness": given.minimum_thickness,
+        "true_thickness": given.true_thickness or None,
         "tie": None if given.tie else False,
         "correlation": given.correlation,
         "rule": given.rule if given.rule != DEFAULT_RULE else None,

@@ -16,7 +16,7 @@ from ..settings.series import AUTO, FIELD, SHEET_METHODS
 from .entry import Entry, Refuse, check_file, check_values, named_once, refused_by
 
 # What a level set of a field cannot have, as it is not interpolated on the planar mesh.
-_OF_SHEETS = ("mesh", "vertices", "dips", "method", "minimum_thickness", "correlation")
+_OF_SHEETS = ("mesh", "vertices", "dips", "method", "minimum_thickness", "true_thickness", "correlation")
 
 
 @dataclass
@@ -118,7 +118,7 @@ def check_level_set(rock, surface, refuse: Refuse) -> None:
     """Refuses what makes no sense for a surface of a field. Raises InputRefused."""
     for key in (*_OF_SHEETS, *surface.options):
         value = surface.options[key] if key in surface.options else getattr(surface, key)
-        if value is not None:
+        if value is not None and value is not False:
             what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
             advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
             raise refuse(what, key, advice)

@@ -231,6 +231,14 @@ SURFACE = {
         more="For interpolated surfaces; points that contradict it are listed",
         switch=("Minimum Thickness", "Keep the surface at least this far above the next older one"),
     ),
+    "true_thickness": Setting(
+        False,
+        kind="truth",
+        label="True Thickness",
+        tip="Measure the minimum thickness, and the thickness of a parallel surface, perpendicular to the "
+        "other surface, not vertically",
+        more="Default `false`; see [true thickness](methods.md#true-thickness)",
+    ),
     "tie": Setting(
         True,
         kind="truth",

@@ -214,6 +214,8 @@ def is_local(surface: Surface) -> bool:
         return False
     if surface.series is not None:
         return False  # the other sheets count, too
+    if surface.true_thickness:
+        return False  # the other surface counts around each node
     method, settings = surface.method_options()
     if METHODS[method].is_constrained and (surface.known_dips() is not None or surface.has_bounds):
         return False  # how dips and bounds count depends on all of them

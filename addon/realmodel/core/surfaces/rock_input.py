@@ -107,6 +107,7 @@ class RockInput:
                     method=None,
                     options={},
                     minimum_thickness=None,
+                    true_thickness=False,
                     correlation=None,
                     vertices=vertices,
                     triangles=triangles,

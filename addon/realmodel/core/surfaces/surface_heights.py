@@ -19,6 +19,7 @@ from ..heights.on_mesh import within_bounds
 from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..heights.ties import corrected, tie_data
+from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
 from .observed.sheet_series import bounds_beside, companions_of
@@ -102,7 +103,8 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             companions = companions_of(rock, number)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
             task = replace(task, dips=surface.known_dips(), companions=companions)
-            task = replace(task, bounds=bounds_beside(surface, companions))
+            bounds = bounds_beside(surface, companions)
+            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness)
             result = _tied(task, give(method, task), surface)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
@@ -206,13 +208,19 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
-    thickness = rock.surfaces[number].minimum_thickness
+    surface = rock.surfaces[number]
+    thickness = surface.minimum_thickness
     assert thickness is not None
     (vertices, triangles), older = shape, entry.surface(number - 1)
     if np.array_equal(older.vertices[:, :2], vertices[:, :2]):
-        least = older.vertices[:, 2] + thickness
+        below = older.vertices[:, 2]
     else:
-        least = heights_at(work, older, vertices[:, :2]) + thickness
+        below = heights_at(work, older, vertices[:, :2])
+    if surface.true_thickness:
+        plan = np.ascontiguousarray(vertices[:, :2])
+        least = Base(work, older, thickness).heights(plan, below, np.full(len(plan), thickness))
+    else:
+        least = below + thickness
     raised, lift = raise_to(vertices[:, 2], least)
     if raised is None:
         return shape, []
@@ -235,8 +243,9 @@ def raised_above(
 ) -> BuildWarning:
     """The warning about a surface that was raised at some of its nodes to its minimum thickness above the
     older one. count: of these nodes; by, place: the largest rise, and where it is."""
+    measured = ", perpendicular to it" if rock.surfaces[number].true_thickness else ""
     text = (
         f"raised at {count} of {nodes} nodes to stay {thickness:g} above "
-        f"'{rock.surfaces[number - 1].name}', by up to {by:.4g} at {place_text(place)}"
+        f"'{rock.surfaces[number - 1].name}'{measured}, by up to {by:.4g} at {place_text(place)}"
     )
     return BuildWarning(text, "minimum_thickness", rock.name, rock.surfaces[number].name)
