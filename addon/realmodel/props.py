@@ -316,6 +316,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
     is_outdated: BoolProperty(options={"HIDDEN"})  # something was changed since the blocks were built
+    is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/live.py
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
     ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)

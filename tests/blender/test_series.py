@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Projects with series in Blender: built as by the core, kept in the .blend, and saved again."""
 
+import time
+
 import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import series_settings
-from realmodel.core import InputRefused, build, load_project
+from realmodel.bl import built_models, live, series_settings
+from realmodel.bl.field import data, edits, handle
+from realmodel.core import InputRefused, SpaceDips, build, load_project
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -44,6 +47,40 @@ class Series(PanelCase):
         np.testing.assert_allclose(
             [block.volume for block in again.blocks], list(expected.values()), rtol=1e-9
         )
+
+    def test_sheets_keep_the_dips_of_their_series(self):
+        random = np.random.default_rng(2)
+        for name, height in (("low", 0.0), ("high", 10.0)):
+            rows = [f"{x},{y},{height + 0.1 * x}" for x, y in random.uniform(0, 100, (9, 2))]
+            (self.folder / f"{name}.csv").write_text("\n".join(["x,y,z", *rows]))
+        (self.folder / "dips.csv").write_text(
+            "x,y,dip,dip_direction,surface,block\n20,30,20,90,,\n70,60,9,270,high,\n40,80,7,270,,high\n"
+        )
+        project = self.folder / "sheets.toml"
+        project.write_text(
+            'format = 1\nname = "p"\n[[rock]]\nname = "r"\n'
+            "region = [[0, 0], [100, 0], [100, 100], [0, 100]]\n"
+            "edge_length = 20\nbase_elevation = -50\n"
+            '[[rock.series]]\nname = "J"\nkind = "sheets"\ndips = "dips.csv"\n'
+            '[[rock.surface]]\nname = "low"\npoints = "low.csv"\nseries = "J"\n'
+            '[[rock.surface]]\nname = "high"\npoints = "high.csv"\nseries = "J"\n'
+        )
+        expected = [block.volume for block in build(load_project(project)).blocks]
+        ops.open_project(filepath=str(project))
+        rock = self.model.rocks[0]
+        self.assertIn("3 dips", " ".join(draw_tab(bpy.context).labels))
+        rock.surfaces[1].name = "top"
+        dips = series_settings.dips_of(rock.series[0])
+        self.assertEqual([names.tolist() for names in dips.named], [["", "top", ""], ["", "", "top"]])
+        self.save_and_open()
+        ops.build()
+        self.assertEqual(list(self.volumes().values()), expected)
+        saved = self.folder / "saved.toml"
+        ops.save_project(filepath=str(saved))
+        self.assertEqual([block.volume for block in build(load_project(saved)).blocks], expected)
+        row = self.model.rocks[0].series[0]
+        series_settings.add_dips(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
+        self.assertEqual(series_settings.dips_of(row).gradients[-1].tolist(), [-0.5, 0.0])
 
     def test_a_fold_is_made_from_scratch(self):
         ops.new()
@@ -147,6 +184,25 @@ class Series(PanelCase):
         np.testing.assert_allclose(normal, (np.sqrt(0.5), 0.0, np.sqrt(0.5)), atol=1e-12)
         self.assertEqual(rock.surfaces[1].dips, "")
 
+    def test_sheets_take_dips_of_their_surfaces_and_of_none(self):
+        ops.new()
+        for name in ("A", "B"):
+            ops.surface_add(name=name, empty=True)
+        rock = self.model.rocks[0]
+        ops.series_add(kind="sheets")
+        row = rock.series[0]
+        row.oldest = "A"
+        table = self.folder / "dips.csv"
+        table.write_text("x,y,dip,dip_direction,surface\n1,2,10,90,A\n3,4,20,90,\n")
+        ops.boreholes_read(filepath=str(table), series="series")
+        ops.dip_add(location=(5.0, 6.0, 7.0), dip=30.0, dip_direction=90.0)
+        dips = series_settings.dips_of(row)
+        self.assertEqual(dips.named[0].tolist(), ["A", "", ""])
+        np.testing.assert_allclose(dips.gradients[:, 0], -np.tan(np.radians([10, 20, 30])))
+        self.assertEqual((rock.dips, rock.surfaces[0].dips), ("", ""))
+        self.refused(ops.dip_add, "one height", overturned=True)
+        self.assertEqual(len(data.groups(self.scene, (data.SERIES_DIP,))[0].places), 3)
+
     def test_an_edited_level_set_is_refused(self):
         ops.open_project(filepath=str(PROJECT))
         self.model.rocks[0].series[0].resolution = 100.0
@@ -165,3 +221,115 @@ class Series(PanelCase):
             series_settings.dips_of(row)
         self.refused(ops.build, "series 'folded beds': what the .blend keeps of it cannot be read")
         self.assertIn("cannot be read", " ".join(draw_tab(bpy.context).labels))
+
+
+class FieldData(PanelCase):
+    """The contacts and dips of a series, datum by datum."""
+
+    def setUp(self):
+        super().setUp()
+        ops.open_project(filepath=str(PROJECT))
+        self.rock = self.model.rocks[0]
+
+    def group(self):
+        (found,) = data.groups(self.scene, (data.SERIES_DIP,))
+        return found
+
+    def test_dips_are_discs_on_both_limbs(self):
+        self.model.view.show_dips = True
+        (item,) = [item for item in self.scene.objects if item.get("realmodel_view") == "dips"]
+        self.assertEqual(len(item.data.polygons), 50 * 5)
+        group = self.group()
+        normals = np.array([face.normal for face in item.data.polygons])[::5]  # toward younger rock
+        given = group.normals / np.linalg.norm(group.normals, axis=1)[:, None]
+        np.testing.assert_allclose(normals, given, atol=1e-3)
+        self.assertTrue((normals[:, 2] < 0).any() and (normals[:, 2] > 0).any())
+
+    def test_one_is_picked_switched_off_and_moved(self):
+        datum = self.group().datum(1)
+        self.scene.cursor.location = datum.place
+        ops.datum_pick()
+        self.assertIn("dip of the series 293/18 overturned of folded beds", handle.text_of(self.scene, datum))
+        ops.datum_switch()
+        self.assertEqual(int((~series_settings.dips_of(self.rock.series[0]).in_use).sum()), 1)
+        moved = edits.move(self.scene, handle.active(self.scene), (800.0, 150.0, -290.0))
+        dips = series_settings.dips_of(self.rock.series[0])
+        np.testing.assert_array_equal(dips.positions[1], (800.0, 150.0, -290.0))
+        self.assertFalse(dips.in_use[1] or moved.used)
+        saved = self.folder / "saved.toml"
+        ops.save_project(filepath=str(saved))
+        (series,) = with_arrays(load_project(saved)).rocks[0].series
+        np.testing.assert_array_equal(series.dips.in_use, dips.in_use)
+        ops.data_switch_on()
+        self.assertTrue(series_settings.dips_of(self.rock.series[0]).in_use.all())
+
+    def test_misfits_lead_to_dips(self):
+        self.rock.series[0].resolution = 100.0
+        self.rock.edge_length = 100.0
+        ops.build()
+        self.model.view.show_misfits = True
+        rows = [row for row in self.model.misfits if row.kind == "dip"]
+        self.assertGreater(len(rows), 0)
+        self.assertEqual({row.name for row in rows}, {"folded beds"})
+        number = next(n for n, row in enumerate(self.model.misfits) if row.kind == "dip")
+        self.model.active_misfit = number
+        self.assertEqual(handle.active(self.scene).kind, data.SERIES_DIP)
+
+
+class LiveField(PanelCase):
+    """While something changes a coarse field follows, then the whole one."""
+
+    def setUp(self):
+        super().setUp()
+        ops.open_project(filepath=str(PROJECT))
+        self.model.rocks[0].series[0].resolution = 50.0
+        ops.build()
+        self.model.live = True
+        self.live_is_done()
+
+    def cells(self):
+        counts = built_models.current(self.scene).field("folded beds").lattice.counts
+        return int(np.prod(np.array(counts) - 1))
+
+    def step(self):
+        """Until the next build is done."""
+        stamp = self.model.built_stamp
+        while self.model.built_stamp == stamp:
+            self.assertIsNotNone(wait := live._work.look())
+            time.sleep(wait)
+
+    def move_a_contact(self, by):
+        surface = self.model.rocks[0].surfaces["middle bed"].name
+        (group,) = [g for g in data.groups(self.scene, (data.POINT,)) if g.names[0] == surface]
+        edits.move(self.scene, group.datum(0), group.places[0] + (0.0, 0.0, by))
+        live.touch(self.scene)
+
+    def test_coarse_first_then_the_whole(self):
+        whole, before = self.cells(), self.volumes()
+        self.assertFalse(self.model.is_coarse)
+        self.move_a_contact(20.0)
+        self.step()
+        self.assertTrue(self.model.is_coarse)
+        self.assertLess(self.cells(), 0.5 * whole)
+        self.refused(ops.report, "coarse field", filepath=str(self.folder / "r.json"), format="JSON")
+        self.move_a_contact(20.0)  # before the whole one: a coarse one comes again
+        self.step()
+        self.assertTrue(self.model.is_coarse)
+        self.live_is_done()
+        self.assertFalse(self.model.is_coarse)
+        self.assertEqual(self.cells(), whole)
+        self.assertNotEqual(self.volumes(), before)
+        ops.report(filepath=str(self.folder / "r.json"), format="JSON")
+        self.move_a_contact(-40.0)
+        self.live_is_done()
+        for name, volume in self.volumes().items():
+            self.assertAlmostEqual(volume, before[name], delta=1e-6 * before[name])
+
+    def test_a_build_ends_it(self):
+        self.move_a_contact(20.0)
+        self.step()
+        self.model.live = False
+        self.live_is_done()
+        self.assertTrue(self.model.is_coarse)
+        ops.build()
+        self.assertFalse(self.model.is_coarse)

@@ -54,6 +54,27 @@ def test_sections_fences_and_halves_are_written(layers, out):  # noqa: F811
     assert {row["block_name"] for row in rows} == set(arrays(out / "below.npz")["block_names"])
 
 
+def test_a_planned_hole_is_written(layers, out):  # noqa: F811
+    """Toward the east at 45 degrees from above the layers, and straight up from beneath them."""
+    project = layers([0, 1, 3])
+    done = run(
+        project,
+        *("--borehole", f"0.1,0.5,3.2,90,45,1={out / 'inclined.csv'}"),
+        *("--borehole", f"0.5,0.5,-1,0,-90,2.5={out / 'up.csv'}"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-2] == "borehole inclined.csv: 1 intervals, 0.72 of rock"
+    with (out / "inclined.csv").open() as file:
+        (row,) = list(csv.DictReader(file))
+    assert row["block"] == "1"
+    assert float(row["from"]) == pytest.approx(0.2 * np.sqrt(2)) and float(row["to"]) == pytest.approx(1)
+    assert float(row["vertical_from"]) == pytest.approx(0.2)
+    with (out / "up.csv").open() as file:
+        rows = [(row["block"], float(row["from"]), float(row["to"])) for row in csv.DictReader(file)]
+    assert [row[0] for row in rows] == ["0", "1"]
+    assert np.array(rows)[:, 1:].astype(float) == pytest.approx(np.array([[1.0, 2.0], [2.0, 2.5]]))
+
+
 def test_halves_are_cleaned_and_take_the_size_of_cells(layers, out):  # noqa: F811
     project, cut = layers([0, 1, 3]), "0,0,1.02,0.002,0,1"
     done = run(project, "--cut", f"{cut}={out / 'exact.vtu'},{out / 'a.npz'}")
@@ -137,7 +158,9 @@ def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F8
         (("--section", "0,0,0,1,0,nan=s.vtu"), "a plane is six numbers"),
         (("--section", "0,0,0,1,0,0=s.step"), "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz"),
         (("--fence", "0,0,1=f.vtu"), "at least two points"),
-        (("--borehole", "0,0,1=b.csv"), "two numbers, X,Y"),
+        (("--borehole", "0,0,1=b.csv"), "two numbers, X,Y, and a planned hole six"),
+        (("--borehole", "0,0,1,0,91,5=b.csv"), "the dip must lie between -90 and 90 degrees"),
+        (("--borehole", "0,0,1,0,45,0=b.csv"), "the length must be above 0"),
         (("--borehole", "0,0=b.vtu"), "boreholes are not written as '.vtu'"),
         (("--fence", "0,0,0,0,1,1=f.vtu"), "two consecutive points are equal"),
         (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),

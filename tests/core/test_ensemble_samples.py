@@ -13,10 +13,12 @@ from realmodel.core.ensembles import (
     draw_probabilities,
     ensemble,
     grid_samples,
+    hole_samples,
     sample_writer,
     section_samples,
 )
 from realmodel.core.ensembles.samples import MOST_PLACES
+from realmodel.core.results.planned_holes import HoleAxis
 from realmodel.core.results.section_drawing import flat_of, flattened, is_vertical
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 80.0], [0.0, 80.0]])
@@ -76,6 +78,24 @@ def test_cells_have_the_size_that_is_given(model):
     assert grid.places[1].tolist() == [15, 10, grid.origin[2] + 1]
     hole = borehole_samples(model, 30, 40, 0.5)
     assert (np.diff(hole.places[:, 2]) < 0).all() and hole.height == pytest.approx(0.5, rel=0.05)
+
+
+def test_cells_along_a_planned_hole(model):
+    axis = HoleAxis((30, 40, 30), 90, 60, 20)
+    samples = hole_samples(model, axis, 2)
+    assert samples.depths.tolist() == [2 * k + 1 for k in range(10)]
+    assert np.array_equal(samples.places, axis.places(samples.depths))
+    assert len(hole_samples(model, axis).places) == 100
+    found = ensemble(model.project, 4, places=samples.places).at()
+    file = io.BytesIO()
+    sample_writer("h.csv", "borehole")(samples, found, file)
+    rows = list(csv.DictReader(file.getvalue().decode().splitlines()))
+    kept = found.probability.sum(axis=1) > 0
+    assert [float(row["depth"]) for row in rows] == samples.depths[kept].tolist() and kept.any()
+    file = io.BytesIO()
+    sample_writer("h.npz", "borehole")(samples, found, file)
+    with np.load(io.BytesIO(file.getvalue())) as arrays:
+        assert np.array_equal(arrays["depth"], samples.depths)
 
 
 def test_what_is_refused(model):

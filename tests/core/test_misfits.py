@@ -2,7 +2,7 @@
 """The list of data that a model does not honor."""
 
 import numpy as np
-from realmodel.core import Dips, Observations, Project, Rock, Surface, build
+from realmodel.core import Dips, Observations, Project, Rock, Series, SpaceDips, Surface, build
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
 
@@ -83,3 +83,37 @@ def test_switched_off_data_are_not_listed_and_what_is_left_out_is():
     assert [(each.kind, each.name, each.by) for each in found] == [("left_out", "gneiss", None)]
     assert "no block, surface or body" in found[0].has
     assert found[0].place == (2.0, 2.0, 1.0)
+
+
+def field_model(last_is_used):
+    """Two beds that dip to the west, with dips along them and one across them, which may be switched off."""
+    places = np.array([(x, y, 4.0 + x / 2) for x in (1.0, 5, 9) for y in (1.0, 5, 9)])
+    normals = np.tile([-0.5, 0.0, 1.0], (len(places), 1))
+    dips = SpaceDips(
+        np.vstack([places + np.array([0.0, 0.0, 0.5]), (5.0, 5.0, 6.0)]),
+        np.vstack([normals, (0.0, 2.0, 1.0)]),
+        np.append(np.ones(len(places), bool), last_is_used),
+    )
+    lower = Surface("lower", points=places, series="beds")
+    upper = Surface("upper", points=places + np.array([0.0, 0.0, 2.0]), series="beds")
+    ground = Surface("ground", method="constant", options={"value": 10.0})
+    rock = Rock("rock", [lower, upper, ground], SQUARE, edge_length=2.5, base_elevation=0.0)
+    rock.series = [Series("beds", dips=dips, resolution=1.0)]
+    return build(Project("beds", [rock]))
+
+
+def test_dips_of_a_field():
+    assert field_model(False).misfits() == []
+    (found,) = field_model(True).misfits(dip_tolerance=20.0)
+    assert (found.kind, found.name, found.row, found.place) == ("dip", "beds", 9, (5.0, 5.0, 6.0))
+    assert found.says == "000/63" and found.by > 20.0
+
+
+def test_contacts_off_their_level_set():
+    """They were moved after the build."""
+    made = field_model(False)
+    made.rock_inputs[0].rock.surfaces[0].points[0] += (0.0, 0.0, 0.6)
+    (found,) = made.misfits()
+    assert (found.kind, found.name, found.row, found.says) == ("point", "lower", 0, "on it")
+    assert found.has.endswith("on its younger side")
+    assert np.isclose(found.by, 0.6 / np.sqrt(1.25), rtol=0.05)

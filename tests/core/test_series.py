@@ -75,7 +75,7 @@ def test_a_series_is_read_with_its_surfaces(tmp_path):
         ({"between": 'series = "A"\nmesh = "ground.off"'}, 26, "'mesh' has no effect"),
         ({"between": 'series = "B"\npoints = "a1.csv"'}, 25, "has no series 'B'"),
         ({"series": 'kind = "sheet"'}, 15, "kind"),
-        ({"series": 'kind = "sheets"'}, 13, "sheets have no dips of their series"),
+        ({"series": 'kind = "sheets"'}, 14, "'resolution' has no effect"),
         ({"series": "bedding = 3"}, 15, "unknown key 'bedding'"),
         ({"rock": "[[rock.series]]\nname = 'B'"}, 10, "no surface belongs to it"),
     ],

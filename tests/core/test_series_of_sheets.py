@@ -9,8 +9,10 @@ from realmodel.core import (
     Dips,
     Fault,
     InputRefused,
+    Model,
     Project,
     Rock,
+    SpaceDips,
     Surface,
     build,
     load_project,
@@ -196,6 +198,75 @@ def test_dips_of_one_sheet_count_for_all():
     assert error(together, 2) < 0.6 * error(without, 2)
 
 
+def bedding(count, seed=4):
+    """Places and normals measured in the beds, anywhere in the series."""
+    plan = np.random.default_rng(seed).uniform(0, 1000, (count, 2))
+    slope = np.column_stack([0.8 * np.cos(plan[:, 0] / 75), np.full(count, 0.05)])
+    return plan, slope
+
+
+def test_dips_of_the_series_count_for_all_its_sheets():
+    surfaces = surfaces_of([8, 8, 8])
+    plan, slope = bedding(40)
+    errors = []
+    for dips in (
+        None,
+        Dips(plan, slope),
+        SpaceDips(np.column_stack([plan, fold(plan) + 30]), np.column_stack([-2 * slope, np.full(40, 2.0)])),
+    ):
+        model = build(Project("p", [rock_of(surfaces, series=[Series("J", "sheets", dips)])]))
+        errors.append([error(model, number) for number in range(3)])
+        given = [surface.rock_dips for surface in model.rock_inputs[0].rock.surfaces]
+        assert [0 if each is None else len(each) for each in given] == [0 if dips is None else 40] * 3
+    assert np.allclose(errors[1], errors[2], rtol=1e-9)
+    assert max(errors[1]) < 0.6 * min(errors[0])
+
+
+def test_dips_of_the_series_that_name_a_block_or_a_surface():
+    surfaces = [*surfaces_of([8, 8, 8]), Surface("cover", method="constant", options={"value": 400.0})]
+    plan, slope = bedding(7)
+    names = np.array([["", ""], ["S1", ""], ["", "S1"], ["", "S0"], ["", "cover"], ["cover", ""], ["S1", ""]])
+    used = np.arange(7) < 6
+    dips = Dips(plan, slope, None, names[:, 0], names[:, 1], used)
+    model = build(Project("p", [rock_of(surfaces, series=[Series("J", "sheets", dips)])]))
+    given = [surface.rock_dips for surface in model.rock_inputs[0].rock.surfaces]
+    rows = [[0, 2, 3], [0, 1, 2], [0, 4]]  # those over and under the block of S1, the base under that of S0
+    for each, expected in zip(given[:3], rows, strict=True):
+        assert np.array_equal(each.positions, plan[expected])
+    assert given[3] is None
+    (left_out,) = [each for each in model.rock_inputs[0].left_out if each.kind == "dip_series"]
+    assert "'cover'" in left_out.text
+
+
+def test_dips_of_sheets_are_not_overturned():
+    dips = SpaceDips(np.zeros((2, 3)), np.array([[0, 1, 1.0], [1, 0, 0.0]]))
+    rock = rock_of(surfaces_of([8, 8]), series=[Series("J", "sheets", dips)])
+    with pytest.raises(InputRefused, match=r"series 'J'.*dip 1 is vertical or overturned"):
+        build(Project("p", [rock]))
+
+
+def test_a_project_file_with_dips_of_sheets(tmp_path):
+    for k, surface in enumerate(surfaces_of([20, 3])):
+        rows = "\n".join(",".join(map(repr, row)) for row in surface.points.tolist())
+        (tmp_path / f"p{k}.csv").write_text("x,y,z\n" + rows + "\n")
+    (tmp_path / "dips.csv").write_text("x,y,z,dip,dip_direction,unit\n200,300,,20,90,\n600,700,5,10,270,S1\n")
+    file = tmp_path / "p.toml"
+    file.write_text(PROJECT.format(more='dips = "dips.csv"', first=""))
+    project = load_project(file)
+    assert tmp_path / "dips.csv" in project.input_files()
+    model = build(project)
+    assert [len(surface.rock_dips) for surface in model.rock_inputs[0].rock.surfaces] == [2, 2]
+    save_project(model.project, tmp_path / "again.toml")
+    model.save(tmp_path / "m.npz")
+    for again in (load_project(tmp_path / "again.toml"), Model.load(tmp_path / "m.npz").project):
+        rebuilt = build(again)
+        assert all(np.array_equal(rebuilt.surface(k)[0], model.surface(k)[0]) for k in (0, 1))
+    (tmp_path / "dips.csv").write_text("x,y,z,dip,dip_direction\n200,300,,20,90\n600,700,5,120,270\n")
+    with pytest.raises(InputRefused, match="the dip 120 is overturned") as refused:
+        build(project)
+    assert refused.value.line == 3
+
+
 def test_thicknesses_are_never_negative_and_contacts_are_met():
     surfaces = surfaces_of([30, 6, 30])
     for k, surface in enumerate(surfaces):
@@ -311,7 +382,7 @@ def test_a_project_file_with_sheets(tmp_path):
     again = build(load_project(tmp_path / "again.toml"))
     assert np.array_equal(again.surface(1)[0], model.surface(1)[0])
     for more, first, said in (
-        ('dips = "p0.csv"', "", "sheets have no dips of their series"),
+        ('dips = "none.csv"', "", "file not found"),
         ("resolution = 5.0", "", "'resolution' has no effect"),
         ("", 'method = "spline"', "'S0' has method 'spline'"),
     ):

@@ -114,3 +114,76 @@ def test_wrong_points_in_a_project_file_are_refused(tmp_path, text):
     (tmp_path / "p.toml").write_text("\n".join([*lines, f"left_out = {text}"]))
     with pytest.raises(InputRefused, match="'left_out' must be a list of points"):
         load_project(tmp_path / "p.toml")
+
+
+def hole_project(tmp_path, boreholes, **tables):
+    for name, text in tables.items():
+        (tmp_path / f"{name}.csv").write_text(text)
+    file = tmp_path / "p.toml"
+    file.write_text(
+        f"""format = 1
+name = "off"
+[[rock]]
+name = "rock"
+region = [[0, 0], [10, 0], [10, 10], [0, 10]]
+edge_length = 2
+base_elevation = 0
+boreholes = {boreholes}
+[[rock.surface]]
+name = "base"
+method = "dsi"
+[[rock.surface]]
+name = "top"
+method = "constant"
+value = 8
+"""
+    )
+    return file
+
+
+def test_picks_that_are_switched_off(tmp_path):
+    """They stay with the project as points that are left out."""
+    rows = "".join(f"B{k},base,{x},{y},{z},{int(z == 2)}\n" for k, (x, y, z) in enumerate(LOW))
+    picks = "hole,surface,x,y,elevation,use\n" + rows
+    file = hole_project(tmp_path, '{ picks = "picks.csv" }', picks=picks)
+    model = build(load_project(file))
+    assert np.array_equal(heights(model), heights(build(project(left_out=LOW[4:]))))
+    surface = model.project.rocks[0].surfaces[0]
+    assert surface.point_array().tolist() == LOW[:4].tolist()
+    assert np.array_equal(surface.left_out, LOW[4:])
+    assert "B4" not in model.project.rocks[0].hole_picks
+    save_project(model.project, tmp_path / "again.toml")
+    again = load_project(tmp_path / "again.toml")
+    assert np.array_equal(heights(build(again)), heights(model))
+    assert np.array_equal(again.rocks[0].surfaces[0].left_out, LOW[4:])
+
+
+def test_intervals_that_are_switched_off(tmp_path):
+    """Of two logs of one hole the second is used; a third part is kept where there is no other."""
+    collars = "hole,x,y,z\nA,2,2,8\nB,8,8,8\nC,5,5,8\n"
+    log = (
+        "hole,from,to,block,use\nA,0,6,top,\nA,6,8,base,\nB,0,6,top,yes\nB,6,8,base,1\n"
+        "C,0,2,top,0\nC,2,7,base,0\nC,7,8,top,no\nC,0,4,top,1\n"
+    )
+    file = hole_project(
+        tmp_path, '{ collars = "collars.csv", intervals = "log.csv" }', collars=collars, log=log
+    )
+    model = build(load_project(file))
+    observed = model.project.rocks[0].observed
+    own = observed.some(observed.holes == "C")
+    assert own.depths.tolist() == [0, 4, 4, 7, 7, 8]
+    assert own.blocks.tolist() == ["top", "top", "base", "base", "top", "top"]
+    assert own.in_use.tolist() == [True, True, False, False, False, False]
+    kinds = [each.kind for _, each in model.observed().left_out]
+    assert kinds == ["switched_off"] * 2
+    without = log.splitlines(keepends=True)
+    (tmp_path / "log.csv").write_text("".join(without[:5] + without[-1:]))
+    assert np.array_equal(heights(build(load_project(file))), heights(model))
+    save_project(model.project, tmp_path / "again.toml")
+    again = build(load_project(tmp_path / "again.toml"))
+    assert np.array_equal(heights(again), heights(model))
+    assert [each.kind for _, each in again.observed().left_out] == kinds
+    (tmp_path / "log.csv").write_text(
+        log.replace(",1\n", ",\n").replace(",0\n", ",\n").replace(",no\n", ",\n")
+    )
+    assert "overlap" in {each.kind for _, each in build(load_project(file)).observed().left_out}

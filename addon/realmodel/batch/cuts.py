@@ -13,11 +13,13 @@ import numpy as np
 from ..core.base.errors import InputRefused, UsageError
 from ..core.base.text import read_text
 from ..core.exporters import ExportOptions, format_for, write_model
-from ..core.exporters.boreholes import borehole_writer
+from ..core.exporters.boreholes import borehole_writer, planned_hole_writer
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.exporters.sections import section_writer
 from ..core.model.section import Section
 from ..core.readers import MESH_ENDINGS, read_mesh
+from ..core.results.model_boreholes import Interval
+from ..core.results.planned_holes import HoleAxis, HoleInterval
 from ..core.settings.point_file import MeshFile
 from .sources import ENDINGS, Source
 
@@ -66,10 +68,11 @@ class SectionRequest:
 
 @dataclass
 class BoreholeRequest:
-    """A vertical borehole at a position in plan, and its file."""
+    """A borehole and its file. what: where it is planned, or the position in plan of one that goes straight
+    down through the whole model."""
 
     file: Path
-    what: tuple[float, float]
+    what: HoleAxis | tuple[float, float]
     kind = "borehole"
 
     @property
@@ -86,9 +89,16 @@ class BoreholeRequest:
     def run(self, model, outputs, _threads: int, progress) -> str:
         """Stages the file. Returns the summary of the borehole for the terminal."""
         progress(1.0, f"writing {self.file.name}")
-        found = model.borehole(*self.what)
+        found: Sequence[HoleInterval | Interval]
         with outputs.file(self.file) as file:
-            borehole_writer(self.file)(model, found, file)
+            if isinstance(self.what, HoleAxis):
+                axis = self.what
+                hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
+                planned_hole_writer(self.file)(hole, file)
+                found = hole.intervals
+            else:
+                found = model.borehole(*self.what)
+                borehole_writer(self.file)(model, found, file)
         length = sum(interval.length for interval in found)
         return f"borehole {self.file.name}: {len(found)} intervals, {length:.2f} of rock"
 
@@ -187,13 +197,21 @@ def fence_request(text: str, writer: Writer = section_writer) -> SectionRequest:
 
 
 def borehole_request(text: str, writer: Writer = borehole_writer) -> BoreholeRequest:
-    """X,Y=FILE, as section_request. Raises UsageError."""
-    what, file = _divided("--borehole", text, "X,Y=FILE")
+    """X,Y=FILE or X,Y,Z,AZIMUTH,DIP,LENGTH=FILE, as section_request. Raises UsageError."""
+    what, file = _divided("--borehole", text, "X,Y=FILE or X,Y,Z,AZIMUTH,DIP,LENGTH=FILE")
     writer(file)
     numbers = _numbers(what)
-    if numbers is None or len(numbers) != 2:
-        raise UsageError(f"--borehole {text}: a position in plan is two numbers, X,Y")
-    return BoreholeRequest(Path(file), tuple(numbers.tolist()))
+    if numbers is None or len(numbers) not in (2, 6):
+        raise UsageError(
+            f"--borehole {text}: a position in plan is two numbers, X,Y, and a planned hole six, "
+            "X,Y,Z,AZIMUTH,DIP,LENGTH"
+        )
+    if len(numbers) == 2:
+        return BoreholeRequest(Path(file), tuple(numbers.tolist()))
+    try:
+        return BoreholeRequest(Path(file), HoleAxis(tuple(numbers[:3].tolist()), *numbers[3:].tolist()))
+    except UsageError as error:
+        raise UsageError(f"--borehole {text}: {error}") from error
 
 
 def cut_request(text: str) -> CutRequest:

@@ -173,7 +173,8 @@ OPTIONS = (
     Option(
         "borehole",
         "X,Y=F",
-        "write what a vertical borehole at a position in plan meets to F (.csv)",
+        "write what a vertical borehole at a position in plan meets to F (.csv); "
+        "X,Y,Z,AZIMUTH,DIP,LENGTH=F: what a planned hole meets, by depth along it",
         default=[],
     ),
     Option(

@@ -15,10 +15,12 @@ from ..core.ensembles import (
     Ensemble,
     borehole_samples,
     grid_samples,
+    hole_samples,
     sample_writer,
     section_samples,
 )
 from ..core.ensembles.samples import Samples
+from ..core.results.planned_holes import HoleAxis
 from .cuts import BoreholeRequest, SectionRequest, borehole_request, fence_request, section_request
 
 
@@ -53,6 +55,8 @@ class ProbabilityRequests:
     def _sampled(self, model, request) -> Samples:
         if isinstance(request, BoreholeRequest):
             height = None if self.size is None else self.size[-1]
+            if isinstance(request.what, HoleAxis):
+                return hole_samples(model, request.what, height)
             return borehole_samples(model, *request.what, height)
         if isinstance(request, GridRequest):
             return grid_samples(model, self.size)

@@ -7,6 +7,7 @@ import bpy
 
 from .. import preferences
 from ..core import BuildFailed, InputRefused, RealModelError, build
+from ..core.project.coarse import coarsened
 from ..core.project.project import surface_item
 from . import built_scene, meshes, project_settings, settings
 from .thread_job import ThreadJob
@@ -20,11 +21,16 @@ class BuildJob(ThreadJob):
     raises what went wrong and leaves the scene as it was.
     """
 
-    def __init__(self, scene, depsgraph, cells=None, whole=True):
-        """Composes the project. Raises InputRefused."""
+    def __init__(self, scene, depsgraph, cells=None, whole=True, coarse=False):
+        """Composes the project. coarse: with coarse fields, where it has fields that are finer: `is_coarse`.
+        Raises InputRefused."""
         self.scene_name = scene.name
         self.cells = cells or scene.realmodel.cells.lower()
         self.composed = project_settings.compose(scene, depsgraph, whole)
+        coarser = coarsened(self.composed.project) if coarse else None
+        self.is_coarse = coarser is not None
+        if self.is_coarse:
+            self.composed.project = coarser
         settings.follow_youngest(scene)
         group = scene.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(scene)
@@ -85,6 +91,7 @@ class BuildJob(ThreadJob):
                 f"scene '{self.scene_name}' is gone; build again in the scene that has the model"
             )
         built_scene.put(scene, prepared, self.composed, in_place)
+        scene.realmodel.is_coarse = self.is_coarse
         return prepared.model
 
 

@@ -227,7 +227,7 @@ def put(scene, prepared, composed, in_place=False):
         before = group.built_stamp if in_place else None
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
-        group.is_outdated = False
+        group.is_outdated = group.is_coarse = False
     display.built(scene, prepared.bounds, prepared.stage)
     planned_holes.update_all(scene)
     looks.follow(scene)

@@ -27,9 +27,9 @@ class DebouncedJob:
         self._jobs = {}  # by the name of a scene: (job, when its last change was)
         self._timer = self.look  # Blender knows timers by the object
 
-    def touch(self, name):
-        """Reports that input of a scene's job was changed."""
-        self._changed_at[name] = time.perf_counter()
+    def touch(self, name, later=0.0):
+        """Reports that input of a scene's job was changed; the pause begins so many seconds later."""
+        self._changed_at[name] = time.perf_counter() + later
         if not bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.register(self._timer, first_interval=_LOOK_SECONDS)
 

@@ -54,8 +54,8 @@ class FieldTables:
 @dataclass
 class Found:
     """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
-    dips: of one surface, rock_dips: with their surfaces and blocks, series_dips: SpaceDips; None where there
-    are none. new: units
+    dips: of one surface, rock_dips: with their surfaces and blocks, series_dips: SpaceDips or, of
+    sheets, Dips; None where there are none. new: units
     that no surface, block or body is called, to be added. values: IntervalValues of tables of intervals and
     assays. maps: DrapedMap of each map. warnings: sentences."""
 
@@ -63,12 +63,18 @@ class Found:
     observations: Observations
     dips: Dips | None
     rock_dips: Dips | None
-    series_dips: SpaceDips | None
+    series_dips: SpaceDips | Dips | None
     left_out: list
     new: list
     values: list
     maps: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
+
+    def give_dips_to_sheets(self):
+        """All dips are those of a series of sheets, whose surfaces and blocks they may name."""
+        parts = [each for each in (self.dips, self.rock_dips) if each is not None]
+        self.series_dips = Dips.joined(parts) if parts else None
+        self.dips = self.rock_dips = None
 
 
 def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):

@@ -3,7 +3,9 @@
 
 A handler of Blender's dependency graph reports changed objects; the update callbacks of the settings report
 changed rows. A timer waits until nothing has changed for the length of the pause, builds in a thread, and
-updates the existing meshes. It adds no undo step: undoing an edit is one more edit, and starts a rebuild.
+updates the existing meshes. Of series whose surfaces are level sets of a field, it first builds a coarse one,
+which follows the hand, and once nothing changes any more the whole. It adds no undo step: undoing an edit is
+one more edit, and starts a rebuild.
 """
 
 import time
@@ -20,6 +22,8 @@ _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # the changes that Blender reports now are the add-on's own
 measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
+_REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whole one is built
+_to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
 
 
 def touch(scene):
@@ -34,6 +38,7 @@ def _look_at(scene):
     names.store(scene)
     settings.follow_youngest(scene)
     if scene.realmodel.live:
+        _to_refine.discard(scene.name)
         _work.touch(scene.name)
 
 
@@ -117,8 +122,12 @@ def _finish(name, job, changed_at):
     except Exception as error:
         _tell(bpy.data.scenes.get(name), error)
     else:
-        measured[name] = time.perf_counter() - changed_at
+        if name not in _refined:
+            measured[name] = time.perf_counter() - changed_at
         _tell(None, None)
+        if job.is_coarse:
+            _to_refine.add(name)
+            _work.touch(name, later=_REFINE_SECONDS)
 
 
 @contextmanager
@@ -137,17 +146,20 @@ def _our_own(scene):
 
 def _begin(name, _changed_at):
     scene = bpy.data.scenes.get(name)
+    refines = name in _to_refine
+    _to_refine.discard(name)
+    (_refined.add if refines else _refined.discard)(name)
     if scene is None or not scene.realmodel.live:
         return None
     try:
         with _our_own(scene):
             layer = viewports.updated_layer(scene)
             built_scene.check_modes(scene)
-            job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
+            job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False, coarse=not refines)
     except Exception as error:
         _tell(scene, error)
         return None
-    job.start(is_short=measured.get(name, 0.0) < _SHORT_SECONDS)
+    job.start(is_short=not refines and measured.get(name, 0.0) < _SHORT_SECONDS)
     return job
 
 

@@ -2,9 +2,10 @@
 """References by name from settings and picks to surfaces, series, faults and rock masses: renaming a row
 updates them."""
 
+from ..core import Dips
 from ..core.settings.methods import OPTIONS
 from ..core.settings.setting import property_name
-from . import borehole_picks, observed_blocks, settings, surface_dips
+from . import borehole_picks, observed_blocks, series_settings, settings, surface_dips
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -28,7 +29,10 @@ def update_references(row):
     if kind == "surface":
         borehole_picks.rename(settings.rock_of(row), old, row.name)
         observed_blocks.rename(settings.rock_of(row), old, row.name)
-        surface_dips.rename(settings.rock_of(row), old, row.name)
+        rock = settings.rock_of(row)
+        named = [series for series in rock.series if isinstance(series_settings.dips_of(series), Dips)]
+        for owner in (rock, *named):
+            surface_dips.rename(owner, old, row.name)
     if kind == "body":
         for rock in scene.realmodel.rocks:
             observed_blocks.rename(rock, old, row.name)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..core import InputRefused, Rock, Series, SpaceDips, Surface
+from ..core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
 from ..core.base.errors import naming
 from ..core.project.series import check_level_set, check_series
 from ..core.settings.schema import ROCK, SERIES
@@ -22,7 +22,7 @@ def fill(rock, series):
         resolution = None if each.resolution == AUTO else each.resolution
         for key, value in (("name", each.name), ("kind", each.kind), ("resolution", resolution)):
             method_settings.set_value(row, key, SERIES, value)
-        keep_dips(row, each.space_dips())
+        keep_dips(row, each.dips)
 
 
 def of_rock(rock):
@@ -37,7 +37,7 @@ def _series(row):
 
 
 def keep_dips(row, dips):
-    """Stores SpaceDips in the row of a series, or None."""
+    """Stores SpaceDips, or Dips of sheets, in the row of a series, or None."""
     row.dips = ""
     if dips is not None and len(dips):
         given = {key: each for key, each in vars(dips).items() if each is not None}
@@ -45,14 +45,23 @@ def keep_dips(row, dips):
 
 
 def dips_of(row):
-    """The stored SpaceDips of a series; None where there are none. Raises InputRefused for damaged text."""
-    return SpaceDips(**stored_arrays.unpack(row.dips)) if row.dips else None
+    """The stored SpaceDips of a series, or Dips of sheets; None where there are none. Raises InputRefused for
+    damaged text."""
+    if not row.dips:
+        return None
+    arrays = stored_arrays.unpack(row.dips)
+    return SpaceDips(**arrays) if "normals" in arrays else Dips(**arrays)
 
 
 def add_dips(row, dips):
-    """Adds SpaceDips to those that a series has."""
-    known = dips_of(row)
-    keep_dips(row, dips if known is None else SpaceDips.joined([known, dips]))
+    """Adds SpaceDips, or Dips of sheets, to the dips that a series has. Raises InputRefused where sheets
+    would get a vertical or an overturned one."""
+    parts = [each for each in (dips_of(row), dips) if each is not None]
+    if any(isinstance(each, Dips) for each in parts):
+        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+        keep_dips(row, Dips.joined(flat))
+    else:
+        keep_dips(row, SpaceDips.joined(parts))
 
 
 def active(rock):

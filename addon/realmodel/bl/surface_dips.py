@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..core import Dips
+from ..core import Dips, SpaceDips
 from . import stored_arrays
 
 
@@ -29,16 +29,19 @@ def of_row(row):
 
 
 def with_used(dips, number, used):
-    """Dips of which one is switched off, or on."""
-    in_use = np.ones(len(dips), bool) if dips.used is None else dips.used.copy()
+    """Dips or SpaceDips of which one is switched off, or on."""
+    in_use = dips.in_use.copy()
     in_use[number] = used
     return replace(dips, used=None if in_use.all() else in_use)
 
 
 def moved(dips, number, place):
-    """Dips of which one is at a place (x, y, z); a height that is not known stays so."""
-    positions, z = dips.positions.copy(), None if dips.z is None else dips.z.copy()
-    positions[number] = place[:2]
+    """Dips or SpaceDips of which one is at a place (x, y, z); a height that is not known stays so."""
+    positions = dips.positions.copy()
+    positions[number] = place[: positions.shape[1]]
+    if isinstance(dips, SpaceDips):
+        return replace(dips, positions=positions)
+    z = None if dips.z is None else dips.z.copy()
     if z is not None and not np.isnan(z[number]):
         z[number] = place[2]
     return replace(dips, positions=positions, z=z)

@@ -26,6 +26,7 @@ from ..core import InputRefused, RealModelError
 from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
 from ..core.readers.objects.object_file import is_object_file
 from ..core.settings.schema import READING
+from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
 from .imports import FilesImportHelper, arrived
@@ -108,9 +109,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     )
     series: StringProperty(
         name="Dips Of Series",
-        description="Series of the kind Field that the dips are of, at any angle and with polarity, whatever "
-        "their rows name; empty: that of the active surface, where no row names a surface or a block",
-        search=lambda self, context, _text: self.fields(context),
+        description="Series that the dips are of, of a field at any angle and with polarity, whatever their "
+        "rows name; empty: that of the active surface where it is a field, for rows without a name",
+        search=lambda self, context, _text: self.of_series(context),
         options={"SKIP_SAVE"},
     )
     add_surfaces: BoolProperty(
@@ -128,9 +129,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         except RealModelError:
             return []
 
-    def fields(self, context):
+    def of_series(self, context):
         row = settings.active_rock(context.scene)
-        return [] if row is None else sorted(series_settings.fields(row))
+        return [] if row is None else [series.name for series in row.series]
 
     def surfaces(self, context):
         row = settings.active_rock(context.scene)
@@ -140,9 +141,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         scene = context.scene
         tables = self._tables(context)
         series = _series_for_dips(scene, self.series)
-        if series is not None:
+        is_of_sheets = series is not None and series.kind != FIELD
+        if series is not None and not is_of_sheets:
             tables.give_dips_to_series(every=bool(self.series))
-        surface = _surface_for_dips(scene).name if tables.dips else ""
+        surface = _surface_for_dips(scene).name if tables.dips and series is None else ""
         rock = settings.active_rock(scene)
         found = field_tables.read(
             scene, rock, tables, reading_text.named_texts(self.names), self.add_surfaces
@@ -159,11 +161,12 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             row = rock.surfaces[surface]  # it may have moved where surfaces were added
             surface_dips.add(row, found.dips)
             warnings += method_settings.dips_unused(row)
+        if is_of_sheets:
+            found.give_dips_to_sheets()
         if found.rock_dips is not None:
             surface_dips.add(rock, found.rock_dips)
         if found.series_dips is not None:
             series_settings.add_dips(series, found.series_dips)
-            given.append(found.series_dips.positions)
         borehole_picks.keep(rock, found.picks.holes)
         borehole_picks.keep_ends(rock, found.picks.ends)
         for draped, file in zip(found.maps, tables.maps, strict=True):
@@ -230,7 +233,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
         has_maps = any(field_tables.is_map(path) for path in shown)
-        of_series = ("series",) if self.fields(context) else ()
+        of_series = ("series",) if self.of_series(context) else ()
         for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
             layout.prop(self, name)
 
@@ -270,17 +273,17 @@ def _surface_for_dips(scene):
 
 
 def _series_for_dips(scene, name):
-    """The row of a series of the kind Field: of this name or, without one, that of the active surface; None
-    where that is in none. Raises InputRefused."""
+    """The row of the series of this name or, without one, that of the active surface, where it is a level
+    set; None where it is none. Raises InputRefused."""
     rock, surface = settings.active_rock(scene), settings.active_surface(scene)
     if not name:
         is_of_field = surface is not None and series_settings.is_level_set(surface)
         return series_settings.of_surface(surface) if is_of_field else None
-    there = [] if rock is None else [row for row in rock.series if row.name in series_settings.fields(rock)]
+    there = [] if rock is None else list(rock.series)
     found = next((row for row in there if row.name == name), None)
     if found is None:
         advice = f"there are {', '.join(row.name for row in there)}" if there else "add one first (Series, +)"
-        raise InputRefused(f"there is no series '{name}' of the kind Field", advice=advice)
+        raise InputRefused(f"there is no series '{name}'", advice=advice)
     return found
 
 

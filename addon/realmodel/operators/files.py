@@ -76,6 +76,13 @@ class Exporting(Reporting, ExportHelper):
 
     bl_options = {"REGISTER"}
 
+    @classmethod
+    def poll(cls, context):
+        if context.scene.realmodel.is_coarse:
+            cls.poll_message_set("the blocks are of a coarse field; wait until Auto has refined it, or build")
+            return False
+        return super().poll(context)
+
     @property
     def filename_ext(self):
         return f".{self.format.lower()}"

@@ -147,8 +147,8 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
-    """Add a dip at the 3D cursor: of the field of the active surface's series, at any angle, or of the active
-    surface"""
+    """Add a dip at the 3D cursor: of the active surface's series, in a field at any angle, or of the active
+    surface, where it is in none"""
 
     bl_label = "Add Dip at Cursor"
     needs = (a_surface,)
@@ -174,19 +174,25 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
         place = self.location if self.properties.is_property_set("location") else scene.cursor.location
         place = np.array(place, np.float64) + project_settings.model_origin(scene)
         series = series_settings.of_surface(row)
-        if series is not None and series.kind == FIELD:
+        if series is not None:
+            if series.kind != FIELD:
+                self._require_sheet(series)
             normal = normal_of(self.dip, self.dip_direction, self.overturned)
             series_settings.add_dips(series, SpaceDips(place[None], normal[None]))
         else:
-            if self.overturned or self.dip == 90.0:
-                advice = "put it into a series of the kind Field, or give another dip"
-                raise InputRefused(f"'{row.name}' has one height at each position", advice=advice)
+            self._require_sheet(row)
             gradient = gradient_of(self.dip, self.dip_direction)
             surface_dips.add(row, Dips(place[None, :2], gradient[None], place[2:]))
         with settings.filling():
             scene.realmodel.view.show_dips = True
         data_objects.update(scene)
         live.touch(scene)
+
+    def _require_sheet(self, row):
+        """Raises InputRefused for a dip that no sheet has."""
+        if self.overturned or self.dip == 90.0:
+            advice = "put it into a series of the kind Field, or give another dip"
+            raise InputRefused(f"'{row.name}' has one height at each position", advice=advice)
 
     def invoke(self, context, _event):
         self.location = context.scene.cursor.location

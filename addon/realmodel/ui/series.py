@@ -59,8 +59,7 @@ def _draw_series(layout, rock, row):
         setting_rows.draw(layout, row, "resolution", SERIES)
         if not row.resolution:
             hint(layout, "0: by the size of the rock mass")
-    if row.kind == FIELD or row.dips:
-        _draw_dips(layout, row)
+    _draw_dips(layout, row)
     if row.kind == FIELD:
         _draw_needs(layout, rock)
     _draw_refusal(layout, rock, row)
@@ -76,10 +75,9 @@ def _draw_dips(layout, row):
     line.label(text=text)
     if row.dips:
         line.operator("realmodel.series_dips_remove", text="", icon="X")
-    if row.kind == FIELD:
-        line = layout.row(align=True)
-        line.operator("realmodel.boreholes_read", text="Import Dips...", icon="IMPORT").series = row.name
-        line.operator("realmodel.dip_add", text="", icon="PIVOT_CURSOR")
+    line = layout.row(align=True)
+    line.operator("realmodel.boreholes_read", text="Import Dips...", icon="IMPORT").series = row.name
+    line.operator("realmodel.dip_add", text="", icon="PIVOT_CURSOR")
 
 
 def _draw_needs(layout, rock):

@@ -39,11 +39,11 @@ def spaced_points(places, size, stretch):
     return points(places, np.clip(0.5 * apart, least, most), stretch)
 
 
-def discs(places, gradients, radius, stretch):
-    """A disc at each place (N, 3) in the plane that rises by gradients (N, 2) along x and y, with a short
-    line along its normal, as a PolygonMesh: of each disc its upper side, its lower side, and the faces of
-    the line. They are round, and the line is normal, with the vertical exaggeration `stretch`."""
-    normals = np.column_stack([-gradients * stretch, np.ones(len(gradients))])
+def discs(places, normals, radius, stretch):
+    """A disc at each place (N, 3) across its normal (N, 3), of any length, with a short line along that, as a
+    PolygonMesh: of each disc its side toward the normal, its other side, and the faces of the line. They are
+    round, and the line is normal, with the vertical exaggeration `stretch`."""
+    normals = normals * (stretch, stretch, 1.0)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
     side = np.cross(normals, helper)

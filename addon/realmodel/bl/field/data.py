@@ -8,21 +8,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core import RealModelError
-from ...core.settings.dips import Dips
+from ...core import Dips, RealModelError
 from .. import (
     borehole_picks,
     borehole_points,
     caches,
     data_objects,
     observed_blocks,
+    series_settings,
+    settings,
     stored_arrays,
     surface_dips,
 )
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
 ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block
-DIPS = (DIP, ROCK_DIP)
+SERIES_DIP = "dip of the series"  # in its field
+DIPS = (DIP, ROCK_DIP, SERIES_DIP)
 KINDS = (POINT, *DIPS, PLACE, INTERVAL)
 
 
@@ -34,9 +36,9 @@ _groups = caches.new(most=256 << 20, size_of=_bytes_of)  # lists of Groups, by w
 
 
 class Datum(NamedTuple):
-    """kind: POINT, DIP, ROCK_DIP, PLACE or INTERVAL. rock: the name of the rock mass. name: of the surface,
-    of others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a dip z may be
-    NaN. hole: its name, "" for none. used: whether it is not switched off."""
+    """kind: POINT, PLACE, INTERVAL, or one of DIPS. rock: the name of the rock mass. name: of the surface or
+    the series, of others the block. place: (x, y, z), model coordinates; of an interval its upper end, of a
+    dip z may be NaN. hole: its name, "" for none. used: whether it is not switched off."""
 
     kind: str
     rock: str
@@ -61,7 +63,7 @@ class Datum(NamedTuple):
 class Group(NamedTuple):
     """Data of one kind and one rock mass, of points and dips of one surface. names: (N,) of Datum. rows: (N,)
     their rows, from 0, in the data that are used or, of what is switched off in a surface's points, there.
-    ends: (N, 3) the lower ends of intervals. dips: of a group of dips."""
+    ends: (N, 3) the lower ends of intervals. normals: (N, 3) of dips, toward younger rock, of any length."""
 
     kind: str
     rock: str
@@ -71,7 +73,7 @@ class Group(NamedTuple):
     used: np.ndarray
     rows: np.ndarray
     ends: np.ndarray | None = None
-    dips: Dips | None = None
+    normals: np.ndarray | None = None
 
     def datum(self, number):
         place = tuple(float(value) for value in self.places[number])
@@ -104,6 +106,8 @@ def groups(scene, kinds=KINDS):
             found += [group for row in rock.surfaces if row.dips for group in _dips(rock, row)]
         if ROCK_DIP in kinds and rock.dips:
             found += _dips(rock, rock)
+        if SERIES_DIP in kinds:
+            found += [group for row in rock.series if row.dips for group in _dips(rock, row)]
         if rock.observations and (PLACE in kinds or INTERVAL in kinds):
             key = (rock.name, rock.observations)
             if key not in _groups:
@@ -116,6 +120,7 @@ def are_there(scene):
     """Whether a scene has field data, without a look at files."""
     rocks = scene.realmodel.rocks
     of_rocks = any(rock.dips or rock.observations or rock.interval_values or rock.map for rock in rocks)
+    of_rocks = of_rocks or any(row.dips for rock in rocks for row in rock.series)
     return of_rocks or any(
         row.dips or row.left_out or (row.source == "POINTS_FILE" and (row.stored or row.filepath))
         for rock in rocks
@@ -204,18 +209,23 @@ def _points(scene, rock, row, holes):
 
 
 def _dips(rock, row):
-    """The dips of a surface, or of a rock mass, by its row."""
+    """The dips of a surface, of a series or of a rock mass, by its row."""
+    is_of_series = settings.kind_of(row) == "series"
     try:
-        dips = surface_dips.of_row(row)
+        dips = (series_settings.dips_of if is_of_series else surface_dips.of_row)(row)
     except RealModelError:
         return []
-    places = np.column_stack([dips.positions, dips.heights])
-    names, kind = np.full(len(dips), row.name), DIP
-    if row == rock:
+    if is_plan := isinstance(dips, Dips):
+        places = np.column_stack([dips.positions, dips.heights])
+        normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
+    else:
+        places, normals = dips.positions, dips.normals
+    names, kind = np.full(len(dips), row.name), SERIES_DIP if is_of_series else DIP
+    if row == rock and is_plan:
         surfaces, blocks = dips.named
         names, kind = np.where(surfaces != "", surfaces, blocks), ROCK_DIP
-    holes = np.full(len(dips), "")
-    return [Group(kind, rock.name, names, places, holes, dips.in_use, np.arange(len(dips)), dips=dips)]
+    holes, rows = np.full(len(dips), ""), np.arange(len(dips))
+    return [Group(kind, rock.name, names, places, holes, dips.in_use, rows, normals=normals)]
 
 
 def _observed(rock):

@@ -6,7 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import InputRefused
-from .. import borehole_picks, observed_blocks, reading_text, settings, stored_arrays, surface_dips
+from .. import (
+    borehole_picks,
+    observed_blocks,
+    reading_text,
+    series_settings,
+    settings,
+    stored_arrays,
+    surface_dips,
+)
 from . import data
 
 
@@ -28,8 +36,7 @@ def switch(scene, datum, used):
     if datum.kind == data.POINT:
         _switch_point(scene, row, np.array(datum.place), used)
     elif datum.kind in data.DIPS:
-        dips = surface_dips.of_row(row)
-        surface_dips.keep(row, surface_dips.with_used(dips, group.rows[number], used))
+        _keep_dips(datum, row, surface_dips.with_used(_dips(datum, row), group.rows[number], used))
     else:
         observed_blocks.keep(rock, _switched(observed_blocks.of_rock(rock), group.rows[number], used))
     return datum._replace(used=used)
@@ -59,8 +66,7 @@ def move(scene, datum, place):
         places[group.rows[number]] = place
         observed_blocks.keep(rock, replace(observations, places=places))
     elif datum.kind in data.DIPS:
-        dips = surface_dips.of_row(row)
-        surface_dips.keep(row, surface_dips.moved(dips, group.rows[number], place))
+        _keep_dips(datum, row, surface_dips.moved(_dips(datum, row), group.rows[number], place))
         place[2] = place[2] if group.places[number, 2] == group.places[number, 2] else np.nan
     elif group.used[number]:
         points = data.own_points(scene, row).copy()
@@ -75,9 +81,21 @@ def move(scene, datum, place):
 
 
 def _rows(scene, datum):
-    """The row of the rock mass of a datum, and that in which it is stored: of the surface, or the same."""
+    """The row of the rock mass of a datum, and that in which it is stored: of the surface or the series, or
+    the same."""
     rock = next(rock for rock in scene.realmodel.rocks if rock.name == datum.rock)
+    if datum.kind == data.SERIES_DIP:
+        return rock, rock.series[datum.name]
     return rock, rock.surfaces[datum.name] if datum.kind in (data.POINT, data.DIP) else rock
+
+
+def _dips(datum, row):
+    """The Dips that a row stores, or the SpaceDips of that of a series."""
+    return (series_settings.dips_of if datum.kind == data.SERIES_DIP else surface_dips.of_row)(row)
+
+
+def _keep_dips(datum, row, dips):
+    (series_settings.keep_dips if datum.kind == data.SERIES_DIP else surface_dips.keep)(row, dips)
 
 
 def _switch_point(scene, row, place, used):

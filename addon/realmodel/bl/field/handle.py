@@ -87,7 +87,7 @@ def text_of(scene, datum):
     attitude = ""
     if datum.kind in data.DIPS:
         group, number = edits.find(scene, datum)
-        attitude = f" {attitude_text(group.dips.gradients[number])}"
+        attitude = f" {attitude_text(group.normals[number])}"
     of = f" of {datum.name}" if datum.name else ""
     return f"{where}{datum.kind}{attitude}{of} at {at}"
 

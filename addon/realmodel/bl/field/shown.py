@@ -95,9 +95,11 @@ def _contacts(scene):
 
 
 def _property_ids(scene):
-    """{name of a surface, of its block, or of a body: its property}"""
+    """{name of a surface, of its block, of a body, or of a series: its property}; of a series that of its
+    youngest surface."""
+    of_series = {row.series: row.property_id for _, row in settings.surface_rows(scene) if row.series}
     rows = [*(row for _, row in settings.surface_rows(scene)), *scene.realmodel.bodies]
-    return {
+    return of_series | {
         name: row.property_id for row in rows for name in (row.name, getattr(row, "block", "") or row.name)
     }
 
@@ -115,7 +117,7 @@ def _add_points(scene, kind, name, places, materials, larger=1.0):
 
 
 def _dips(scene):
-    places, gradients, materials = [], [], []
+    places, normals, materials = [], [], []
     of_block = _property_ids(scene)
     for group in data.groups(scene):
         if group.kind not in data.DIPS:
@@ -123,7 +125,7 @@ def _dips(scene):
         at, names = group.places[:_MOST].copy(), group.names[:_MOST]
         at[:, 2] = heights.of_dips(scene, group.rock, names, at)
         places.append(at)
-        gradients.append(group.dips.gradients[:_MOST])
+        normals.append(group.normals[:_MOST])
         for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
             own = colors.of_property(scene, of_block.get(name, 0))
             upper = own if used else colors.plain_material(*_OFF)
@@ -132,7 +134,7 @@ def _dips(scene):
         return
     places = np.concatenate(places) - project_settings.model_origin(scene)
     radius = _DISC * heights.extent(scene)
-    shape = marks.discs(places, np.concatenate(gradients), radius, exaggeration.factor(scene))
+    shape = marks.discs(places, np.concatenate(normals), radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
     bodies.give_materials(item.data, materials, 1)
 

@@ -9,7 +9,7 @@ from .ensemble import PERCENTILES, Ensemble, ensemble
 from .places import Probabilities, blocks_at
 from .realization import Realizer
 from .sample_files import draw_probabilities, sample_writer
-from .samples import borehole_samples, grid_samples, section_samples
+from .samples import borehole_samples, grid_samples, hole_samples, section_samples
 
 __all__ = [
     "PERCENTILES",
@@ -21,6 +21,7 @@ __all__ = [
     "draw_probabilities",
     "ensemble",
     "grid_samples",
+    "hole_samples",
     "sample_writer",
     "section_samples",
 ]

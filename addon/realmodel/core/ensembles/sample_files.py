@@ -22,7 +22,7 @@ from ..exporters.npz import texts, write_arrays
 from ..exporters.shapes.parts import distinct_names
 from ..results.section_drawing import draw_section
 from .places import Probabilities
-from .samples import GridSamples, Samples, SectionSamples
+from .samples import GridSamples, HoleSamples, Samples, SectionSamples
 
 _QUADRILATERAL = 9
 _SHADES = 64.0  # of each color: cells beside one another that have the same are drawn as one
@@ -50,13 +50,16 @@ def _named(found: Probabilities) -> list[tuple[str, np.ndarray]]:
 
 def _write_csv(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
     """A row for each place where there may be rock: x, y, z, the distance along a section, the name of the
-    likeliest block, entropy, and the probability of each block."""
+    likeliest block, entropy, and the probability of each block; the depth along a planned hole."""
     kept = np.flatnonzero(found.probability.sum(axis=1) > 0)
     names, columns = distinct_names(found.block_names), [samples.places[kept]]
     headings = ["x", "y", "z"]
     if isinstance(samples, SectionSamples):
         headings.append("distance")
         columns.append(samples.distance[kept])
+    if isinstance(samples, HoleSamples):
+        headings.append("depth")
+        columns.append(samples.depths[kept])
     quoted = np.array([_cell(name) for name in [*found.block_names, ""]], object)
     columns += [quoted[found.likeliest()[kept]], found.entropy()[kept], found.probability[kept]]
     headings += ["block", "entropy", *(f"probability {name}" for name in names)]
@@ -81,6 +84,8 @@ def _write_npz(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
     }
     if isinstance(samples, SectionSamples):
         arrays |= {"corners": samples.corners, "distance": samples.distance}
+    if isinstance(samples, HoleSamples):
+        arrays["depth"] = samples.depths
     if isinstance(samples, GridSamples):
         arrays |= {"origin": samples.origin, "size": samples.size, "counts": np.array(samples.counts)}
     write_arrays(arrays, file)

@@ -13,6 +13,7 @@ import numpy as np
 from ..base.algebra import dot
 from ..base.errors import UsageError
 from ..model.section import Fence, Section
+from ..results.planned_holes import HoleAxis
 from ..results.regular_cells import checked_size, frame_of
 from ..results.section_drawing import directions, flattened, is_vertical, plane_of
 
@@ -49,6 +50,13 @@ class BoreholeSamples(Samples):
     """Cells of a vertical line, from above. height: of a cell."""
 
     height: float
+
+
+@dataclass(frozen=True, eq=False)
+class HoleSamples(Samples):
+    """Cells along a planned hole, from the collar. depths: (N,) of their middles along it."""
+
+    depths: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +115,15 @@ def borehole_samples(model, x: float, y: float, height: float | None = None) -> 
     return BoreholeSamples(
         np.column_stack([np.full((len(middle), 2), (x, y)), middle]), float(bounds[1] - bounds[0])
     )
+
+
+def hole_samples(model, axis: HoleAxis, step: float | None = None) -> HoleSamples:
+    """Samples along a planned hole of a model. axis: where it goes. step: the length of cells; None: a
+    hundredth of the hole. Raises UsageError."""
+    bounds = _bounds(0.0, axis.length, step or axis.length / _ROWS)
+    _check(model, len(bounds) - 1)
+    depths = (bounds[1:] + bounds[:-1]) / 2
+    return HoleSamples(axis.places(depths), depths)
 
 
 def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:

@@ -86,11 +86,7 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
             if isinstance(rock.dips, Dips) and len(rock.dips):
                 target = beside(rock.name, "dips", ending=".csv")
-                surfaces, blocks = rock.dips.named
-                codes = _block_codes(rock)
-                meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
-                text = dips_text(replace(rock.dips, surfaces=surfaces, blocks=meant))
-                lines.append(f"dips = {toml_value(write(target, text))}")
+                lines.append(f"dips = {toml_value(write(target, _named_dips_text(rock, rock.dips)))}")
             for series in rock.series:
                 lines += ["", "[[rock.series]]", *_series_lines(rock, series, beside, write)]
             for surface in rock.surfaces:
@@ -163,9 +159,10 @@ def _point_text(point: list[float]) -> str:
 def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
     if series.dip_file is not None:
         raise UsageError(f"{series.item}: its file has not been read; build the model first")
-    dips, file = series.space_dips(), None
-    if dips is not None and len(dips):
-        file = write(beside(rock.name, series.name, "dips", ending=".csv"), space_dips_text(dips))
+    dips, file = series.dips, None
+    if isinstance(dips, (Dips, SpaceDips)) and len(dips):
+        text = space_dips_text(dips) if isinstance(dips, SpaceDips) else _named_dips_text(rock, dips)
+        file = write(beside(rock.name, series.name, "dips", ending=".csv"), text)
     values = {
         "name": series.name,
         "kind": series.kind if series.kind != FIELD else None,
@@ -284,6 +281,14 @@ def dips_text(dips: Dips) -> bytes:
     table = csv.writer(text, lineterminator="\n")
     table.writerows([names, *zip(*columns, strict=True)])
     return text.getvalue().encode()
+
+
+def _named_dips_text(rock: Rock, dips: Dips) -> bytes:
+    """Dips that may name surfaces and blocks of a rock mass, as CSV."""
+    surfaces, blocks = dips.named
+    codes = _block_codes(rock)
+    meant = np.array([codes.get(block, block) for block in blocks.tolist()], str)
+    return dips_text(replace(dips, surfaces=surfaces, blocks=meant))
 
 
 def _block_codes(rock: Rock) -> dict[str, str]:

@@ -25,8 +25,9 @@ class Series(Entry):
 
     name: unique in the rock mass. kind: "field": its surfaces are level sets of one scalar field in space,
     which rises from older to younger; "sheets": they have one height at each position, and are interpolated
-    together. Of a field, dips: of the bedding, a file, a DipFile or SpaceDips. resolution: edge
-    length of its lattice, in model units, or "auto".
+    together. dips: of the bedding, a file, a DipFile or SpaceDips; of sheets also Dips: each counts for the
+    surface that it names, those of the series under and over its block, or for all where it names nothing.
+    resolution: edge length of the lattice of a field, in model units, or "auto".
     """
 
     name: str
@@ -49,6 +50,13 @@ class Series(Entry):
         assert self.dips is None or isinstance(self.dips, SpaceDips)
         return self.dips
 
+    def sheet_dips(self) -> Dips | None:
+        """The dips of sheets that are read. Raises InputRefused where one is vertical or overturned."""
+        if isinstance(self.dips, SpaceDips):
+            return self.dips.checked().of_sheets()
+        assert self.dips is None or isinstance(self.dips, Dips)
+        return None if self.dips is None else self.dips.checked()
+
 
 def members(rock, series: Series) -> list[int]:
     """The numbers of the surfaces (of a Rock) of a series."""
@@ -67,8 +75,7 @@ def check_series(rock) -> None:
     for series in named_once(rock.series, "series"):
         refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
         check_values(series, SERIES, ("kind", "resolution"), refuse)
-        if series.kind == FIELD:
-            _check_dips(series, refuse)
+        _check_dips(series, refuse)
         own = members(rock, series)
         if not own:
             advice = f'write series = "{series.name}" in its surfaces'
@@ -85,8 +92,6 @@ def check_series(rock) -> None:
 
 
 def _check_sheets(rock, series: Series, own: list[int], refuse: Refuse) -> None:
-    if series.dips is not None:
-        raise refuse("sheets have no dips of their series", "dips", "give them to its rock mass or surfaces")
     if series.resolution != AUTO:
         raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
     for number in own:
@@ -104,7 +109,8 @@ def _check_dips(series: Series, refuse: Refuse) -> None:
             file.check()
         check_file(file.file, "dips", refuse)
     elif series.dips is not None and not isinstance(series.dips, SpaceDips):
-        raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
+        if series.kind == FIELD or not isinstance(series.dips, Dips):
+            raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
 
 
 def _check_field(rock, series: Series, refuse: Refuse) -> None:

@@ -13,8 +13,10 @@ from ..base.algebra import norm
 from ..base.elementary import atan2
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
+from ..project.project import Rock
 from ..readers.tables.observations import SWITCHED_OFF
 from ..results.residuals import heights_of_points
+from ..surfaces.series_field import SeriesField
 from .closed_form import AIR, ClosedForm, closed_forms
 from .observed import sources_of, violated_bounds
 from .seen_places import NEAR, look
@@ -52,8 +54,8 @@ def misfits(
 ) -> list[Misfit]:
     """The data that a built model does not honor: points and contacts off their surfaces, bounds
     that are not kept, intervals and places in another block, dips, and observations that are left out, but
-    not those that are switched off. In this order, the largest of each kind first. Of surfaces that are level
-    sets of a field, blocks and what is left out are listed alone.
+    not those that are switched off. In this order, the largest of each kind first. Distances from surfaces
+    that are level sets of a field are approximate; the dips of a field are those of its series.
 
     tolerance: model units, from which on something counts; None: a billionth of the range of heights of the
     data. dip_tolerance: degrees between a dip and its surface. Raises InputRefused for a model of a file
@@ -70,13 +72,13 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
         near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry.rock)
         sources = _sources(entry.rock)
         for at, surface in enumerate(entry.rock.surfaces):
-            if surface.is_level_set:  # it has no one height over a place
-                continue
             which = first + at, at, number
             found += _points(model, which, sources, near)
             found += _bounds(model, which, near)
-            if surface.known_dips() is not None:
+            if surface.known_dips() is not None and not surface.is_level_set:
                 found += _dips(model, which, dip_tolerance)
+        for own in entry.fields:
+            found += _dips_of_field(work, entry.rock, own, form, dip_tolerance)
         observed = entry.rock.observed
         if observed is not None and len(observed):
             found += _blocks(work, model, number, form, near)
@@ -120,15 +122,20 @@ def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: 
     for row in np.flatnonzero(np.abs(points[:, 2] - heights) > near).tolist():
         place, z = tuple(points[row].tolist()), float(heights[row])
         by = abs(place[2] - z)
-        has = f"{z:,.6g}, {by:.4g} {'below' if z < place[2] else 'above'}"
+        says, has = f"{place[2]:,.6g}", f"{z:,.6g}, {by:.4g} {'below' if z < place[2] else 'above'}"
+        if surface.is_level_set:
+            says, has = "on it", f"{by:.4g} on its {'younger' if z < place[2] else 'older'} side"
         hole, depth = sources.get(place, ("", None))
-        yield Misfit("point", rock.name, surface.name, hole, depth, row, place, f"{place[2]:,.6g}", has, by)
+        yield Misfit("point", rock.name, surface.name, hole, depth, row, place, says, has, by)
 
 
 def _bounds(model: ModelData, which: tuple[int, int, int], near: float) -> Iterator[Misfit]:
     for each in violated_bounds(model, which, near):
         side, other = ("at or above", "below") if each.is_lower else ("at or below", "above")
         says = f"{each.surface} {side} {each.place[2]:,.6g}"
+        if model.rock_inputs[which[2]].rock.surfaces[which[1]].is_level_set:
+            own, other = ("older", "younger") if each.is_lower else ("younger", "older")
+            says, other = f"on the {own} side of {each.surface}", f"on its {other} side"
         has = f"{each.by:.4g} {other}"
         source = each.hole, each.depth, None
         yield Misfit("bound", each.rock, each.surface, *source, each.place, says, has, each.by)
@@ -169,9 +176,26 @@ def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> It
     angles = np.degrees(atan2(cross, (normals * there).sum(axis=1)))
     for k in np.flatnonzero(angles > tolerance).tolist():
         place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
-        texts = attitude_text(dips.gradients[k]), f"{attitude_text(slopes[k])}, {angles[k]:.0f}° off"
+        texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
         source = "", None, int(rows[k]) if k < len(rows) else None
         yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
+
+
+def _dips_of_field(
+    work: Work, rock: Rock, own: SeriesField, form: ClosedForm, tolerance: float
+) -> Iterator[Misfit]:
+    """The dips of a series that its field does not have; outside of its lattice it has none."""
+    dips = next(series for series in rock.series if series.name == own.name).space_dips()
+    if dips is None:
+        return
+    rows = np.flatnonzero(dips.in_use)
+    places, normals = dips.positions[rows], dips.normals[rows]
+    there = own.slopes(places, form.compartments_of(work, places))
+    angles = np.degrees(atan2(norm(np.cross(normals, there)), (normals * there).sum(axis=1)))
+    for k in np.flatnonzero(angles > tolerance).tolist():
+        texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
+        place = tuple(places[k].tolist())
+        yield Misfit("dip", rock.name, own.name, "", None, int(rows[k]), place, *texts, float(angles[k]))
 
 
 def _slopes(
@@ -195,9 +219,12 @@ def _slopes(
     return slopes, at
 
 
-def attitude_text(gradient: np.ndarray) -> str:
-    """A slope (2,) along x and y as dip direction and dip: "120/35", degrees."""
-    x, y = (float(value) for value in gradient)  # adding 0.0 makes no -0 of a level plane
-    dip = np.degrees(atan2(math.sqrt(x * x + y * y), 1.0))
-    direction = np.degrees(atan2(-x + 0.0, -y + 0.0)) % 360.0
-    return f"{round(direction) % 360:03d}/{dip:02.0f}"
+def attitude_text(normal: np.ndarray) -> str:
+    """A plane by its normal (3,) toward younger rock, of any length, as dip direction and dip: "120/35",
+    degrees; where that points down, it is overturned."""
+    x, y, z = (float(value) for value in normal)
+    if is_overturned := z < 0:
+        x, y, z = -x, -y, -z
+    dip = np.degrees(atan2(math.sqrt(x * x + y * y), z))
+    direction = np.degrees(atan2(x + 0.0, y + 0.0)) % 360.0  # adding 0.0 makes no -0 of a level plane
+    return f"{round(direction) % 360:03d}/{dip:02.0f}{' overturned' * is_overturned}"

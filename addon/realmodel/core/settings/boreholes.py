@@ -12,7 +12,7 @@ from .point_file import check_name, check_units
 
 COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
-    *("from", "to", "block", "end"),
+    *("from", "to", "block", "end", "use"),
 )
 DOWNWARD_DIPS = ("negative", "positive")
 
@@ -29,7 +29,8 @@ class Boreholes:
     None where the rows of picks and intervals have x, y and z themselves. survey: a table with a row for
     each place where the direction of a hole was measured: hole, depth along it, azimuth in degrees
     clockwise from north (+y), and either the inclination in degrees from the vertical or the dip from the
-    horizontal; None: holes go as the collars say, or straight down. downward_dip: "negative" or
+    horizontal; None: holes go as the collars say, or straight down. use: an optional column of picks and
+    intervals, 0 where a row is switched off. downward_dip: "negative" or
     "positive", which dips go down; None: all of a table go the same way, down. columns: {"hole": "BHID",
     ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them.
     separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}

@@ -56,6 +56,18 @@ class SpaceDips:
         """(D,) bool: which are not switched off."""
         return _in_use(self)
 
+    def of_sheets(self) -> Dips:
+        """The same as slopes of sheets. Raises InputRefused where one is vertical or overturned."""
+        steep = np.flatnonzero(~(self.normals[:, 2] > 0) & self.in_use)
+        if len(steep):
+            what = f"dip {steep[0]} is vertical or overturned, and a sheet has one height at each position"
+            raise InputRefused(what, item="dips", advice='leave it out, or use a series with kind = "field"')
+        kept = self.normals[:, 2] > 0
+        places, normals = self.positions[kept], self.normals[kept]
+        used = None if self.used is None else np.asarray(self.used)[kept]
+        gradients = -normals[:, :2] / normals[:, 2:] + 0.0  # no -0
+        return Dips(np.ascontiguousarray(places[:, :2]), gradients, places[:, 2].copy(), used=used)
+
     @classmethod
     def joined(cls, parts: Sequence[SpaceDips]) -> SpaceDips:
         """Several, `parts`, one after another."""

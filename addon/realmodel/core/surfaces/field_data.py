@@ -14,10 +14,12 @@ from ..base.errors import naming, number_list
 from ..base.work import Work
 from ..project.field_checks import ground_number
 from ..project.project import Project, Rock, Surface
+from ..project.series import Series
 from ..project.structure_history import body_times
 from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
 from ..settings.dips import Dips
+from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
@@ -67,6 +69,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             left_out += not_used
         dips, not_used = _dips(project, rock, units)
         left_out += not_used
+        series = [_with_sheet_dips(project, rock, each, units, left_out) for each in rock.series]
     mapped = _mapped(project, rock, units, dips)
     if rock.map is not None:
         observed, not_used, map_warnings = read_map(project, rock, units)
@@ -75,7 +78,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     observations = Observations.joined(found).along_holes() if found else None
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
-        _with_points(surface, number, picks.points.pop(surface.name, None), derived)
+        _with_points(_without_picks(surface, picks), number, picks.points.pop(surface.name, None), derived)
         if surface.has_points
         else (surface, None)
         for number, surface in enumerate(rock.surfaces)
@@ -87,6 +90,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         dips=dips,
         map=None,
         names={},
+        series=series,
         hole_picks=picks.holes or rock.hole_picks,
         hole_ends=picks.ends or rock.hole_ends,
     )
@@ -101,6 +105,20 @@ def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, 
         return read_dips_of_rock(rock.dip_file, units, project.units)
     assert rock.dips is None or isinstance(rock.dips, Dips)
     return None if rock.dips is None else rock.dips.checked(), []
+
+
+def _with_sheet_dips(
+    project: Project, rock: Rock, series: Series, units: UnitNames, left_out: list[LeftOut]
+) -> Series:
+    """A series; one of sheets with its dips as arrays. Those that are not used are added to left_out."""
+    if series.kind != SHEETS:
+        return series
+    with naming(f"{rock.item}, {series.item}"):
+        if series.dip_file is None:
+            return replace(series, dips=series.sheet_dips())
+        dips, not_used = read_dips_of_rock(series.dip_file, units, project.units)
+        left_out += not_used
+        return replace(series, dips=dips)
 
 
 def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -> np.ndarray | None:
@@ -126,6 +144,15 @@ def _of_bodies(project: Project, rock: Rock) -> Situation:
         bodies=[body.name for body, _ in own],
         voids=[body.void for body, _ in own],
     )
+
+
+def _without_picks(surface: Surface, picks: Picks) -> Surface:
+    """The surface with the picks that are switched off among its points that are left out."""
+    off = picks.switched_off.get(surface.name)
+    if off is None or not surface.has_points:
+        return surface
+    known = [] if surface.left_out is None else [np.asarray(surface.left_out, np.float64).reshape(-1, 3)]
+    return replace(surface, left_out=np.concatenate([*known, off]))
 
 
 def _with_points(

@@ -22,6 +22,7 @@ from ..project.project import Project, Rock, surface_item
 from ..project.series import Series
 from ..readers import read_dips, read_space_dips
 from ..settings.mesh_sizes import AUTO
+from ..settings.series import SHEETS
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
@@ -76,8 +77,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
         if rock.observed is not None:
             apply_observations(work, entry)
-        if rock.dips is not None:
-            apply_dips(work, entry, field.ground, field.mapped)
+        apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
             entry.warnings += left_out_warnings(entry)
         require_points_near(entry.rock, project.units)
@@ -152,6 +152,8 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
 
 def _read_series(rock: Rock, series: Series, units: str) -> Series:
     """The series with its dips as arrays."""
+    if series.kind == SHEETS:  # theirs may name surfaces and blocks: read_field_data reads them
+        return series
     with naming(f"{rock.item}, {series.item}"):
         if series.dip_file is not None:
             return replace(series, dips=read_space_dips(series.dip_file, units))

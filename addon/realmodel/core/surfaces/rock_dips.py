@@ -13,6 +13,7 @@ from ..base.work import Work
 from ..heights import heights
 from ..heights.interpolation import Task
 from ..project.project import Rock, Surface, surface_item
+from ..project.series import Series, members
 from ..readers.tables.observations import LeftOut
 from ..settings.dips import Dips
 from ..settings.methods import (
@@ -31,12 +32,46 @@ from .wrong_sides import heights_at
 
 
 def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndarray | None) -> None:
-    """Gives each surface of a RockInput that is read, but not interpolated, the dips of its rock mass that
-    count for it. ground: the number of the surface that is the ground of a map; mapped: (D,) texts, the
-    blocks that this shows at dips, as of FieldData. Raises InputRefused where a dip names a surface that uses
-    none."""
-    rock, dips = entry.rock, entry.rock.dips
-    assert isinstance(dips, Dips)
+    """Gives each surface of a RockInput that is read, but not interpolated, the dips of its rock mass and of
+    its series of sheets that count for it. ground: the number of the surface that is the ground of a map;
+    mapped: (D,) texts, the blocks that this shows at dips of the rock mass, as of FieldData. Raises
+    InputRefused where a dip names a surface that uses none."""
+    rock, parts = entry.rock, list[tuple[Dips, np.ndarray]]()
+    if isinstance(rock.dips, Dips):
+        parts.append((rock.dips, _of_rock(work, entry, rock.dips, ground, mapped)))
+    for series in rock.series:
+        if isinstance(series.dips, Dips):
+            parts.append((series.dips, _of_sheets(entry, series, series.dips)))
+    surfaces = list(rock.surfaces)
+    for number, surface in enumerate(surfaces):
+        own = Dips.joined([dips.some(counts[:, number]) for dips, counts in parts])
+        own = Dips(own.positions, own.gradients, own.heights)  # without names, and all in use
+        surfaces[number] = replace(surface, rock_dips=own if len(own) else None)
+    entry.rock = replace(rock, surfaces=surfaces)
+
+
+def _of_sheets(entry: RockInput, series: Series, dips: Dips) -> np.ndarray:
+    """(D, S) bool: the surfaces that each dip of a series of sheets counts for: that which it names, or those
+    of the series under and over its block; without a name all of them, as they are conformable."""
+    rock, own = entry.rock, members(entry.rock, series)
+    of_surfaces, of_blocks = dips.named
+    counts = np.zeros((len(dips), len(rock.surfaces)), bool)
+    counts[:, own] = ((of_surfaces == "") & (of_blocks == ""))[:, None]
+    blocks = np.where(of_surfaces == "", BlockNumbers(rock).of(of_blocks), -1)
+    for number in own:
+        counts[:, number] |= of_surfaces == rock.surfaces[number].name
+        counts[:, number] |= (blocks >= 0) & ((blocks == number) | (blocks == number + 1))
+    counts[~dips.in_use] = False
+    for row in np.flatnonzero(dips.in_use & ~counts.any(axis=1)).tolist():
+        entry.left_out.append(LeftOut("dip_series", _called(dips, row), place=_place(dips, row)))
+    return counts
+
+
+def _of_rock(
+    work: Work, entry: RockInput, dips: Dips, ground: int | None, mapped: np.ndarray | None
+) -> np.ndarray:
+    """(D, S) bool: the surfaces that each dip of a rock mass counts for."""
+    rock = entry.rock
     counts, is_known = _named(entry, dips, ground)
     surfaces, blocks = dips.named
     without = np.flatnonzero((surfaces == "") & (blocks == ""))
@@ -48,17 +83,13 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
     is_known &= dips.in_use
     counts[~dips.in_use] = False
     entry.warnings += _of_default_rules(rock, int((is_known & (surfaces == "")).sum()))
-    given = list(rock.surfaces)
-    for number, surface in enumerate(given):
-        rows = np.flatnonzero(counts[:, number])
-        if len(rows) and not uses_dips(surface):
-            entry.warnings.append(_not_used(rock, number, len(rows)))
-            rows = rows[:0]
-        own = Dips(dips.positions[rows], dips.gradients[rows], dips.heights[rows])
-        given[number] = replace(surface, rock_dips=own if len(own) else None)
-    entry.rock = replace(rock, surfaces=given)
     for row in np.flatnonzero(is_known & ~counts.any(axis=1)).tolist():
         entry.left_out.append(LeftOut("dip_surface", _called(dips, row), place=_place(dips, row)))
+    for number, surface in enumerate(rock.surfaces):
+        if counts[:, number].any() and not uses_dips(surface):
+            entry.warnings.append(_not_used(rock, number, int(counts[:, number].sum())))
+            counts[:, number] = False
+    return counts
 
 
 def uses_dips(surface: Surface) -> bool:

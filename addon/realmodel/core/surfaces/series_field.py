@@ -53,10 +53,15 @@ class SeriesField:
 
     def distances(self, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) about how far points are from a surface, positive on its younger side; else as `excess`."""
+        steep = norm(self.slopes(points, where))
+        return self.excess(surface, points, where) / np.where(steep > 0, steep, 1.0)
+
+    def slopes(self, points: np.ndarray, where: np.ndarray) -> np.ndarray:
+        """(N, 3) how much f rises along x, y and z at points (N, 3) in the compartments `where`, over a
+        spacing of the lattice; 0 where the compartment is below 0."""
         rise = np.zeros((len(points), 3))
         for field, compartments in self.distinct().items():
             here = np.flatnonzero(np.isin(where, compartments))
             change, far = rises(field, points[here])
             rise[here] = change / np.where(far > 0, far, np.inf)
-        steep = norm(rise)
-        return self.excess(surface, points, where) / np.where(steep > 0, steep, 1.0)
+        return rise

@@ -23,7 +23,7 @@ class Picks:
     """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
     and (surface, place (3,)) of its picks, and of the tops of its intervals, the highest first; warnings,
     sentences. ends: where holes end (3,), as far as their collars say. observations: of the blocks of
-    intervals; left_out: intervals that are not used."""
+    intervals; left_out: intervals that are not used. switched_off: as points, those of rows that are."""
 
     points: dict[str, np.ndarray] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -31,6 +31,7 @@ class Picks:
     ends: dict[str, np.ndarray] = field(default_factory=dict)
     observations: list[Observations] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
+    switched_off: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def read_borehole_tables(
@@ -64,6 +65,7 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
     given = holes.given
     assert given.picks is not None
     found: dict[str, list] = {}
+    off: dict[str, list] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
     missing = 0
@@ -81,15 +83,18 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         else:
             holes.refuse_deviated(row)
             place = np.array([begin[0], begin[1], row.number(column)]) * scale
-        found.setdefault(name, []).append(place)
+        (found if row.is_used else off).setdefault(name, []).append(place)
+        if not row.is_used:
+            continue
         collar = begin * scale if np.isfinite(begin).all() else None
         hole = row.text("hole")
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)
-    if not found:
+    if not (found or off):
         raise InputRefused("there are no picks in it", file=given.picks)
-    picks = Picks({name: np.array(places) for name, places in found.items()}, met, ends=ends)
+    points, switched_off = ({name: np.array(of) for name, of in each.items()} for each in (found, off))
+    picks = Picks(points, met, ends=ends, switched_off=switched_off)
     if missing:
         picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
     return picks

@@ -43,6 +43,7 @@ COLLARS = {
         *("end", "eoh", "end_of_hole", "end_depth", "total_depth", "totaldepth", "td", "max_depth"),
         *("maxdepth", "final_depth", "hole_depth", "hole_length", "length"),
     ),
+    "use": ("use",),
 }
 _BLOCK = (
     *(
@@ -72,6 +73,7 @@ INTERVALS = {
     ),
     "block": _BLOCK,
     **DIRECTIONS,
+    "use": ("use",),
 }
 OBSERVED = {
     "x": PICKS["x"],

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
@@ -26,11 +26,13 @@ _STEPS = 200  # in which the area of all holes is crossed, where no other step i
 
 @dataclass
 class _Hole:
-    """A hole: a row of it, its collar, and (from, to, block) of its intervals as they are in the table."""
+    """A hole: a row of it, its collar, and (from, to, block) of its intervals as they are in the table, those
+    that are switched off apart."""
 
     row: Row
     begin: np.ndarray
     intervals: list[tuple[float, float, str]] = field(default_factory=list)
+    switched_off: list[tuple[float, float, str]] = field(default_factory=list)
 
 
 @dataclass
@@ -66,7 +68,7 @@ def read_intervals(
             hole = found[name] = _Hole(row, holes.begin_of(row))
         interval = _interval(row, name, code, units, left_out)
         if interval is not None:
-            hole.intervals.append(interval)
+            (hole.intervals if row.is_used else hole.switched_off).append(interval)
     if not found:
         raise InputRefused("there are no intervals in it", file=given.intervals)
     if plan_step is None:
@@ -78,8 +80,8 @@ def read_intervals(
         def place(depth: float, hole: _Hole = hole) -> np.ndarray:
             return holes.place(hole.row, depth, scale)
 
-        parts.append(observed_intervals(name, hole.intervals, place, plan_step, left_out))
-        tops[name] = hole.begin * scale, tops_of(parts[-1])
+        parts.append(observed_intervals(name, hole.intervals, place, plan_step, left_out, hole.switched_off))
+        tops[name] = hole.begin * scale, tops_of(parts[-1].some(parts[-1].in_use))
         if name in holes.ends:
             ends[name] = place(holes.ends[name])
     return Intervals(Observations.joined(parts), tops, left_out, ends)
@@ -130,15 +132,17 @@ def observed_intervals(
     place: Callable[[float], np.ndarray],
     plan_step: float,
     left_out: list[LeftOut],
+    switched_off: Sequence[tuple[float, float, str]] = (),
 ) -> Observations:
     """What the intervals (from, to, block) of one hole say, from above downward. place(depth): where it
-    is."""
+    is. switched_off: intervals that are kept, and not used, where no others are."""
     places: list[np.ndarray] = []
     depths: list[float] = []
     blocks: list[str] = []
     numbers: list[int] = []
+    used: list[bool] = []
     place = cache(place)
-    for number, (begin, end, block) in enumerate(_divided(intervals, name, left_out)):
+    for number, (begin, end, block, is_used) in enumerate(_divided(intervals, name, left_out, switched_off)):
         across = norm((place(end) - place(begin))[:2])
         count = 1 if plan_step <= 0 else min(int(np.ceil(across / plan_step)), _MOST_BETWEEN + 1)
         for depth in [begin, *np.linspace(begin, end, max(count, 1) + 1)[1:-1].tolist(), end]:
@@ -146,35 +150,43 @@ def observed_intervals(
             depths.append(depth)
             blocks.append(block)
             numbers.append(number)
+            used.append(is_used)
     return Observations(
         np.array(places).reshape(-1, 3),
         np.array(blocks, str),
         np.full(len(places), name),
         np.array(depths),
         np.array(numbers, np.int64),
+        np.array([] if all(used) else used, bool),
     )
 
 
 def _divided(
-    intervals: Iterable[tuple[float, float, str]], hole: str, left_out: list[LeftOut]
-) -> list[tuple[float, float, str]]:
-    """Intervals that do not overlap, downward; what several blocks claim is left out."""
-    given = list(intervals)
-    alike = _alike([depth for begin, end, _ in given for depth in (begin, end)])
-    given = [(alike[begin], alike[end], block) for begin, end, block in given]
-    found: list[tuple[float, float, str]] = []
+    intervals: Iterable[tuple[float, float, str]],
+    hole: str,
+    left_out: list[LeftOut],
+    switched_off: Sequence[tuple[float, float, str]],
+) -> list[tuple[float, float, str, bool]]:
+    """Intervals (from, to, block, whether it is used) that do not overlap, downward; what several blocks
+    claim is left out, or the first of them where they are switched off."""
+    given = [*((*each, True) for each in intervals), *((*each, False) for each in switched_off)]
+    alike = _alike([depth for begin, end, *_ in given for depth in (begin, end)])
+    given = [(alike[begin], alike[end], block, is_used) for begin, end, block, is_used in given]
+    found: list[tuple[float, float, str, bool]] = []
     for begin, end in pairwise(sorted(set(alike.values()))):
-        claimed = {block: None for low, high, block in given if low <= begin and end <= high}
-        if len(claimed) > 1:
+        there = [(block, is_used) for low, high, block, is_used in given if low <= begin and end <= high]
+        is_used = any(used for _, used in there)
+        claimed = {block: None for block, used in there if used == is_used}
+        if len(claimed) > 1 and is_used:
             names = " and ".join(f"'{block}'" for block in claimed)
             text = f"hole '{hole}' from {begin:.9g} to {end:.9g}: intervals of {names} overlap"
             left_out.append(LeftOut("overlap", text, next(iter(claimed)), hole, begin))
             continue
-        for block in claimed:
-            if found and found[-1][1:] == (begin, block):
-                found[-1] = (found[-1][0], end, block)
+        for block in list(claimed)[:1]:
+            if found and found[-1][1:] == (begin, block, is_used):
+                found[-1] = (found[-1][0], end, block, is_used)
             else:
-                found.append((begin, end, block))
+                found.append((begin, end, block, is_used))
     return found
 
 

@@ -171,6 +171,7 @@ IN_TABLES = {
     "no_depth": "intervals have no depth, and are not used",
     "unknown_block": "intervals, observations and polygons are of no known block, and say nothing",
     "dip_unit": "dips are of no surface or block of the rock mass, and are not used: give their meaning",
+    "dip_series": "dips of a series are of no surface of it, or of a block beside one, and are not used",
     "dip_surface": "dips count for no surface, as only surfaces that cut them bound their block",
 }
 SWITCHED_OFF = "switched_off"  # by the user: no warning
