@@ -5,7 +5,7 @@
     build/venv/bin/python scripts/draw_guide.py [NAME ...]      (default: all; it needs Pillow)
 
 Each function in PICTURES is one chapter: it sets up a scene with the operators that the guide names and
-keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh --only gui left, if any.
+keeps pictures.
 """
 
 import math
@@ -35,9 +35,6 @@ def main(names):
             failed = run_in_window(size, chosen) or failed
     for path in (*sorted(IMAGES.glob("*.png")), IMAGES.parent / "view_modes.png"):
         shrink(path, path)
-    sheet = ROOT / "build" / "gui" / "contact_sheet.png"
-    if sheet.is_file():
-        shrink(sheet, ROOT / "docs" / "images" / "walk.png", 1600, 0)
     return failed
 
 
@@ -265,6 +262,8 @@ def fill_view(walk, items, share=0.92):
     eye, middle = seen_from(corners, axes, tangents), (corners @ axes[2]).mean()
     view.view_location = axes.T @ np.array([*eye[:2], middle])
     view.view_distance = eye[2] - middle
+    space = walk.area.spaces.active
+    space.clip_end = max(space.clip_end, 10.0 * view.view_distance)
 
 
 def side_by_side(pictures, name, columns, smaller=1):
@@ -534,8 +533,7 @@ def section(walk):
     curve.hide_set(True)
     for row in group.results:
         if row.object:
-            row.object.display_type = "WIRE"
-            row.object.show_all_edges = False
+            row.object.display_type = "BOUNDS"
     fence.select_set(False)
     frame(walk)
     yield from keep(walk, "section_fence", "WINDOW")
@@ -593,9 +591,9 @@ def structures(walk):
     yield from build(walk)
     group = bpy.context.scene.realmodel
     for row, color in zip(group.library, PALETTE, strict=False):
-        row.color = [((int(color[k : k + 2], 16) / 255 + 0.055) / 1.055) ** 2.4 for k in (1, 3, 5)]
+        row.color = [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     group.explode_direction, group.explode = "COMPARTMENT", 0.4
-    frame(walk)
+    frame(walk, 0.62)  # of the blocks where they belong
     yield from settled(walk)
     yield from keep(walk, "structures", "WINDOW")
 
