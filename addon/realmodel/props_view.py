@@ -13,7 +13,7 @@ from bpy.props import (
 )
 
 from .bl import changes
-from .bl.display import cuts
+from .bl.display import cuts, fields
 from .bl.field import boreholes
 from .core.proof.misfits import DIP_TOLERANCE
 from .props_coordinates import coordinate_field
@@ -178,6 +178,39 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     misfit_count: IntProperty(options={"HIDDEN"})  # of all; the list may have fewer
     datum: StringProperty(options={"HIDDEN"})  # JSON of the active datum, see bl/field/data.py
+    field_series: StringProperty(
+        name="Series",
+        description="Series whose field is shown; empty: the first that has one",
+        search=lambda self, _context, _text: fields.series(self.id_data),
+        options=set(),
+        update=changes.fields,
+    )
+    show_field_section: BoolProperty(
+        name="On the Cut",
+        description="Show the field of the series in bands of color on the face of the cut, as far as its "
+        "rock reaches; the model is cut by the section plane (Section)",
+        options=set(),
+        update=changes.fields,
+    )
+    show_field_levels: BoolProperty(
+        name="Level Sets",
+        description="Show surfaces on which the field of the series is equal, at equal steps from its least "
+        "to its greatest value, as far as its rock reaches",
+        options=set(),
+        update=changes.fields,
+    )
+    field_levels: IntProperty(
+        name="Levels",
+        description="How many level sets are shown",
+        default=7,
+        min=1,
+        soft_max=30,
+        max=200,
+        options=set(),
+        update=changes.fields,
+    )
+    field_of: StringProperty(options={"HIDDEN"})  # JSON of the state that the shapes of the field are of
+    field_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # the values at the ends of their scale
     show_residuals: BoolProperty(
         name="Residuals",
         description="Show the points of the surfaces, colored by point minus surface",

@@ -6,7 +6,8 @@ import time
 import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import built_models, live, series_settings
+from realmodel.bl import built_models, display, live, overlay, series_settings
+from realmodel.bl.display import cuts
 from realmodel.bl.field import data, edits, handle
 from realmodel.core import InputRefused, SpaceDips, build, load_project
 from realmodel.core.surfaces.prepare import with_arrays
@@ -274,6 +275,61 @@ class FieldData(PanelCase):
         number = next(n for n, row in enumerate(self.model.misfits) if row.kind == "dip")
         self.model.active_misfit = number
         self.assertEqual(handle.active(self.scene).kind, data.SERIES_DIP)
+
+
+class FieldShown(PanelCase):
+    """The field on the face of the cut, and as level sets."""
+
+    def setUp(self):
+        super().setUp()
+        ops.open_project(filepath=str(PROJECT))
+        row = self.model.rocks[0].series[0]
+        row.resolution = 80.0
+        ops.build()
+
+    def body(self, kind):
+        return [item for item in self.scene.objects if item.get("realmodel_view") == kind]
+
+    def test_on_the_cut(self):
+        view = self.model.view
+        view.show_field_section = True
+        self.assertEqual(self.body("field section"), [])
+        self.assertIn("Add a section plane", " ".join(draw_tab(bpy.context).labels))
+        ops.section_plane(axis="Y")
+        view.use_section = True
+        (item,) = self.body("field section")
+        y = [vertex.co.y for vertex in item.data.vertices]
+        self.assertLess(max(y) - min(y), 1e-3)
+        used = {polygon.material_index for polygon in item.data.polygons}
+        self.assertGreater(len(used), 8)
+        (key,) = [key for key in overlay._keys(self.scene) if key.title == "Field of folded beds"]
+        self.assertEqual(tuple(key.limits), tuple(view.field_limits))
+        view.plane.location.y += 100.0
+        bpy.context.view_layer.update()
+        cuts.cut_now(self.scene)
+        display.mode_changed(self.scene)
+        (moved,) = self.body("field section")
+        self.assertAlmostEqual(moved.data.vertices[0].co.y - y[0], 100.0, delta=1e-2)
+        view.use_section = False
+        self.assertEqual(self.body("field section"), [])
+
+    def test_level_sets(self):
+        view = self.model.view
+        view.field_levels = 3
+        self.assertEqual(self.body("field levels"), [])
+        view.show_field_levels = True
+        (item,) = self.body("field levels")
+        self.assertEqual(len({polygon.material_index for polygon in item.data.polygons}), 3)
+        view.field_levels = 5
+        (item,) = self.body("field levels")
+        self.assertEqual(len({polygon.material_index for polygon in item.data.polygons}), 5)
+        low = min(vertex.co.z for vertex in item.data.vertices)
+        ops.build()  # they are made anew
+        (again,) = self.body("field levels")
+        self.assertAlmostEqual(min(vertex.co.z for vertex in again.data.vertices), low, delta=1e-3)
+        ops.clear()
+        self.assertEqual(self.body("field levels"), [])
+        self.assertFalse(any(key.title.startswith("Field") for key in overlay._keys(self.scene)))
 
 
 class LiveField(PanelCase):

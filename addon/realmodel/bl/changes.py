@@ -40,6 +40,7 @@ coloring = _unless_filling(display.colors_changed)
 view = _unless_filling(display.mode_changed)  # of settings of the display
 residuals = _unless_filling(display.residuals_changed)
 field_data = _unless_filling(display.field_changed)
+fields = _unless_filling(display.fields_changed)
 ensemble = _unless_filling(display.ensemble_changed)
 exaggeration = _unless_filling(display.exaggeration_changed)
 section = _unless_filling(display.section_changed)  # another plane, or none

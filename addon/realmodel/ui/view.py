@@ -5,7 +5,7 @@ import bpy
 
 from .. import props_stage
 from ..bl import compartments, library_rows, project_settings, settings, units
-from ..bl.display import coordinates, cuts, modes, preparing, residuals, viewpoints
+from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals, viewpoints
 from .lists import draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
 
@@ -155,6 +155,33 @@ def _section_buttons(layout, operator, along, saving):
     row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
+
+
+class REALMODEL_PT_view_fields(OfABuiltModel, FoldedPanel, bpy.types.Panel):
+    bl_label = "Fields"
+    bl_parent_id = "REALMODEL_PT_view"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and bool(fields.series(context.scene))
+
+    def draw_in(self, layout, context, group):
+        view = group.view
+        if len(fields.series(context.scene)) > 1:
+            layout.prop(view, "field_series")
+        row = layout.row(align=True)
+        row.prop(view, "show_field_section")
+        if fields.is_working(context.scene):
+            row.label(icon="SORTTIME")
+        if view.show_field_section and not cuts.is_shown(context.scene):
+            hint(layout, "Add a section plane, and switch on Show Cut (Section).")
+        row = layout.row(align=True, heading="Level Sets")
+        row.prop(view, "show_field_levels", text="")
+        number = row.row()
+        number.active = view.show_field_levels
+        number.prop(view, "field_levels", text="")
+        if view.show_field_levels and group.display == "BLOCKS" and not cuts.is_shown(context.scene):
+            hint(layout, "They lie inside the blocks: show the cut, or other than blocks.")
 
 
 class REALMODEL_PT_view_camera(OfABuiltModel, FoldedPanel, bpy.types.Panel):

@@ -13,6 +13,7 @@ drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
 colors        the meaning of the colors
 ensembles      the section of an ensemble
+fields         the field of a series: on the face of the cut, and as level sets
 cuts, sections the movable plane; sections as mesh objects
 preparing      long work, in a thread
 viewpoints     the view directions of the viewports
@@ -35,6 +36,7 @@ from . import (
     drawing,
     ensembles,
     explosion,
+    fields,
     modes,
     preparing,
     render_marks,
@@ -54,6 +56,7 @@ def register():
     """Called when the add-on is enabled."""
     cuts.show_with(mode_changed)
     preparing.show_with(show_all)
+    fields.show_with(exaggeration_changed)
     drawing.handler.register()
 
 
@@ -67,6 +70,7 @@ def stop():
     """Stops all work: another file was opened, or the add-on is disabled."""
     cuts.stop()
     preparing.stop()
+    fields.stop()
     replacing.stop()
 
 
@@ -98,12 +102,14 @@ def mode_changed(scene):
     """The display mode was changed, or a surface or property hidden or shown, or the cut is another one."""
     if _field is not None:
         _field.follow_cut(scene)
+    fields_changed(scene)
     _show(scene, display=scene.realmodel.display)
 
 
 def stage_changed(scene):
     """The stage was changed."""
     _show(scene, stage=scene.realmodel.stage)
+    fields_changed(scene)
 
 
 def explode_changed(scene):
@@ -138,6 +144,17 @@ def field_changed(scene):
     if scene.library is None and _field is not None:
         _field.show(scene)
         exaggeration_changed(scene)
+
+
+def fields_changed(scene):
+    """Other parts of the field of a series are to be shown, or the cut or the model is another one."""
+    if scene.library is not None:
+        return
+    try:
+        fields.show(scene)
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
+    exaggeration_changed(scene)
 
 
 def show_field_with(shown):
@@ -192,6 +209,7 @@ def built(scene, bounds, stage=None):
     if group.view.show_residuals:
         residuals_changed(scene)
     field_changed(scene)
+    fields_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -210,6 +228,7 @@ def cleared(scene):
     residuals.hide(scene)
     field_changed(scene)
     cuts.take_off(scene)
+    fields_changed(scene)
     colors.forget(scene)
     modes.without_blocks(scene)
     exaggeration_changed(scene)

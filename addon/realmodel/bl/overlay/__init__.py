@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from .. import caches, exaggeration, project_settings
-from ..display import colors, ensembles, explosion, residuals
+from ..display import colors, ensembles, explosion, fields, residuals
 from ..field import boreholes
 
 WIDTH = 900.0  # points across the longer side of a picture
@@ -72,7 +72,7 @@ def _keys(scene):
     """The core's ColorKeys of what colors are to be seen."""
     if not scene.realmodel.view.show_legend:
         return ()
-    of_model = (colors.key, residuals.key, ensembles.key) if len(scene.realmodel.results) else ()
+    of_model = (colors.key, residuals.key, ensembles.key, fields.key) if len(scene.realmodel.results) else ()
     found = (key(scene) for key in (*of_model, boreholes.key))
     return tuple(key for key in found if key is not None)
 

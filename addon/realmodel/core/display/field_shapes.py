@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The field of a series to look at: its bands of equal values on a section of the model, and level sets of
+any number of values in the rock of the series."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.algebra import norm
+from ..base.errors import UsageError
+from ..base.work import Work, native_module, run
+from ..cells.model_data import ModelData
+from ..fields import level_solids, within_lattice
+from ..proof.closed_form import ClosedForm, closed_forms
+from ..results.section_data import SectionData
+from ..surfaces.rock_input import RockInput
+from ..surfaces.series_field import SeriesField
+
+_FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice
+_ROUNDS = 14  # in which triangles of a section are halved at most
+_BORDER_ROUNDS = 2  # in which triangles of level sets that leave the rock are divided
+
+
+def series_with_fields(model: ModelData) -> list[str]:
+    """The names of the series of a model that have fields."""
+    return [own.name for entry in model.rock_inputs for own in entry.fields]
+
+
+def field_range(model: ModelData, series: str) -> tuple[float, float]:
+    """The least and the greatest value of the field of a series in its rock. Raises UsageError where there is
+    no such field."""
+    rock, entry, own = _found(model, series)
+    cells = np.flatnonzero(np.isin(model.cell_block, _blocks_of(model, rock, own)))
+    faces = np.flatnonzero(np.isin(model.face_cells, cells).any(axis=1))
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    behind = model.face_cells[faces]
+    cell = np.where(np.isin(behind[:, 0], cells), behind[:, 0], behind[:, 1])
+    where = _local(model, entry)[model.cell_compartment[np.repeat(cell, np.diff(offsets))]]
+    values = _values(own, model.vertices[corners], where)
+    values = values[np.isfinite(values)]
+    return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
+
+
+def field_section(
+    model: ModelData, series: str, found: SectionData, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The rock of a series on a section of the model, divided where its field has `values` (L,), rising:
+    triangles (T, 3, 3), corner by corner, and (T,) how many of the values the field is above there. Raises
+    UsageError where there is no such field."""
+    rock, entry, own = _found(model, series)
+    kept = np.isin(found.block, _blocks_of(model, rock, own))
+    if not kept.any():
+        return np.empty((0, 3, 3)), np.empty(0, np.int64)
+    corners, begins = native_module().triangulate_faces(found.vertices, found.offsets, found.polygon_vertices)
+    polygon = np.repeat(np.arange(len(found)), np.diff(begins))
+    chosen = kept[polygon]
+    places = found.vertices[corners[chosen]]
+    where = _local(model, entry)[found.compartment[polygon[chosen]]]
+    longest = _FINE * min(field.lattice.spacing[0] for field in own.fields)
+    places, where = _halved(places, where, longest)
+    of_corners = _values(own, places.reshape(-1, 3), np.repeat(where, 3)).reshape(-1, 3)
+    for value in values.tolist():
+        places, of_corners = _divided(places, of_corners, value)
+    return places, np.searchsorted(values, of_corners.mean(axis=1))
+
+
+def field_levels(model: ModelData, series: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The level sets of the field of a series at `values` (L,), rising, as far as they lie in its rock:
+    triangles (T, 3, 3), corner by corner, and (T,) the number of the value of each. Raises UsageError where
+    there is no such field."""
+    rock, _, own = _found(model, series)
+    form, blocks = closed_forms(model)[rock], _blocks_of(model, rock, own)
+
+    def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
+        parts, numbers = [np.empty((0, 3, 3))], [np.empty(0, np.int64)]
+        for field, compartments in own.distinct().items():
+            given = replace(field, levels=np.ascontiguousarray(values, np.float64))
+            for number, solid in enumerate(level_solids(work, given)):
+                sheet = within_lattice(field, solid)
+                inside = _within(work, form, blocks, compartments)
+                kept = _cut_off(sheet.vertices[sheet.triangles], inside)
+                parts.append(kept)
+                numbers.append(np.full(len(kept), number))
+        return np.concatenate(parts), np.concatenate(numbers)
+
+    return run(task, threads=model.threads)
+
+
+def _found(model: ModelData, series: str) -> tuple[int, RockInput, SeriesField]:
+    for rock, entry in enumerate(model.rock_inputs):
+        for own in entry.fields:
+            if own.name == series:
+                return rock, entry, own
+    there = ", ".join(series_with_fields(model))
+    raise UsageError(
+        f"no series '{series}' with a field: {f'there are {there}' if there else 'there is none'}"
+    )
+
+
+def _blocks_of(model: ModelData, rock: int, own: SeriesField) -> np.ndarray:
+    """The numbers of the blocks beneath the surfaces of a series."""
+    first = sum(len(entry.rock.surfaces) for entry in model.rock_inputs[:rock])
+    surfaces = [first + number for number in own.numbers]
+    return np.array([n for n, block in enumerate(model.blocks) if block.surface in surfaces], np.int64)
+
+
+def _local(model: ModelData, entry: RockInput) -> np.ndarray:
+    """For each compartment of a model its number in a rock mass; -1 where it is of another."""
+    names = [name or entry.rock.name for name in entry.divided().names]
+    if len(model.rock_inputs) > 1:
+        names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
+    known = {name: number for number, name in enumerate(names)}
+    if len(names) == 1:
+        return np.zeros(max(len(model.compartment_names), 1), np.int64)
+    return np.array([known.get(name, -1) for name in model.compartment_names], np.int64)
+
+
+def _values(own: SeriesField, points: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """(N,) f at points (N, 3) in the compartments `where`."""
+    found = np.full(len(points), np.nan)
+    for field, compartments in own.distinct().items():
+        here = np.flatnonzero(np.isin(where, compartments))
+        if len(here):
+            found[here] = field.at(points[here])
+    return found
+
+
+def _halved(places: np.ndarray, where: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (T, 3, 3) halved across their longest edges until none is longer."""
+    done, done_where = [], []
+    for _ in range(_ROUNDS):
+        lengths = norm((np.roll(places, -1, axis=1) - places).reshape(-1, 3)).reshape(-1, 3)
+        is_long = lengths.max(axis=1) > longest
+        done.append(places[~is_long])
+        done_where.append(where[~is_long])
+        a, b, c = _turned(places[is_long], lengths[is_long].argmax(axis=1))
+        middle = 0.5 * (a + b)
+        places = np.concatenate([np.stack(each, axis=1) for each in ((a, middle, c), (middle, b, c))])
+        where = np.tile(where[is_long], 2)
+        if not len(places):
+            break
+    return np.concatenate([*done, places]), np.concatenate([*done_where, where])
+
+
+def _turned(corners: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The three corners of triangles (T, 3, ...), each beginning with the one of the number `first` (T,)."""
+    rows = np.arange(len(corners))
+    return tuple(corners[rows, (first + step) % 3] for step in range(3))
+
+
+def _divided(places: np.ndarray, values: np.ndarray, level: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (T, 3, 3) on which f is linear, with its values (T, 3) at the corners, divided where it has a
+    level."""
+    above = values > level
+    is_met = (values.min(axis=1) < level) & (values.max(axis=1) > level)
+    lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))[is_met]
+    (a, b, c), (u, v, w) = _turned(places[is_met], lone), _turned(values[is_met], lone)
+    ends = []
+    for other, there in ((b, v), (c, w)):
+        share = ((level - u) / (there - u))[:, None]
+        ends.append(a + share * (other - a))
+    p, q = ends
+    on = np.full(len(u), level)
+    parts = ((a, p, q), (u, on, on)), ((p, b, c), (on, v, w)), ((p, c, q), (on, w, on))
+    return (
+        np.concatenate([places[~is_met], *(np.stack(corners, axis=1) for corners, _ in parts)]),
+        np.concatenate([values[~is_met], *(np.stack(each, axis=1) for _, each in parts)]),
+    )
+
+
+def _within(work: Work, form: ClosedForm, blocks: np.ndarray, compartments: list[int]):
+    """A function of points (N, 3): whether they lie in some blocks, in some compartments."""
+
+    def inside(points: np.ndarray) -> np.ndarray:
+        there = np.isin(form.blocks_at(work, points), blocks)
+        return there & np.isin(form.compartments_of(work, points), compartments)
+
+    return inside
+
+
+def _cut_off(places: np.ndarray, inside) -> np.ndarray:
+    """The triangles of (T, 3, 3) that lie inside; those that partly do are divided in four, some times."""
+    kept = []
+    for _ in range(_BORDER_ROUNDS):
+        corners, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
+        count = inside(corners)[number.reshape(-1, 3)].sum(axis=1) if len(corners) else np.empty(0)
+        kept.append(places[count == 3])
+        a, b, c = places[(count > 0) & (count < 3)].transpose(1, 0, 2)
+        p, q, r = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+        parts = (a, p, r), (p, b, q), (r, q, c), (p, q, r)
+        places = np.concatenate([np.stack(each, axis=1) for each in parts])
+        if not len(places):
+            return np.concatenate(kept)
+    return np.concatenate([*kept, places[inside(places.mean(axis=1))]])
