@@ -35,6 +35,7 @@ class GuidePictures(PanelCase):
 
     def test_a_missing_setting_is_noticed(self):
         ops.open_sample(sample=guide_panels.EXAMPLE, build=False)
+        self.model.rocks[0].active_surface = 2
         shown = guide_panels.shown(bpy.context, "surfaces")
         self.assertIn("RealModelSurface.method", shown)
         self.assertIn("realmodel.draw_contacts", shown)
