@@ -47,7 +47,7 @@ class Task:
     method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be estimated from
     the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3)). dips:
     of the surface, no two at one position, or None. bounds: heights that it lies above or below, or None.
-    companions: the sheets of its series, with which it is kriged together, or None. true_thickness: the
+    companions: the sheets of its series, with which it is interpolated together, or None. true_thickness: the
     thickness above the surface that it is parallel to is measured perpendicular to that."""
 
     work: Work

@@ -3,10 +3,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.work import native_module
+from ..settings.dips import Dips
+from ..settings.methods import checked_options
+from .companions import Companions, pooled
+from .from_neighbours import structure
 from .interpolation import Result, Task
 from .surface_reference import heights_of
 
@@ -15,8 +21,52 @@ BOUNDS = tuple(_ARGUMENTS)
 
 
 def dsi(task: Task) -> Result:
+    """The smoothest heights. Of a sheet of a series they are those that all sheets have in common, and the
+    smoothest differences from these."""
     if task.triangles is None:
         raise UsageError("method 'dsi' works on a mesh: give the triangles of the nodes")
+    return _smoothest(task) if task.companions is None else _of_series(task, task.companions)
+
+
+def _of_series(task: Task, companions: Companions) -> Result:
+    """What sheets have in common goes through the contacts of all of them, each less what its sheet lies
+    above the others as kriging estimates it, and has their dips."""
+    points, dips = companions.data(task.points, task.dips)
+    kriged = structure(replace(task, settings=checked_options("kriging", {})))
+    assert kriged.sheets is not None
+    offsets = kriged.sheets.offsets
+    known = [each for each in dips if each is not None]
+    of_all = Dips.joined(known).merged()[0] if known else None
+    alone = replace(task, companions=None)
+    free = {**task.settings, **dict.fromkeys(BOUNDS)}
+    common = replace(alone, points=pooled(points, offsets), dips=of_all, bounds=None, settings=free)
+    base = _smoothest(common).z + offsets[companions.own]
+    settings = dict(task.settings)
+    for option in BOUNDS:
+        if settings[option] is not None:
+            settings[option] = heights_of(task, settings[option], task.nodes, option) - base
+    own, bounds = _above(task, task.points, base), task.bounds
+    if bounds is not None:
+        places = _above(task, bounds.places, base)
+        bounds = replace(bounds, places=places)
+    if task.dips is not None:  # these slopes are common
+        alone = replace(alone, dips=replace(task.dips, gradients=np.zeros_like(task.dips.gradients)))
+    result = _smoothest(replace(alone, points=own, bounds=bounds, settings=settings))
+    result.z = base + result.z
+    return result
+
+
+def _above(task: Task, points: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """(P, 3) points with their heights above heights at the nodes; beyond the mesh, where they do not count,
+    they stay."""
+    under = heights_of(task, base, np.ascontiguousarray(points[:, :2]), "base")
+    found = points.copy()
+    found[:, 2] -= np.nan_to_num(under)
+    return found
+
+
+def _smoothest(task: Task) -> Result:
+    assert task.triangles is not None
     settings = task.settings
     given = {}
     for option, argument in _ARGUMENTS.items():

@@ -98,8 +98,10 @@ def _check_sheets(rock, series: Series, own: list[int], refuse: Refuse) -> None:
         surface = rock.surfaces[number]
         if not surface.interpolated or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
             how = f"has method '{surface.method}'" if surface.interpolated else "is a mesh"
-            what = f"its surfaces are kriged together, and '{surface.name}' {how}"
-            raise refuse(what, "name", f"methods of sheets are {' and '.join(SHEET_METHODS)}")
+            what = f"its surfaces are interpolated together, and '{surface.name}' {how}"
+            raise refuse(
+                what, "name", f"methods of sheets are {', '.join(SHEET_METHODS[:-1])} and {SHEET_METHODS[-1]}"
+            )
 
 
 def _check_dips(series: Series, refuse: Refuse) -> None:
