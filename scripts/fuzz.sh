@@ -3,7 +3,7 @@
 # Hunts for stacks of surfaces that the builder gets wrong, for as long as asked. Findings are made
 # small and lie in build/findings; copied to tests/data/stacks, the tests judge them from then on.
 #
-#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures]
+#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds]
 #     SEED         a whole number; the stacks of a seed are always the same (default: the time)
 #     --coverage   guided by what the stacks reach in the code: clang++'s libFuzzer, under
 #                  AddressSanitizer and UndefinedBehaviorSanitizer
@@ -11,6 +11,7 @@
 #                  taken at random; slower
 #     --booleans   pairs of surfaces that are intersected; findings belong in tests/data/booleans
 #     --structures models with faults and bodies; findings belong in tests/data/structures
+#     --folds      models with series of folds; findings belong in tests/data/folds
 # The exit status is 1 where something was found.
 #
 # shellcheck disable=SC2317  # functions are called by name
@@ -19,13 +20,13 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
 usage() {
-    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures]" >&2
+    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds]" >&2
     exit 2
 }
 way=native numbers=()
 while (($# > 0)); do
     case $1 in
-        --coverage | --python | --booleans | --structures) way=${1#--} ;;
+        --coverage | --python | --booleans | --structures | --folds) way=${1#--} ;;
         *[!0-9]* | '') usage ;;
         *) numbers+=("$1") ;;
     esac
@@ -68,6 +69,11 @@ structures() { # SEED
         --every "$processors" --into "$findings"
 }
 
+folds() { # SEED
+    PYTHONPATH=addon build/venv/bin/python -m tests.core.faulted.hunt "$seconds" "$1" \
+        --every "$processors" --into "$findings" --folds
+}
+
 coverage() { # SEED
     mkdir -p build/reached
     REALMODEL_FUZZ_CORPUS=tests/data/stacks REALMODEL_FUZZ_INTO=$findings \
@@ -82,7 +88,7 @@ case $way in
         cmake --preset release --log-level=WARNING
         cmake --build build/release --target stack_fuzzer boolean_fuzzer -j 2
         ;;
-    python | structures)
+    python | structures | folds)
         scripts/build.sh /usr/bin/python3
         scripts/python_environment.sh build/venv scripts/requirements/test.txt /usr/bin/python3
         ;;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// level_sets, moved_onto_levels, field_at.
+// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between.
 #include "realmodel/fields/level_sets.hpp"
 
 #include <pybind11/numpy.h>
@@ -60,6 +60,30 @@ Array<double> field_at(const LatticeTuple& lattice, const Array<double>& values,
     return to_array(std::move(found));
 }
 
+py::tuple tetrahedra_at(const LatticeTuple& lattice, const Array<double>& values,
+                        const PointsTuple& points, const Array<double>& positions,
+                        WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
+    require_columns(positions, 3, "positions");
+    fields::TetrahedraAt found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = fields::tetrahedra_at(field, view(positions), run(execution));
+    }
+    return py::make_tuple(to_array(std::move(found.corners)), to_array(std::move(found.weights)));
+}
+
+Array<std::uint8_t> points_between(const LatticeTuple& lattice, const Array<double>& values,
+                                   const PointsTuple& points, WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
+    std::vector<std::uint8_t> found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = fields::points_between(field, run(execution));
+    }
+    return to_array(std::move(found));
+}
+
 }  // namespace
 
 void bind_level_sets(py::module_& m) {
@@ -77,6 +101,14 @@ field is greater.)doc");
     m.def("field_at", &field_at, py::arg("lattice"), py::arg("values"), py::arg("points"),
           py::arg("positions"), py::arg("execution") = py::none(), R"doc(
 (P,) float64: a field at positions (P, 3); NaN outside of its lattice. points: as of level_sets.)doc");
+    m.def("tetrahedra_at", &tetrahedra_at, py::arg("lattice"), py::arg("values"), py::arg("points"),
+          py::arg("positions"), py::arg("execution") = py::none(), R"doc(
+(P, 4) int64, the corners of the tetrahedra that positions (P, 3) are in: nodes, and points counted after all
+nodes; (P, 4) float64, their weights, which sum to 1. points: as of level_sets.)doc");
+    m.def("points_between", &points_between, py::arg("lattice"), py::arg("values"),
+          py::arg("points"), py::arg("execution") = py::none(), R"doc(
+(P,) uint8: of each point of a field whether it has corners with lesser and with greater values beside it. Where
+not, the level set of its value does not pass through it. points: as of level_sets.)doc");
 }
 
 }  // namespace realmodel::bindings

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "fields/refined_lattice.hpp"
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
 
@@ -255,6 +256,38 @@ std::vector<double> field_at(const LatticeField& field, std::span<const double> 
     parallel_ranges(found.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             found[i] = lattice.at({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+    });
+    return found;
+}
+
+TetrahedraAt tetrahedra_at(const LatticeField& field, std::span<const double> positions,
+                           const Execution& execution) {
+    const RefinedLattice lattice(field, {});
+    TetrahedraAt found;
+    found.corners.resize(positions.size() / 3);
+    found.weights.resize(positions.size() / 3);
+    parallel_ranges(
+        found.corners.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Vec3 p{positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+                const auto own = lattice.located(p);
+                if (!own)
+                    throw InputError("outside", "a position is outside of the lattice", -1,
+                                     {static_cast<std::int64_t>(i)}, p);
+                for (std::size_t k = 0; k < 4; ++k)
+                    found.corners[i][k] = lattice.number_of(own->corners[k]);
+                found.weights[i] = own->weights;
+            }
+        });
+    return found;
+}
+
+std::vector<std::uint8_t> points_between(const LatticeField& field, const Execution& execution) {
+    const RefinedLattice lattice(field, {});
+    std::vector<std::uint8_t> found(field.point_values.size());
+    parallel_ranges(found.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t point = begin; point < end; ++point)
+            found[point] = lattice.is_between(point) ? 1 : 0;
     });
     return found;
 }

@@ -109,14 +109,16 @@ Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corne
     return found;
 }
 
-std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
+std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p, bool with_layer) const {
     std::array<std::vector<std::int32_t>, 3> along;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto last = counts_[axis] - 2;
         if (!(p[axis] >= coordinate(axis, 0) && p[axis] <= coordinate(axis, last + 1))) return {};
         // rounding may be off by one
         const auto near = static_cast<std::int32_t>((p[axis] - origin_[axis]) / spacing_[axis]);
-        for (std::int32_t i = std::max(near - 2, 0); i <= std::min(near + 2, last); ++i) {
+        const std::int32_t beyond = with_layer ? 1 : 0;
+        for (std::int32_t i = std::max(near - 2, -beyond); i <= std::min(near + 2, last + beyond);
+             ++i) {
             if (p[axis] >= coordinate(axis, i) && p[axis] <= coordinate(axis, i + 1))
                 along[axis].push_back(i);
         }
@@ -165,7 +167,7 @@ std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedr
 }
 
 void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
-    const auto cells = cells_at(p);
+    const auto cells = cells_at(p, true);
     if (cells.empty())
         throw InputError("outside", "a point is outside of the lattice", -1,
                          {static_cast<std::int64_t>(point)}, p);
@@ -194,9 +196,11 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
             values_[static_cast<std::size_t>(corner)] = value;
             point_at_node_.emplace(corner, point);
         }
+        corner_of_point_.push_back(corner);
         return;
     }
     const std::int64_t own = nodes_ + static_cast<std::int64_t>(point);
+    corner_of_point_.push_back(own);
     for (const CellIndex& cell : cells) {
         std::vector<Tetrahedron> divided;
         for (const Tetrahedron& tetrahedron : make_divided(cell)) {
@@ -218,39 +222,41 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     }
 }
 
-/// By the tetrahedron that p is in but for rounding. Of those that are flat but for rounding their
-/// neighbors have the same values.
-double RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
-                                     const Vec3& p) const {
+/// Of those that are flat but for rounding their neighbors have the same values.
+Located RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra,
+                                      const Vec3& p) const {
     const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
-    double best = -HUGE_VAL, found = 0;
+    double best = -HUGE_VAL;
+    Located found{};
     for (const Tetrahedron& tetrahedron : tetrahedra) {
         std::array<Vec3, 4> at{};
+        Located own{tetrahedron, {}};
         for (std::size_t i = 0; i < 4; ++i) {
             at[i] = position(tetrahedron[i]);
-            if (at[i] == p) return value(tetrahedron[i]);
+            if (at[i] != p) continue;
+            own.weights[i] = 1;
+            return own;
         }
         const double whole = sixfold_volume(at[0], at[1], at[2], at[3]);
         if (whole < least_whole) continue;
-        double least = HUGE_VAL, sum = 0;
+        double least = HUGE_VAL;
         for (std::size_t i = 0; i < 4; ++i) {
             auto with = at;
             with[i] = p;
-            const double weight = sixfold_volume(with[0], with[1], with[2], with[3]) / whole;
-            least = std::min(least, weight);
-            sum += weight * value(tetrahedron[i]);
+            own.weights[i] = sixfold_volume(with[0], with[1], with[2], with[3]) / whole;
+            least = std::min(least, own.weights[i]);
         }
         if (least > best) {
             best = least;
-            found = sum;
+            found = own;
         }
     }
     return found;
 }
 
-double RefinedLattice::at(const Vec3& p) const {
-    const auto cells = cells_at(p);
-    if (cells.empty()) return std::numeric_limits<double>::quiet_NaN();
+std::optional<Located> RefinedLattice::located(const Vec3& p) const {
+    const auto cells = cells_at(p, false);
+    if (cells.empty()) return std::nullopt;
     const CellIndex& cell = cells.front();
     if (const auto* tetrahedra = divided(cell)) return in_tetrahedra(*tetrahedra, p);
     // from the lowest corner to the highest, the axis with the largest share first
@@ -261,13 +267,52 @@ double RefinedLattice::at(const Vec3& p) const {
     std::array<std::size_t, 3> axes{0, 1, 2};
     std::ranges::stable_sort(axes, std::greater<>(),
                              [&](std::size_t axis) { return shares[axis]; });
-    std::int64_t corner = node(cell);
-    double sum = value(corner) * (1 - shares[axes[0]]);
+    Located found{{node(cell)}, {1 - shares[axes[0]]}};
     for (std::size_t i = 0; i < 3; ++i) {
-        corner += stride_[axes[i]];
-        sum += value(corner) * (shares[axes[i]] - (i < 2 ? shares[axes[i + 1]] : 0));
+        found.corners[i + 1] = found.corners[i] + stride_[axes[i]];
+        found.weights[i + 1] = shares[axes[i]] - (i < 2 ? shares[axes[i + 1]] : 0);
     }
+    return found;
+}
+
+double RefinedLattice::at(const Vec3& p) const {
+    const auto found = located(p);
+    if (!found) return std::numeric_limits<double>::quiet_NaN();
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        sum += value(found->corners[i]) * found->weights[i];
     return sum;
+}
+
+bool RefinedLattice::is_between(std::size_t point) const {
+    const std::int64_t corner = corner_of_point_[point];
+    const double own = value(corner);
+    bool lesser = false, greater = false;
+    const auto look = [&](const Tetrahedron& tetrahedron) {
+        if (std::ranges::find(tetrahedron, corner) == tetrahedron.end()) return;
+        for (const std::int64_t other : tetrahedron) {
+            lesser |= value(other) < own;
+            greater |= value(other) > own;
+        }
+    };
+    for (const CellIndex& cell : cells_at(points_[point], true)) {
+        if (const auto* tetrahedra = divided(cell)) {
+            std::ranges::for_each(*tetrahedra, look);
+            continue;
+        }
+        const auto all = corners(cell);
+        for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
+            look(tetrahedron(all, number));
+    }
+    return lesser && greater;
+}
+
+std::int64_t RefinedLattice::number_of(std::int64_t corner) const {
+    if (corner >= nodes_)
+        return corner - nodes_ + static_cast<std::int64_t>(counts_[0]) * counts_[1] * counts_[2];
+    const std::int64_t i = corner % stride_[1] - 1, j = corner % stride_[2] / stride_[1] - 1,
+                       k = corner / stride_[2] - 1;
+    return i + counts_[0] * (j + counts_[1] * k);
 }
 
 }  // namespace realmodel::fields

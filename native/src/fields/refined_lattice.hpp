@@ -14,6 +14,11 @@ namespace realmodel::fields {
 
 /// The corners of a tetrahedron, of positive volume.
 using Tetrahedron = std::array<std::int64_t, 4>;
+/// The corners of the tetrahedron that a position is in, and their weights there, which sum to 1.
+struct Located {
+    Tetrahedron corners;
+    std::array<double, 4> weights;
+};
 /// The lowest corner of a cell, by its steps along x, y, z from the lattice's first node.
 using CellIndex = std::array<std::int32_t, 3>;
 
@@ -54,8 +59,16 @@ public:
     static Tetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners, std::size_t number);
     /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.
     std::array<std::int64_t, 8> corners(const CellIndex& cell) const;
+    /// The tetrahedron that a position of the lattice is in, but for rounding; nothing outside.
+    std::optional<Located> located(const Vec3& p) const;
     /// The function at a position of the lattice; NaN outside.
     double at(const Vec3& p) const;
+    /// Whether beside a point there are corners with lesser and with greater values: then the level
+    /// set of its value passes through it.
+    bool is_between(std::size_t point) const;
+    /// The number of a corner of the lattice: that of a node, as LatticeField has them, and of a
+    /// point, counted after all nodes.
+    std::int64_t number_of(std::int64_t corner) const;
 
 private:
     double coordinate(std::size_t axis, std::int32_t step) const {
@@ -63,13 +76,13 @@ private:
     }
     void add_layer(const LatticeField& field, std::span<const double> levels);
     void add_point(std::size_t point, const Vec3& p);
-    /// The cells of the lattice whose boxes contain a position, -1 none.
-    std::vector<CellIndex> cells_at(const Vec3& p) const;
+    /// The cells whose boxes contain a position of the lattice, with or without those of the layer.
+    std::vector<CellIndex> cells_at(const Vec3& p, bool with_layer) const;
     std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
     std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
                                                      exact::SpacePointId p);
     exact::SpacePointId exact(std::int64_t corner);
-    double in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Vec3& p) const;
+    Located in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Vec3& p) const;
 
     std::array<double, 3> origin_, spacing_;
     std::array<std::int32_t, 3> counts_;
@@ -78,6 +91,7 @@ private:
     std::vector<double> values_;
     std::vector<Vec3> points_;
     std::vector<double> point_values_;
+    std::vector<std::int64_t> corner_of_point_;
     std::map<std::int64_t, std::size_t> point_at_node_;
     std::map<std::int64_t, std::vector<Tetrahedron>> divided_;  ///< by the cell's lowest corner
     exact::SpacePoints exact_;

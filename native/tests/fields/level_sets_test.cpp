@@ -238,5 +238,78 @@ TEST(LevelSetsTest, WhatMakesNoFieldIsRefused) {
     expect_refused(down, {2, 1}, "bad_lattice");
 }
 
+double slope(const Point& p) {
+    return p[2] + 0.3 * p[0] - 0.2 * p[1];
+}
+
+/// A lattice whose coordinates have few binary digits: the middles of its edges lie exactly on
+/// them.
+Sampled short_lattice(const std::function<double(const Point&)>& f) {
+    return {{5, 6, 7}, {1, 0.5, 0.75}, f};
+}
+
+TEST(TetrahedraAtTest, WeightsGiveThePositionsAndTheValuesBack) {
+    Sampled field = short_lattice(slope);
+    field.add({0.5, 2.25, 0.875}, 7);  // the middle of a diagonal
+    field.add({1.2, 3.1, 2.3}, -1);
+    std::mt19937 random(3);
+    std::vector<double> positions;
+    for (int n = 0; n < 400; ++n) {
+        positions.push_back(std::uniform_real_distribution(-1.0, 3.0)(random));
+        positions.push_back(std::uniform_real_distribution(2.0, 4.5)(random));
+        positions.push_back(std::uniform_real_distribution(0.5, 5.0)(random));
+    }
+    positions.insert(positions.end(), field.points.begin(), field.points.end());
+    const LatticeField& view = field.view();
+    const TetrahedraAt found = tetrahedra_at(view, positions, {2, nullptr});
+    const std::vector<double> values = field_at(view, positions, {1, nullptr});
+    const auto nodes = static_cast<std::int64_t>(field.values.size());
+    for (std::size_t n = 0; n < found.corners.size(); ++n) {
+        Point at{};
+        double value = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::int64_t corner = found.corners[n][k];
+            const auto own = static_cast<std::size_t>(corner < nodes ? corner : corner - nodes);
+            const auto i = static_cast<std::int32_t>(own % 5);
+            const auto j = static_cast<std::int32_t>(own / 5 % 6);
+            const Point node = field.node({i, j, static_cast<std::int32_t>(own / 30)});
+            const double weight = found.weights[n][k];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                at[axis] += weight * (corner < nodes ? node[axis] : field.points[3 * own + axis]);
+            value += weight * (corner < nodes ? field.values[own] : field.point_values[own]);
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(at[axis], positions[3 * n + axis], 1e-12);
+        EXPECT_NEAR(value, values[n], 1e-12);
+    }
+    EXPECT_EQ(found.corners[401][0] >= nodes || found.weights[401][0] < 1, true);
+    positions[1] = 99;
+    EXPECT_THROW(tetrahedra_at(view, positions, {1, nullptr}), InputError);
+}
+
+TEST(PointsBetweenTest, APeakIsNoPlaceThatItsLevelPassesThrough) {
+    Sampled field = short_lattice(slope);
+    const Point inside{0.7, 3.1, 2.3}, node = field.node({2, 2, 2}), same{2.1, 3.3, 2.9};
+    field.add(inside, slope(inside));
+    field.add({1.6, 2.6, 1.7}, 40);  // above all around it
+    field.add({0.3, 3.8, 3.7}, -40);
+    field.add(node, slope(node));
+    field.add(same, slope(same));
+    field.add(same, slope(same));
+    field.add({-1, 2.3, 1.1}, slope({-1, 2.3, 1.1}));  // on the border
+    const std::vector<std::uint8_t> expected{1, 0, 0, 1, 1, 1, 1};
+    EXPECT_EQ(points_between(field.view(), {1, nullptr}), expected);
+    EXPECT_EQ(points_between(field.view(), {3, nullptr}), expected);
+}
+
+TEST(LevelSetsTest, AMiddleOfAnEdgeOnTheBorderDividesTheLayerAroundIt) {
+    Sampled field = short_lattice(slope);
+    const std::vector<double> before = field.values;
+    field.add({-1, 2.25, 0.5}, 9);     // of an edge of the box
+    field.add({-1, 3.25, 2.375}, -9);  // of a diagonal of its side
+    for (const LevelSet& set : field.at({2.0, 4.0}))
+        expect_closed(set);
+}
+
 }  // namespace
 }  // namespace realmodel::fields

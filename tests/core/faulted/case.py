@@ -115,22 +115,25 @@ class Case:
         counts += [len(s.points) for rock in self.rocks for s in rock.surfaces if s.points is not None]
         return sum(counts) + sum(len(rock.surfaces) for rock in self.rocks)
 
+    def summary(self):
+        return f"{len(self.faults)} faults, {len(self.bodies)} bodies"
 
-def _plain(value):
+
+def plain(value):
     """Arrays as lists; doubles that are no small integers as exact hexadecimal text."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items() if each is not None}
+        return {key: plain(each) for key, each in value.items() if each is not None}
     if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
+        return [plain(each) for each in value]
     if isinstance(value, float):
         return int(value) if value.is_integer() and abs(value) < 2**53 else value.hex()
     return value
 
 
 def save_case(case, path, why=""):
-    text = json.dumps({"why": why, **_plain(asdict(case))}, indent=1)
+    text = json.dumps({"why": why, **plain(asdict(case))}, indent=1)
     # one row of numbers a line reads better than one number a line
     text = re.sub(r"\[\s*([^\[\]{}]*?)\s*\]", lambda row: "[" + " ".join(row.group(1).split()) + "]", text)
     Path(path).write_text(text + "\n", encoding="utf-8")

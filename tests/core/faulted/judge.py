@@ -47,7 +47,7 @@ def failures_of(case, count=240, seed=1):
         failures += [f"validation: {test.name}: {test.offenders[:2]}" for test in report.tests if test.failed]
     if int(case.label or 0) % 3 == 0:
         again = build(case.project(), cells=case.cells, threads=2)
-        if _bytes(again) != _bytes(model):
+        if model_bytes(again) != model_bytes(model):
             failures.append("threads: two give other bytes than one")
     return failures
 
@@ -88,7 +88,7 @@ def _is_torn(case, error):
     return False
 
 
-def _bytes(model):
+def model_bytes(model):
     from realmodel.core.exporters.npz import model_arrays
 
     buffer = io.BytesIO()
@@ -127,7 +127,7 @@ def topology(model):
         failures.append(f"volumes: blocks have {given}, their cells {total}")
     checker = places.checker()
     if checker is not None:
-        buffer = io.BytesIO(_bytes(model))
+        buffer = io.BytesIO(model_bytes(model))
         failures += [f"checker: {text}" for text in checker.check_topology(checker.Complex(buffer))]
     return failures
 

@@ -17,7 +17,7 @@ def _subsets(count):
         chunk //= 2
 
 
-def _changed(case, change):
+def changed(case, change):
     other = copy.deepcopy(case)
     change(other)
     return other
@@ -107,17 +107,18 @@ def _rounder(case):
             yield _set(entry, **{key: np.round(getattr(own, key), digits)})
 
 
-def minimize(case, still_fails, steps=300):
-    """The smallest case found by greedy steps for which still_fails(case) holds."""
+def minimize(case, still_fails, steps=300, kinds=(_smaller, _rounder)):
+    """The smallest case found by greedy steps for which still_fails(case) holds. kinds: functions that give
+    the changes of a case to try."""
     progress = True
     while progress and steps > 0:
         progress = False
-        for changes in (_smaller, _rounder):
+        for changes in kinds:
             again = True
             while again and steps > 0:
                 again = False
                 for change in changes(case):
-                    candidate = _changed(case, change)
+                    candidate = changed(case, change)
                     if _is_same(case, candidate):
                         continue
                     steps -= 1

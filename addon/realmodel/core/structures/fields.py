@@ -43,6 +43,7 @@ from .sheets.within import Within
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
 _CELLS = 50_000  # of the lattice, about, where its resolution is automatic
 _MOST_NODES = 20_000_000
+_DIGITS = 20  # of an edge of the lattice
 _NEAR = 1e-12  # of the range of f: a bound so near holds
 _PLACES = 0.5  # of an edge of the lattice: how far places within intervals are apart at most
 _ROUNDS = 4  # in which bounds that contacts have put off are held
@@ -125,18 +126,21 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
         leave_out(entry, series, own, left_out)
         points = field.critical_points
         critical.append(points[within(points)])
-        fields |= dict.fromkeys(family.members, _through_data(entry, series, kept, field))
+        made = _through_data(work, entry, series, kept, field)
+        fields |= dict.fromkeys(family.members, made)
     points = np.concatenate(critical)
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
 
 
-def _through_data(entry: RockInput, series: Series, data: SeriesData, field: SolvedField) -> SolvedField:
+def _through_data(
+    work: Work, entry: RockInput, series: Series, data: SeriesData, field: SolvedField
+) -> SolvedField:
     """The field with contacts on its levels. Bounds that do not hold any more then are places on the level,
     too: they hold in the end. Warns of what is not honored."""
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
-        made = with_contacts(field, data.contacts, data.surfaces)
+        made = with_contacts(work, field, data.contacts, data.surfaces)
         kept = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(kept), bool)
         kept[field.bounds_missed] = False
@@ -148,7 +152,7 @@ def _through_data(entry: RockInput, series: Series, data: SeriesData, field: Sol
             places, first = np.unique(data.bounds[pinned], axis=0, return_index=True)
             surfaces = data.bound_surfaces[pinned][first]
             every = np.concatenate([data.contacts, places]), np.concatenate([data.surfaces, surfaces])
-            made = with_contacts(field, *every)
+            made = with_contacts(work, field, *every)
     warn_of_field(entry, series, data, field, np.flatnonzero(data.is_off(made, _NEAR)))
     return made
 
@@ -178,7 +182,8 @@ def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -
     size = high - low
     is_auto = series.resolution == AUTO
     step = cube_root(float(size.prod()) / _CELLS) if is_auto else float(series.resolution)
-    origin = low - _MARGIN * step
+    step, unit = _short(step)
+    origin = unit * np.floor((low - _MARGIN * step) / unit)
     counts = np.ceil((high - origin) / step + 0.3).astype(np.int64) + 1
     if counts.astype(float).prod() > _MOST_NODES:
         coarser = step * cube_root(float(counts.astype(float).prod()) / _MOST_NODES)
@@ -186,6 +191,14 @@ def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -
         advice = f"use a resolution of {coarser:.2g} or more"
         raise series.refused(what, "resolution", advice, f"{entry.rock.item}, {series.item}")
     return Lattice(tuple(origin.tolist()), (step,) * 3, tuple(counts.tolist()))
+
+
+def _short(step: float) -> tuple[float, float]:
+    """A step as a number of 20 binary digits, and the last of these: on a lattice of such steps the middles
+    of edges are numbers, too, so that points there lie exactly on their edges."""
+    part, exponent = math.frexp(step)
+    unit = math.ldexp(1.0, exponent - _DIGITS)
+    return math.ldexp(round(math.ldexp(part, _DIGITS)), exponent - _DIGITS), unit
 
 
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:

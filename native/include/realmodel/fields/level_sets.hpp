@@ -48,4 +48,21 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
 std::vector<double> field_at(const LatticeField& field, std::span<const double> positions,
                              const Execution& execution);
 
+/// The corners of the tetrahedra that positions are in, but for rounding: nodes by their numbers,
+/// points counted after all nodes; and their weights there, which sum to 1.
+struct TetrahedraAt {
+    std::vector<std::array<std::int64_t, 4>> corners;
+    std::vector<std::array<double, 4>> weights;
+};
+
+/// @param positions  3 N coordinates
+/// @throws InputError  as level_sets does; outside (items: the position)
+TetrahedraAt tetrahedra_at(const LatticeField& field, std::span<const double> positions,
+                           const Execution& execution);
+
+/// Of each point of a field whether beside it there are corners with lesser and with greater
+/// values. Where there are not, the level set of its value does not pass through it.
+/// @throws InputError  as level_sets does
+std::vector<std::uint8_t> points_between(const LatticeField& field, const Execution& execution);
+
 }  // namespace realmodel::fields
