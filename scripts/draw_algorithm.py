@@ -236,7 +236,7 @@ def draw_around(d):
     for angle in ends:
         d.path([center, on_circle(angle)], INK, 2)
     d.dot(center, RED, 5)
-    d.text(92, 190, "around a place, at one height", 10.5, anchor="middle")
+    d.text(92, 190, "around a vertical, at one height", 10.5, anchor="middle")
 
     x = 250
     d.polygon([(190, 40), (x, 30), (x, 160), (190, 168)], SAND, INK, 1.2)
@@ -306,7 +306,7 @@ def draw_touched(d):
     step = 38
     columns, rows = 8, 5
     divided = {(3, 1, 0), (3, 1, 1), (3, 2, 0), (4, 2, 0), (4, 2, 1), (3, 2, 1)}
-    neighbours = set()
+    neighbors = set()
 
     def beside(c, r, half):
         # each square is cut from its lower left to its upper right corner: 0 above, 1 below
@@ -317,7 +317,7 @@ def draw_touched(d):
         )
 
     for triangle in divided:
-        neighbours.update(beside(*triangle))
+        neighbors.update(beside(*triangle))
     for r in range(rows):
         for c in range(columns):
             x, y = c * step - 2, r * step
@@ -330,7 +330,7 @@ def draw_touched(d):
                     fill = STONE
                 elif (c, r, half) in divided:
                     fill = SAND
-                elif (c, r, half) in neighbours:
+                elif (c, r, half) in neighbors:
                     fill = CREAM
                 d.polygon(points, fill, "#8a8378", 0.8)
     d.path([(110, 74), (130, 52), (150, 82), (172, 86), (186, 112)], RED, 2.2)
@@ -372,11 +372,11 @@ PICTURES = {
     ),
     "algorithm_walls": (
         (
-            "Two columns along one track",
+            "Two columns along one supporting line",
             draw_columns,
-            "The track unrolled: face edges on its left (black) and right (blue). Between two levels one "
+            "The line unrolled: face edges on its left (black) and right (blue). Between two levels one "
             "cell lies left and one right; where they differ stands a wall. Where levels cross (red) the "
-            "track gets a place.",
+            "line gets an arrangement vertex.",
         ),
         (
             "Why vertical edges close",
@@ -396,13 +396,13 @@ PICTURES = {
         (
             "One block, named from both sides",
             draw_nodes,
-            "A node under every closed facet and one over every triangle beneath. Neighbours are linked "
-            "(blue), and one place decided exactly links the two sheets (red).",
+            "A node under every closed facet and one over every triangle beneath. Neighbors are linked "
+            "(blue), and one point decided exactly links the two sheets (red).",
         ),
         (
             "What gets new vertices",
             draw_touched,
-            "In plan. Divided triangles (dark) and their neighbours (light) go through conforming, and "
+            "In plan. Divided triangles (dark) and their neighbors (light) go through conforming, and "
             "all in the tiles of a border (grey). White ones are taken as they are.",
         ),
     ),

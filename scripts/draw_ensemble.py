@@ -51,7 +51,22 @@ def draw(path):
     for y, top, bottom in boreholes(model):
         above.line(on_paper(drawing, np.array([[y, top], [y, bottom]])), width=1.6)
     drawing.items[last:last] = above.items
+    add_legend(drawing)
     save_drawing(drawing, path)
+
+
+def add_legend(drawing):
+    """What lines mean, below the legend of the blocks."""
+    x, y = 0.843 * drawing.width, 0.5 * drawing.height
+    drawing.width += 30.0
+    for color, width, text in (
+        ((0.1, 0.1, 0.1, 0.5), 0.5, f"{REALIZATIONS} realizations"),
+        ((0.0, 0.0, 0.0), 1.0, "interpolated"),
+        ((0.0, 0.0, 0.0), 1.8, "boreholes"),
+    ):
+        drawing.line([(x, y + 3.0), (x + 16.0, y + 3.0)], color, width)
+        drawing.text(x + 21.0, y, text, 9.0)
+        y -= 15.0
 
 
 def on_paper(drawing, places):

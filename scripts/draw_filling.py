@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders the picture of Fill with Strata in the guide: a sculpted boulder filled with strata.
+"""Renders the pictures of filled meshes in the guide: a sculpted boulder, the cliff of the recipes for
+artists, and beds with pegs for a print.
 
-build/venv-bpy/bin/python scripts/draw_filling.py
-blender -b --factory-startup -P scripts/draw_filling.py
+    build/venv-bpy/bin/python scripts/draw_filling.py [NAME ...]      (default: all)
+
+The module bpy has a denoiser, which Debian's Blender lacks.
 """
 
 import math
+import os
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import bpy
@@ -15,12 +19,15 @@ import numpy as np
 from mathutils import Vector
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "addon"))
+sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
 
+import gallery_picture  # noqa: E402
 import realmodel  # noqa: E402
 from realmodel.bl import versions  # noqa: E402
 
-PICTURE = ROOT / "docs" / "images" / "guide" / "filled_boulder.jpg"
+IMAGES = ROOT / "docs" / "images" / "guide"
+SIZE = (900, 560)
+RAYS, SECONDS = 10, 200.0  # of a pixel, and of a picture at most
 
 
 def boulder():
@@ -52,9 +59,8 @@ def light_and_camera(scene):
     scene.world.color = (0.55, 0.6, 0.68)
 
 
-def main():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    realmodel.register()
+def filled_boulder():
+    """A boulder filled with tilted and faulted strata under level ones."""
     boulder()
     bpy.ops.realmodel.fill_with_strata(
         preset="FAULTED",
@@ -64,16 +70,75 @@ def main():
         fold_amplitude=0.06,
         unconformity=0.75,
     )
+    light_and_camera(bpy.context.scene)
+    render("filled_boulder", (720, 560))
+
+
+def cliff():
+    """As the recipe says it."""
+    bpy.ops.mesh.primitive_cube_add(size=30.0)
+    item = bpy.context.object
+    item.scale = 1.5, 0.7, 0.6
+    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
+    subdivision.subdivision_type, subdivision.levels = "SIMPLE", 6
+    displace = item.modifiers.new("Displace", "DISPLACE")
+    displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
+    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    bpy.ops.realmodel.fill_with_strata(preset="CLIFF")
+    bpy.ops.realmodel.weathering(strength=3.0, detail=2, plants=1.0)
+    bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(120.0))
+    corners = np.array([(x, y, z) for x in (-21, 21) for y in (-9, 9) for z in (-8, 9)], float)
+    gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 160.0, 24.0, (0.0, 0.0))
+    render("cliff", SIZE)
+
+
+def print_parts():
+    """Three beds moved apart, with pegs on two of them and holes for them."""
+    boulder().scale = (1.6, 1.2, 0.7)
+    bpy.ops.realmodel.fill_with_strata(beds=3, dip=0.0, rock_looks=False, seed=3)
+    beds = sorted(bpy.context.selected_objects, key=lambda item: item.name)
+    for lower, upper in pairwise(beds):
+        level = max((lower.matrix_world @ Vector(corner)).z for corner in lower.bound_box)
+        for x in (-1.1, 0.9):
+            for bed, wide, operation in ((lower, 1.0, "UNION"), (upper, 1.05, "DIFFERENCE")):
+                bpy.ops.mesh.primitive_cylinder_add(
+                    vertices=24, radius=0.16 * wide, depth=0.4 * wide, location=(x, 0.0, level)
+                )
+                bed.select_set(True)
+                bpy.context.view_layer.objects.active = bed
+                bpy.ops.realmodel.boolean(operation=operation)
+                for each in bpy.context.view_layer.objects:
+                    each.select_set(False)
+    for number, bed in enumerate(beds):
+        bed.location.z += 0.9 * number
+    bpy.ops.realmodel.set_up_picture()
+    bpy.context.view_layer.update()
+    corners = [bed.matrix_world @ Vector(corner) for bed in beds for corner in bed.bound_box]
+    gallery_picture.aim(bpy.context.scene.camera, np.array(corners), (900, 750), 150.0, 18.0, (0.0, 0.0))
+    render("print_parts", (900, 750))
+
+
+def render(name, size):
+    """Writes the picture of the scene's camera."""
     scene = bpy.context.scene
-    light_and_camera(scene)
     versions.plain_colors(scene)
     scene.render.engine = "CYCLES"
-    scene.cycles.samples = 24
+    scene.cycles.samples, scene.cycles.time_limit = RAYS, SECONDS
     versions.denoise(scene)
-    scene.render.resolution_x, scene.render.resolution_y = 720, 560
+    scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 88
-    scene.render.filepath = str(PICTURE)
+    scene.render.filepath = str(IMAGES / f"{name}.jpg")
     bpy.ops.render.render(write_still=True)
 
 
-main()
+def main(names):
+    realmodel.register()
+    for draw in (filled_boulder, cliff, print_parts):
+        if not names or draw.__name__ in names:
+            bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+            draw()
+    sys.stdout.flush()
+    os._exit(0)  # the module bpy may hang as it ends
+
+
+main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:])

@@ -7,11 +7,12 @@
 BLENDER is the Blender that renders (default: blender), or a Python that has the module bpy. With a denoiser,
 which Debian's Blender lacks, pictures have no grain.
 
-Each function in SCENES is one picture, docs/images/gallery/NAME.png or NAME.jpg: it builds a sample and
-says what is shown of it, from where, and with which labels. DRAFT=3 makes pictures of a third of the size in
+Each function in SCENES is one picture, docs/images/gallery/NAME.jpg: it builds a sample and says
+ what is shown of it, from where, and with which labels. DRAFT=3 makes pictures of a third of the size in
 a folder for drafts, to compose them.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -30,6 +31,7 @@ from gallery_picture import (
     SECONDS,
     SIZE,
     WHITE,
+    add_legend,
     aim,
     apply_looks,
     around,
@@ -50,14 +52,6 @@ from gallery_picture import (
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
 FRAME = (600, 300)  # of a film strip
-PHOTOS = (
-    "rocks",
-    "canyon",
-    "quarry",
-    "island",
-    "diagram",
-    "basin",
-)  # JPEG; in the others few colors are enough
 
 
 def main(names):
@@ -75,12 +69,7 @@ def main(names):
         for path in sorted(Path(folder).glob("*.png")):
             with Image.open(path) as picture:
                 whole = picture.convert("RGB")
-                if path.stem in PHOTOS:
-                    whole.save(images / f"{path.stem}.jpg", quality=84, optimize=True, progressive=True)
-                    continue
-                palette = whole.quantize(256, Image.Quantize.FASTOCTREE)
-                small = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
-                small.save(images / path.name, optimize=True)
+                whole.save(images / f"{path.stem}.jpg", quality=84, optimize=True, progressive=True)
     return done.returncode
 
 
@@ -109,6 +98,9 @@ def faults(folder):
         ("Branch", north + np.array([1560, 850, -1200]) - picture.origin, (66.0, 84.0)),
         ("Western fault, dies out", west + np.array([442, 5, -1045]) - picture.origin, (-70.0, 62.0)),
     ]
+    tunnel = model.structures.bodies[0].vertices
+    mouth = tunnel[tunnel[:, 1] < tunnel[:, 1].min() + 1.0].mean(axis=0)
+    labels.append(("Tunnel, a void", west + mouth - picture.origin, (-74.0, -58.0)))
     picture.draw(
         "faults",
         150.0,
@@ -148,6 +140,49 @@ def basin(folder):
         "A section through tilted fault blocks; what filled the basin as it opened was eroded and covered.",
         labels,
         room=(0.1, 0.0),
+    )
+
+
+def fold(folder):
+    """A fold that lies on its side, cut open along its dip: beds that are met three times."""
+    from realmodel.core.display import polygon_mesh
+
+    model, picture = sample("recumbent_fold", folder)
+    half = model.cut_by_plane((0.0, 330.0, 0.0), (0.0, 1.0, 0.0)).above
+    picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
+    picture.sun = math.radians(140.0), math.radians(42.0)
+    picture.draw(
+        "fold",
+        166.0,
+        18.0,
+        "Recumbent Fold",
+        "Beds that overturn, from twelve boreholes and fifty dips: a hole may meet a bed three times.",
+        room=(0.12, 0.13),
+    )
+
+
+def dome(folder):
+    """A dome that leans, displaced by a fault, its two sides moved apart."""
+    import numpy as np
+    from realmodel.core.display import polygon_mesh
+
+    model, picture = sample("faulted_dome", folder)
+    half = model.cut_by_plane((0.0, 480.0, 0.0), (0.0, 1.0, 0.0)).above
+    picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
+    apply_looks(model, 0.6)
+    picture.sun = math.radians(140.0), math.radians(42.0)
+    fault = model.structures.faults[0].vertices
+    plane = np.linalg.lstsq(np.column_stack([np.ones(len(fault)), fault[:, 1:]]), fault[:, 0], rcond=None)[0]
+    place = np.array([plane @ (1.0, 480.0, -190.0), 480.0, -190.0])
+    labels = [("Eastern fault", place - picture.origin, (-90.0, 40.0))]
+    picture.draw(
+        "dome",
+        168.0,
+        20.0,
+        "Faulted Dome",
+        "A dome that leans, displaced by a fault: each side has a field of its own, made from its data.",
+        labels,
+        room=(0.12, 0.13),
     )
 
 
@@ -212,8 +247,6 @@ def tunnel(folder):
 
 def rocks(folder):
     """Haut-Barr at low sun, its rocks with the looks that suit them, in a meadow."""
-    import math
-
     import numpy as np
 
     model, picture = sample("haut_barr", folder)
@@ -236,8 +269,6 @@ def rocks(folder):
 
 def canyon(folder):
     """Forty beds in the walls of a canyon, in the afternoon."""
-    import math
-
     model, picture = sample("canyon", folder)
     picture.show(model, blocks_of(model, picture), only_outside=True)
     apply_looks(model, 0.7)
@@ -253,8 +284,6 @@ def canyon(folder):
 
 def quarry(folder):
     """A quarry with its benches, and a board with the volumes of what was taken."""
-    import math
-
     import numpy as np
 
     model, picture = sample("quarry", folder)
@@ -266,7 +295,7 @@ def quarry(folder):
     rows = [(b.name, f"{v:,.0f} m\u00b3") for b, v in zip(model.blocks, taken, strict=True) if v > 0]
     picture.landscape(sun=(math.radians(262.0), math.radians(36.0)), haze=9000.0)
     picture.look(np.array([62.0, 2.0, 186.0]) - origin, np.array([196.0, 150.0, 72.0]) - origin, lens=24.0)
-    board([("Excavated", ""), *reversed(rows), ("Together", f"{taken.sum():,.0f} m\u00b3")])
+    board([("Excavated", ""), *reversed(rows), ("Total", f"{taken.sum():,.0f} m\u00b3")])
     for x, y, z, heading in ((196.0, 172.0, made.BOTTOM, 20.0), (262.0, 148.0, made.BOTTOM, 115.0)):
         truck(np.array([x, y, z]) - origin, math.radians(heading))
     picture.finish(
@@ -279,8 +308,6 @@ def quarry(folder):
 
 def island(folder):
     """A sculpted terrain filled with folded strata."""
-    import math
-
     model, picture = sample("sculpted_island", folder)
     picture.show(model, blocks_of(model, picture), only_outside=True)
     apply_looks(model, 0.8)
@@ -298,8 +325,6 @@ def island(folder):
 
 def diagram(folder):
     """A block diagram as geologists draw it: the add-on's own legend, axes and exaggeration."""
-    import math
-
     import bpy
     from realmodel.bl import batch, picture
     from realmodel.bl.display import viewpoints
@@ -344,7 +369,9 @@ def stages(folder):
 
     model, picture = sample("haut_barr", folder)
     whole, frames = [np.array(model.vertices - picture.origin, float)], []
-    for number in range(1, max(len(rock.surfaces) for rock in model.project.rocks)):
+    lists = [rock.surfaces for rock in model.project.rocks]
+    last = max(map(len, lists)) - 1
+    for number in range(1, last + 1):
         for item in [item for item in bpy.context.scene.objects if item.type == "MESH"]:
             bpy.data.meshes.remove(item.data)
         stage = model.stage(number)
@@ -353,7 +380,10 @@ def stages(folder):
         file = folder / "frame.png"
         picture.render(file, FRAME, 160.0, 26.0, (0.0, 0.0))
         drawing = Drawing(*(POINTS / SIZE[0] * side for side in FRAME))
-        drawing.text(12, drawing.height - 24, f"Stage {number}", LABEL, INK)
+        events = dict.fromkeys(surfaces[number].name for surfaces in lists if number < len(surfaces))
+        drawing.text(12, drawing.height - 24, f"Stage {number}: {', '.join(events)}", LABEL, INK)
+        if number == last:
+            add_legend(drawing, list(picture.names.items()))
         put_over(file, drawing)
         frames.append(read_pixels(file))
         file.unlink()
@@ -362,7 +392,7 @@ def stages(folder):
         write_pixels(np.concatenate(rows), out, 144)
 
 
-SCENES = (rocks, canyon, quarry, island, diagram, basin, faults, intrusion, tunnel, stages)
+SCENES = (rocks, canyon, quarry, island, diagram, basin, fold, dome, faults, intrusion, tunnel, stages)
 
 
 def in_blender(folder, *names):

@@ -5,7 +5,7 @@
     build/venv/bin/python scripts/draw_guide.py [NAME ...]      (default: all; it needs Pillow)
 
 Each function in PICTURES is one chapter: it sets up a scene with the operators that the guide names and
-keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh --only gui left, if any.
+keeps pictures.
 """
 
 import math
@@ -20,24 +20,31 @@ IMAGES = ROOT / "docs" / "images" / "guide"
 SAMPLES = ROOT / "blend_samples"
 SIZE = (1900, 1400)
 SCALE = 1.5  # of the interface, so that its letters are sharp in print
+PANEL_SIZE, PANEL_SCALE = (1900, 2900), 3.0  # where panels are drawn by themselves
 COLORS = 256  # of a picture in its palette
 WIDEST = 1200  # pixels
+LIGHT = "studio.sl"  # of the viewport: brighter than the usual one
 
 
 def main(names):
-    """Outside Blender: runs this file in a window, then gives each picture a palette."""
-    size = f"{SIZE[0]}x{SIZE[1]}"
-    with tempfile.TemporaryDirectory() as screen:
-        command = ["xvfb-run", "-a", "-s", f"-screen 0 {size}x24 -fbdir {screen}", "blender"]
-        command += ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0"]
-        command += [*map(str, SIZE), "-P", __file__, "--", screen, *names]
-        done = subprocess.run(command, cwd=ROOT, check=False)
+    """Outside Blender: runs this file in two windows, then gives each picture a palette."""
+    failed = 0
+    for size, chapters in ((PANEL_SIZE, PANEL_CHAPTERS), (SIZE, CHAPTERS)):
+        chosen = [draw.__name__ for draw in chapters if not names or draw.__name__ in names]
+        if chosen:
+            failed = run_in_window(size, chosen) or failed
     for path in (*sorted(IMAGES.glob("*.png")), IMAGES.parent / "view_modes.png"):
         shrink(path, path)
-    sheet = ROOT / "build" / "gui" / "contact_sheet.png"
-    if sheet.is_file():
-        shrink(sheet, ROOT / "docs" / "images" / "walk.png", 1600, 0)
-    return done.returncode
+    return failed
+
+
+def run_in_window(size, names):
+    """Runs chapters in Blender; returns its exit status."""
+    with tempfile.TemporaryDirectory() as screen:
+        command = ["xvfb-run", "-a", "-s", f"-screen 0 {size[0]}x{size[1]}x24 -fbdir {screen}", "blender"]
+        command += ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0"]
+        command += [*map(str, size), "-P", __file__, "--", screen, *names]
+        return subprocess.run(command, cwd=ROOT, check=False).returncode
 
 
 def shrink(source, target, widest=WIDEST, method=1):
@@ -60,23 +67,24 @@ def begin(screen, *names):
     """Registers the add-on and runs the chapters, one after another."""
     import bpy
 
-    sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "gui")]
+    sys.path[:0] = [str(ROOT / part) for part in ("addon", "scripts", "tests/gui", "tests/blender")]
     import realmodel
     from driver import Walk
 
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
-    preferences.view.ui_scale = SCALE
+    of_panels = any(draw.__name__ in names for draw in PANEL_CHAPTERS)
+    preferences.view.ui_scale = PANEL_SCALE if of_panels else SCALE
     preferences.system.use_region_overlap = False
     background = preferences.themes[0].view_3d.space.gradients
     background.background_type = "SINGLE_COLOR"  # a gradient needs many colors of the palette
     realmodel.register()
     TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
     IMAGES.mkdir(parents=True, exist_ok=True)
-    chapters = [(draw.__name__, lambda walk, draw=draw: chapter(walk, draw)) for draw in CHAPTERS]
-    Walk(IMAGES, Path(screen) / "Xvfb_screen0").run(
-        [c for c in chapters if not names or c[0] in names], at_end
-    )
+    chapters = [
+        (draw.__name__, lambda walk, draw=draw: chapter(walk, draw)) for draw in (*PANEL_CHAPTERS, *CHAPTERS)
+    ]
+    Walk(IMAGES, Path(screen) / "Xvfb_screen0").run([c for c in chapters if c[0] in names], at_end)
 
 
 def at_end(walk):
@@ -95,11 +103,13 @@ def chapter(walk, draw):
     for item in list(bpy.data.objects):
         bpy.data.objects.remove(item)
     for cls, options in TAB.items():
-        cls.bl_options = options - (set() if draw is start else {"DEFAULT_CLOSED"})
+        cls.bl_options = options - (set() if draw in (start, window) else {"DEFAULT_CLOSED"})
     yield from show_panels(walk)
     space = walk.area.spaces.active
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
+    space.shading.studio_light = LIGHT
+    space.show_object_viewport_mesh = draw not in PANEL_CHAPTERS  # else a large viewport is drawn in vain
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from open_tab(walk)
@@ -163,13 +173,25 @@ def seen(walk, part):
 
 def without_tabs(picture):
     """The sidebar without the names of its tabs, and without the empty part below its panels."""
-    width = picture.shape[1] - int(30 * SCALE)
+    import bpy
+
+    width = picture.shape[1] - int(30 * bpy.context.preferences.view.ui_scale)
     picture = picture[:, :width]
     background = picture[8, width // 2]
     drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
     drawn[:12] = False  # the border of the region
     lowest = int(drawn.argmax())
     return picture[max(lowest - 8, 0) :]
+
+
+def within_border(picture):
+    """A dark window of Blender's that is open over an empty viewport, without what is around it."""
+    import numpy as np
+
+    is_dark = picture.mean(axis=2) < 0.16
+    rows = np.flatnonzero(is_dark.sum(axis=1) > 200)
+    columns = np.flatnonzero(is_dark.sum(axis=0) > 100)
+    return picture[rows[0] : rows[-1], columns[0] : columns[-1]]
 
 
 def show_panels(walk, names=()):
@@ -211,20 +233,37 @@ def example(walk, name):
     yield walk.redrawn(3)
 
 
-def frame(walk):
+def frame(walk, share=0.92):
+    """Turns the viewport to the blocks, or else to what the scene has."""
     import bpy
-    from realmodel.bl import picture
 
-    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
-    walk.area.spaces.active.region_3d.view_perspective = "PERSP"
+    rows = [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
     for item in bpy.context.selected_objects:
         item.select_set(False)
-    with viewport(walk):
-        if len(bpy.context.scene.realmodel.results):
-            bpy.ops.realmodel.view_all()
-        else:
-            bpy.ops.view3d.view_all()
-    walk.area.spaces.active.region_3d.view_distance *= 0.85
+    fill_view(walk, rows or [item for item in bpy.data.objects if item.type == "MESH"], share)
+
+
+def fill_view(walk, items, share=0.92):
+    """Turns the viewport to objects, which then fill a share of it."""
+    import bpy
+    import numpy as np
+    from gallery_picture import seen_from
+    from mathutils import Vector
+    from realmodel.bl import picture
+
+    bpy.context.view_layer.update()
+    corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
+    view, rotation = walk.area.spaces.active.region_3d, picture.view_rotation()
+    view.view_perspective, view.view_rotation = "PERSP", rotation.to_quaternion()
+    view.update()
+    tangents = share / np.array([view.window_matrix[0][0], view.window_matrix[1][1]])
+    axes = np.array(rotation.transposed())
+    corners = np.array(corners, float)
+    eye, middle = seen_from(corners, axes, tangents), (corners @ axes[2]).mean()
+    view.view_location = axes.T @ np.array([*eye[:2], middle])
+    view.view_distance = eye[2] - middle
+    space = walk.area.spaces.active
+    space.clip_end = max(space.clip_end, 10.0 * view.view_distance)
 
 
 def side_by_side(pictures, name, columns, smaller=1):
@@ -246,22 +285,32 @@ def side_by_side(pictures, name, columns, smaller=1):
 
 
 def start(walk):
-    """The tab in a new file, and the window with an example."""
-    yield from keep(walk, "start", "UI")
-    yield from example(walk, "castle_hill")
-    yield from keep(walk, "window")
+    """The tab in a new file."""
+    import bpy
+    import guide_panels
+
+    yield from keep(walk, guide_panels.START, "UI")
+    guide_panels.keep({guide_panels.START: guide_panels.shown(bpy.context, guide_panels.START)})
 
 
 def tour(walk):
     """Each panel by itself."""
     import bpy
+    import guide_panels
 
-    yield from example(walk, "castle_hill")
-    group = bpy.context.scene.realmodel
-    group.active_result = len(group.results) - 4
-    group.rocks[0].active_surface = 2
-    for name in ("build", "results", "view", "surfaces", "rocks", "library"):
+    yield from example(walk, guide_panels.EXAMPLE)
+    guide_panels.choose_rows(bpy.context.scene.realmodel)
+    found = {}
+    for name in guide_panels.PANELS:
         yield from keep(walk, name, "UI", [name])
+        found[name] = guide_panels.shown(bpy.context, name)
+    guide_panels.keep(found)
+
+
+def window(walk):
+    """The window with an example."""
+    yield from example(walk, "castle_hill")
+    yield from keep(walk, "window")
 
 
 def modes(walk):
@@ -277,25 +326,46 @@ def modes(walk):
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
         yield from settled(walk)
-        pictures.append(middle(walk))
+        pictures.append(labeled(middle(walk), modes_of(group)[mode]))
     group.display = "BLOCKS"
     group.stage = 5
     yield from settled(walk)
-    pictures.append(middle(walk))
+    pictures.append(labeled(middle(walk), "Blocks at Stage 5"))
     group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 1.0
     yield from settled(walk)
-    pictures.append(middle(walk))
+    pictures.append(labeled(middle(walk), "Explode 1"))
     group.explode = 0.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
-    pictures.append(middle(walk))
+    pictures.append(labeled(middle(walk), "Section"))
     side_by_side(pictures, "../view_modes", 3, 2)
     bpy.ops.realmodel.section_remove()
     for stage in (3, 6, 10):
         group.stage = stage
         yield from settled(walk)
-        pictures.append(middle(walk))
+        pictures.append(labeled(middle(walk), f"Stage {stage}: {group.rocks[0].surfaces[stage].name}"))
     side_by_side(pictures[-3:], "stages", 3, 2)
+
+
+def modes_of(group):
+    """The labels of the display modes."""
+    return {item.identifier: item.name for item in group.bl_rna.properties["display"].enum_items}
+
+
+def labeled(picture, text):
+    """A picture of the window with a text at its upper left."""
+    import numpy as np
+    from gallery_picture import WHITE
+    from realmodel.core.drawing.drawing import Drawing
+    from realmodel.core.drawing.raster import over, rasterize
+
+    height, width = picture.shape[:2]
+    drawing = Drawing(width, height)
+    drawing.text(36, height - 76, text, 52.0, WHITE)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[:, :, :3] = picture[::-1]
+    over(pixels, rasterize(drawing, 1.0, None), 0, 0)
+    return pixels[::-1, :, :3]
 
 
 def middle(walk):
@@ -314,19 +384,51 @@ def settled(walk):
     yield walk.redrawn(3)
 
 
-def csv(walk):
-    """Two tables of points become a model."""
+def import_tables():
+    """Two tables of points become surfaces, their points large and in colors."""
     import bpy
 
     for name in ("clay", "ground"):
         bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
-    frame(walk)
-    yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    bpy.context.scene.realmodel.view.show_contacts = True
+
+
+def settle_rock():
+    """A region around the points, short edges, a base."""
+    import bpy
+
     rock = bpy.context.scene.realmodel.rocks[0]
     bpy.ops.realmodel.region_around()
     rock.edge_length = 4.0
     rock.use_base, rock.base_elevation = True, 0.0
+
+
+def csv_panel(walk):
+    """The rock mass of two tables."""
+    yield walk.redrawn()
+    import_tables()
+    settle_rock()
     yield from keep(walk, "csv_rocks", "UI", ["rocks"])
+
+
+def csv(walk):
+    """Two tables of points become a model."""
+    import bpy
+    from driver import save_picture
+
+    with viewport(walk):
+        bpy.ops.realmodel.surface_add("INVOKE_DEFAULT", filepath=str(SAMPLES / "two_layers" / "clay.csv"))
+    yield walk.redrawn(3)
+    save_picture(within_border(seen(walk, walk.region("WINDOW"))), IMAGES / "csv_dialog.png")
+    walk.key("ESC")
+    yield walk.redrawn(3)
+    import_tables()
+    for item in bpy.data.objects:
+        item.hide_set(item.name.endswith(" points"))
+    shown = [item for item in bpy.data.objects if item.visible_get() and item.type == "MESH"]
+    fill_view(walk, shown)
+    yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    settle_rock()
     yield from build(walk)
     frame(walk)
     yield from keep(walk, "csv_built", panels=["build", "results"])
@@ -367,28 +469,26 @@ def sculpt(walk):
     """Three grids become strata."""
     import bpy
 
-    for number, (name, height, strength) in enumerate((("clay", 0, 2), ("sand", 1, 3), ("ground", 2, 6))):
+    for number, (name, height, strength) in enumerate(
+        (("clay", 0, 2), ("sand", 2.2, 2.5), ("ground", 4.6, 4))
+    ):
         grid(name, height, 12.0, strength, number)
     for item in bpy.data.objects:
         item.select_set(True)
-    look(walk, bpy.data.objects)
+    for item, color in zip(bpy.data.objects, ("#6f8296", "#d9b070", "#7d9460"), strict=True):
+        item.data.polygons.foreach_set("use_smooth", [True] * len(item.data.polygons))
+        item.color = [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)] + [1.0]
+    walk.area.spaces.active.shading.color_type = "OBJECT"
+    fill_view(walk, list(bpy.data.objects))
     yield from keep(walk, "sculpt_grids", "WINDOW", ["start"])
     bpy.ops.realmodel.from_selected()
+    walk.area.spaces.active.shading.color_type = "MATERIAL"
     yield from build(walk)
+    for row in bpy.context.scene.realmodel.results:
+        row.object.data.polygons.foreach_set("use_smooth", [True] * len(row.object.data.polygons))
+        row.object.data.use_auto_smooth = True
     frame(walk)
     yield from keep(walk, "sculpt_built", panels=["build", "surfaces"])
-
-
-def look(walk, items):
-    """Turns the viewport to objects."""
-    import bpy
-    from realmodel.bl import picture
-
-    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
-    for item in items:
-        item.select_set(True)
-    with viewport(walk):
-        bpy.ops.view3d.view_selected()
 
 
 def line(points):
@@ -408,33 +508,77 @@ def line(points):
 
 
 def section(walk):
-    """A model cut open by a plane, and a fence along a curve."""
+    """A model cut open by a plane, and a fence along a curve, the model around it as a ghost."""
     import bpy
     import numpy as np
 
     yield from example(walk, "gravel_plain")
     group = bpy.context.scene.realmodel
-    group.view.exaggeration = 3.0
+    group.view.exaggeration = 5.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    walk.area.spaces.active.overlay.show_relationship_lines = False
     frame(walk)
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
     bpy.ops.realmodel.section_remove()
-    group.view.exaggeration = 1.0
     corners = np.concatenate([np.array(row.object.bound_box) for row in group.results if row.object])
     low, high = corners.min(axis=0)[:2], corners.max(axis=0)[:2]
-    line([low + (high - low) * share for share in ((0.05, 0.2), (0.5, 0.6), (0.95, 0.35))])
+    curve = line([low + (high - low) * share for share in ((0.05, 0.2), (0.5, 0.6), (0.95, 0.35))])
     drawn = IMAGES / "section_drawing.png"
     bpy.ops.realmodel.save_section(filepath=str(drawn), along="LINE", exaggeration=5.0)
     bpy.ops.realmodel.fence()
+    fence = bpy.context.active_object
+    curve.hide_set(True)
     for row in group.results:
         if row.object:
-            row.object.hide_set(True)
-    look(walk, [bpy.context.active_object])
+            row.object.display_type = "BOUNDS"
+    fence.select_set(False)
+    frame(walk)
     yield from keep(walk, "section_fence", "WINDOW")
 
 
-# -- a graben between two faults, and a dome
+def boreholes(walk):
+    """Boreholes as tubes over the channel that they found."""
+    import bpy
+
+    yield from example(walk, "uncertain_valley")
+    group = bpy.context.scene.realmodel
+    group.view.exaggeration = 6.0
+    group.view.show_boreholes = True
+    for row in group.results:
+        row.object.hide_set(row.name in ("Till", "Lake clay"))
+    yield from settled(walk)
+    frame(walk)
+    yield from keep(walk, "boreholes", panels=["results", "field"])
+
+
+def mapped(walk):
+    """A geological map with dips, and the model that follows from them."""
+    import bpy
+
+    yield from show_panels(walk, ["start"])
+    walk.area.spaces.active.show_region_ui = False
+    with viewport(walk):
+        bpy.ops.realmodel.open_sample(sample="mapped_valley", build=False)
+    view = bpy.context.scene.realmodel.view
+    view.show_map = view.show_dips = True
+    yield from settled(walk)
+    frame(walk)
+    yield from settled(walk)
+    pictures = [labeled(middle(walk), "The map on its ground, and dips")]
+    yield from build(walk)
+    view.show_map = False
+    frame(walk)
+    yield from settled(walk)
+    pictures.append(labeled(middle(walk), "The model"))
+    side_by_side(pictures, "map", 2, 2)
+
+
+# -- a graben between two faults
+
+PALETTE = ("#a08c8c", "#d9a35f", "#8fa9b5", "#e3d9ae", "#9db36a", "#d9b8cf")  # by the library's order
 
 
 def structures(walk):
@@ -446,8 +590,10 @@ def structures(walk):
     graben()
     yield from build(walk)
     group = bpy.context.scene.realmodel
+    for row, color in zip(group.library, PALETTE, strict=False):
+        row.color = [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     group.explode_direction, group.explode = "COMPARTMENT", 0.4
-    frame(walk)
+    frame(walk, 0.62)  # of the blocks where they belong
     yield from settled(walk)
     yield from keep(walk, "structures", "WINDOW")
 
@@ -476,7 +622,7 @@ def _displaced(base, x, y):
 
 
 def graben():
-    """A model of points, two faults and a dome in the scene, not built yet."""
+    """A model of points and two faults in the scene, not built yet."""
     import bpy
     import numpy as np
     from realmodel.bl import library_rows, meshes
@@ -520,22 +666,15 @@ def graben():
         added(name, [(_across(name, y, z), y, z) for y in along for z in heights], triangles)
         for name in _FAULTS
     ]
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=40, ring_count=24)
-    dome = bpy.context.object
-    dome.name = "Salt"
-    for vertex in dome.data.vertices:
-        x, y, z = vertex.co
-        wide = 95.0 * (1.25 - 0.35 * z)
-        vertex.co = (860.0 + x * wide, 500.0 + y * wide, -400.0 + 330.0 * z)
     for item in bpy.context.view_layer.objects:
-        item.select_set(item in (*chosen, dome))
+        item.select_set(item in chosen)
     bpy.ops.realmodel.fault_body_from_selected()
     for row in scene.realmodel.faults:
         row.youngest = "Limestone"
-    scene.realmodel.bodies[0].after = "Limestone"
 
 
-CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, structures)
+PANEL_CHAPTERS = (start, tour, csv_panel)
+CHAPTERS = (window, modes, csv, quality, sculpt, section, boreholes, mapped, structures)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:

@@ -53,7 +53,7 @@ def draw(path):
         vertices, triangles = mesh_region(outline, [lake], _EDGE, mesher)
         ratios = mean_ratios(vertices, triangles)
         plan, histogram = axes[:, column]
-        plan.add_collection(
+        colored = plan.add_collection(
             PolyCollection(
                 vertices[triangles], array=ratios, cmap=_COLORS, clim=(0.4, 1), edgecolor="k", linewidth=0.3
             )
@@ -73,11 +73,12 @@ def draw(path):
             0.03,
             0.9,
             f"mean {quality['mean_ratio']:.3f}\nleast angle {quality['least_angle']:.0f}°\n"
-            f"six neighbours {100 * quality['six']:.0f} %",
+            f"six neighbors {100 * quality['six']:.0f} %",
             transform=histogram.transAxes,
             verticalalignment="top",
         )
     axes[1, 0].set_ylabel("% of triangles")
+    figure.colorbar(colored, ax=list(axes[0]), label="mean ratio of a triangle (1: equilateral)", shrink=0.8)
     save(figure, path)
 
 

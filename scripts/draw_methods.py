@@ -57,7 +57,7 @@ def neighbour(vertices):
 
 def save(figure, path):
     """Writes a small PNG: a palette of few colors."""
-    figure.savefig(path, dpi=100)
+    figure.savefig(path, dpi=160)
     with Image.open(path) as picture:
         few = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
     few.save(path, optimize=True)
@@ -87,17 +87,19 @@ def draw(folder):
     }
     for method, (known, options) in methods.items():
         result = interpolate(known, vertices, method, **options)
-        figure = Figure(figsize=(4.4, 2.9), layout="constrained")
-        axes = figure.subplots()
+        figure = Figure(figsize=(7.6, 2.6), layout="constrained")
+        axes, beside = figure.subplots(1, 2, sharey=True)
         shape = np.column_stack([vertices, result.z])
         height_map(shape, triangles, known, axes, limits=_LIMITS)
         axes.set_title(method if method != "auto" else f"auto: {result.method}", fontsize="medium")
+        height_map(np.column_stack([vertices, horizon(*vertices.T)]), triangles, None, beside, limits=_LIMITS)
+        beside.set_title("the true surface", fontsize="medium")
         save(figure, folder / f"method_{method}.png")
         if method == "kriging":
             figure = Figure(figsize=(4.4, 2.9), layout="constrained")
             axes = figure.subplots()
             variance_map(shape, triangles, result.variance, known, axes)
-            axes.set_title("kriging: how sure", fontsize="medium")
+            axes.set_title("kriging: standard deviation", fontsize="medium")
             save(figure, folder / "method_kriging_deviation.png")
             save_drawing(plots.variogram(result.variogram, "m"), folder / "method_variogram.svg")
     draw_extrapolation(given[-14:], vertices, triangles, folder)

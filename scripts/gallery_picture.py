@@ -183,20 +183,27 @@ def aim(camera, points, size, azimuth, elevation, room):
     back = towards(math.radians(azimuth), math.radians(elevation))
     right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
     axes = np.array([right, back.cross(right), back])
-    local = points @ axes.T
     half = math.tan(camera.data.angle / 2.0)
     tangents = half * np.array([1.0 - room[0], (1.0 - room[1]) * size[1] / size[0]]) / 1.12
-    away, center = 0.0, []
+    place = seen_from(points, axes, tangents)
+    camera.matrix_world = Matrix.Translation(axes.T @ place) @ Matrix(axes.T.tolist()).to_4x4()
+    camera.data.shift_x, camera.data.shift_y = -room[0] / 2, room[1] / 2 * size[1] / size[0]
+    camera.data.clip_end = 100.0 * place[2]
+
+
+def seen_from(points, axes, tangents):
+    """(3,) where an eye must be to see points (N, 3) in all of its picture. axes: (3, 3) right, up and
+    backward of the eye, in which the place is given, too. tangents: of half the angles across and up."""
+    import numpy as np
+
+    local = points @ axes.T
+    away, center = -np.inf, []
     for axis, tangent in enumerate(tangents):
         high = (local[:, axis] + tangent * local[:, 2]).max()
         low = (tangent * local[:, 2] - local[:, axis]).max()
         away = max(away, (high + low) / (2.0 * tangent))
         center.append((high - low) / 2.0)
-    camera.matrix_world = (
-        Matrix.Translation(axes.T @ np.array([*center, away])) @ Matrix(axes.T.tolist()).to_4x4()
-    )
-    camera.data.shift_x, camera.data.shift_y = -room[0] / 2, room[1] / 2 * size[1] / size[0]
-    camera.data.clip_end = 100.0 * away
+    return np.array([*center, away])
 
 
 def add_label(drawing, place, offset, text):

@@ -150,6 +150,17 @@ class RealModelMisfit(bpy.types.PropertyGroup):
     place: StringProperty(options={"HIDDEN"})  # JSON: model coordinates
 
 
+class RealModelLeftOutHole(bpy.types.PropertyGroup):
+    """A row of the table of cross-validation by holes."""
+
+    name: StringProperty(name="Hole")
+    rock: StringProperty(name="Rock Mass")
+    share: StringProperty(name="Right", description="Percent of its logged length in the right block")
+    error: StringProperty(name="Worst", description="Largest distance of a contact from its surface")
+    refused: StringProperty(name="Refused", description="Why there are no surfaces without it")
+    detail: StringProperty(options={"HIDDEN"})  # JSON of its length and its contacts
+
+
 class RealModelSettings(bpy.types.PropertyGroup):
     """`scene.realmodel`: a model and how it is shown."""
 
@@ -307,6 +318,16 @@ class RealModelSettings(bpy.types.PropertyGroup):
         update=changes.misfit_chosen,
         options=set(),
     )
+    left_out_holes: CollectionProperty(type=RealModelLeftOutHole)
+    active_left_out_hole: IntProperty(
+        name="Active Hole",
+        description="Active row of the table of holes that were left out; choosing one turns the viewport "
+        "there",
+        default=-1,
+        update=changes.left_out_hole_chosen,
+        options=set(),
+    )
+    hole_validation: StringProperty(options={"HIDDEN"})  # JSON: what was found in all, of which model
     active_result: IntProperty(
         name="Active Block",
         description="Active row of the results; choosing one selects the block in the viewport",

@@ -13,6 +13,7 @@ from realmodel.bl import (
     project_settings,
     settings,
 )
+from recording_layout import draw_tab
 
 
 class DrawnData(PanelCase):
@@ -58,6 +59,45 @@ class DrawnData(PanelCase):
         self.save_and_open()
         row = self.model.rocks[0].surfaces[1]
         self.assertEqual(len(data_objects.read_points(self.scene, row)), 7)
+
+    def pencil(self, *strokes):
+        """A grease pencil object with strokes through places of the scene, as the active object."""
+        is_old = not hasattr(bpy.data, "grease_pencils_v3") and bpy.app.version < (5, 0, 0)
+        known = bpy.data.grease_pencils if is_old else getattr(bpy.data, "grease_pencils_v3", None)
+        data = (bpy.data.grease_pencils if known is None else known).new("pencil")
+        layer = data.layers.new("lines", set_active=True)
+        frame = layer.frames.new(1)
+        for places in strokes:
+            if is_old:
+                stroke = frame.strokes.new()
+                stroke.points.add(len(places))
+            else:
+                frame.drawing.add_strokes([len(places)])
+                stroke = frame.drawing.strokes[-1]
+            for point, place in zip(stroke.points, places, strict=True):
+                setattr(point, "co" if is_old else "position", place)
+        item = bpy.data.objects.new("pencil", data)
+        bpy.context.collection.objects.link(item)
+        select(item)
+        return item, layer
+
+    def test_contacts_are_strokes_of_grease_pencil(self):
+        row = self.points_model()
+        item, layer = self.pencil(
+            [(30.0, 50.0, 30.0 + 0.001 * n) for n in range(3)] + [(40.0, 50.0, 31.0), (50.0, 50.0, 32.0)],
+            [(x, 60.0, 30.0) for x in np.linspace(20, 80, 601)],
+        )
+        item.location.z = 5.0
+        bpy.context.view_layer.update()
+        self.assertIn("Contacts from Active Object", draw_tab(bpy.context).labels)
+        ops.draw_contacts(use_object=True)
+        points = data_objects.read_points(self.scene, row)[4:]
+        np.testing.assert_allclose(points[:3], [(30, 50, 35), (40, 50, 36), (50, 50, 37)], atol=1e-4)
+        long = points[3:]
+        self.assertTrue(80 < len(long) < 103, len(long))  # of 601
+        np.testing.assert_allclose(long[[0, -1]], [(20, 60, 35), (80, 60, 35)], atol=1e-4)
+        layer.hide = True
+        self.refused(ops.draw_contacts, "it has no strokes", use_object=True)
 
     def test_the_live_model_follows(self):
         self.points_model()

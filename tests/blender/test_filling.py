@@ -8,6 +8,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates, inventory, open_edges, volume
 from boolean_case import ball, cube
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
 from panel_case import PanelCase, ops, select, sheet
 from realmodel.bl.fill_job import FilledShape, FillJob
 from realmodel.bl.fill_preview import FillPreview
@@ -80,6 +82,19 @@ class Filling(PanelCase):
         floor = min(coordinates(bed.data)[:, 2].min() for bed in beds)
         self.assertAlmostEqual(floor, low.min() - max(np.ptp(low), 10.0), places=4)
         self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+
+    def test_light_and_camera_see_the_beds_where_there_is_no_model(self):
+        self.refused(ops.set_up_picture, "fill a mesh with strata")
+        self.filled(ball("A", 2.0, (5.0, 1.0, -3.0)), beds=4)
+        ops.set_up_picture()
+        bpy.context.view_layer.update()
+        corners = [Vector((5.0 + x, 1.0 + y, -3.0 + z)) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        for corner in corners:
+            seen = world_to_camera_view(self.scene, self.scene.camera, corner)
+            self.assertTrue(0.0 < seen.x < 1.0 and 0.0 < seen.y < 1.0 and seen.z > 0.0)
+        self.refused(ops.animate_stages, "there is no model yet")
+        ops.turntable(frames=4)
+        self.assertEqual(self.scene.frame_end, 4)
 
     def test_masks_of_beds(self):
         item = ball("A", 2.0)

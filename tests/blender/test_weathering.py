@@ -115,6 +115,49 @@ class Weathering(PanelCase):
         self.assertEqual(found, [4, 0.125, 0.25])
         self.assertAlmostEqual(np.ptp(self.evaluated(2)[0][:, 2]), before, delta=1.0)
 
+    def scattered(self, item):
+        """{name: places} of the instances of an evaluated object."""
+        bpy.context.view_layer.update()
+        found = {}
+        for each in bpy.context.evaluated_depsgraph_get().object_instances:
+            if each.is_instance and each.parent.original == item:
+                found.setdefault(each.object.data.name, []).append(tuple(each.matrix_world.translation))
+        return found
+
+    def test_plants_and_stones_stand_on_the_ground(self):
+        ops.weathering(strength=0.2, plants=2.0, scree_slope=math.radians(60.0))
+        found = self.scattered(self.block(2))
+        self.assertEqual(set(found), {"Grass Tuft", "Stone"})
+        self.assertGreater(len(found["Grass Tuft"]), 3 * len(found["Stone"]))
+        points = self.evaluated(2)[0]
+        for places in found.values():
+            self.assertGreater(len(places), 20)
+            for place in places[:20]:
+                self.assertLess(np.linalg.norm(points - place, axis=1).min(), 8.0)
+        self.assertEqual(self.scattered(self.block(1)), {})  # which no ground is of
+        self.assertFalse(any(item.get("realmodel_scatter") for item in self.scene.objects))
+        ops.weathering(strength=0.2)
+        self.assertEqual(self.scattered(self.block(2)), {})
+
+    def test_beds_of_a_filled_mesh(self):
+        bpy.ops.mesh.primitive_cube_add(size=20.0, location=(500.0, 0.0, 10.0))
+        bpy.context.object.rotation_euler.x = math.pi / 2
+        ops.fill_with_strata(beds=3, dip=0.0, palette="COAL")
+        beds = sorted(bpy.context.selected_objects, key=lambda item: item.name)
+        top = [np.array([a.value for a in bed.data.attributes["realmodel_is_top"].data]) for bed in beds]
+        self.assertEqual([found.any() for found in top], [False, False, True])
+        ops.weathering(strength=1.0, detail=4, plants=1.0)
+        self.assertIsNone(weathering.modifier_of(self.block(2)))
+        hard = []
+        for bed in beds:
+            worn = bed.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+            self.assertLess(np.ptp(meshes.mesh_coordinates(worn)[:, 0]), 20.0)
+            hard.append(versions.group_input(weathering.modifier_of(bed), "Hardness"))
+        looks = [bed.material_slots[0].material["realmodel_look"] for bed in beds]
+        np.testing.assert_allclose(hard, [weathering.LOOKS[look].hardness for look in looks], rtol=1e-6)
+        ops.weathering_remove()
+        self.assertFalse(any(bed.modifiers for bed in beds))
+
     def test_one_undo_step(self):
         bpy.ops.ed.undo_push(message="before")
         ops.weathering()

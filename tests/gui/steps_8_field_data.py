@@ -13,7 +13,10 @@ from steps_5_structures import _show_alone
 from steps_8_wells import empty_file
 
 _HOLES = [(n, 100.0 + 200.0 * (n % 4), 100.0 + 200.0 * (n // 4)) for n in range(12)]
-_PANELS = {"REALMODEL_PT_field", "REALMODEL_PT_field_misfits"}
+_PANELS = {
+    *("REALMODEL_PT_field", "REALMODEL_PT_field_misfits"),
+    *("REALMODEL_PT_results", "REALMODEL_PT_hole_validation"),
+}
 
 
 def _write(folder):
@@ -108,6 +111,21 @@ def a_row_leads_to_its_datum(walk):
     assert bpy.context.view_layer.objects.active == handle.item_of(bpy.context.scene)
 
 
+def holes_left_out(walk):
+    """The table of what the other holes say of each; its first row is the wrong one, and leads there."""
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.cross_validate_holes)
+    yield lambda: idle() and len(model().left_out_holes) == len(_HOLES)
+    assert model().left_out_holes[0].name == "B5"
+    with in_the_viewport(walk):
+        model().active_left_out_hole = 0
+    yield walk.redrawn(3)
+    walk.shot("holes_left_out")
+    view = model().view
+    assert view.show_boreholes and view.show_hole_names
+    view.show_boreholes = view.show_hole_names = False
+
+
 def a_datum_is_picked_and_dragged(walk):
     """A click picks the top of the clay in a hole; G, Z and the mouse drag it; the live model follows; Ctrl Z
     takes it back."""
@@ -192,6 +210,7 @@ STEPS = (
     grades_along_holes,
     built_with_misfits,
     a_row_leads_to_its_datum,
+    holes_left_out,
     a_datum_is_picked_and_dragged,
     switched_off,
     holes_on_the_cut,

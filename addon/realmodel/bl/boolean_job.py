@@ -18,6 +18,7 @@ from . import mesh_data, meshes, model_tree, placing, shapes, versions
 from .thread_job import ThreadJob
 
 DIVIDE = "DIVIDE"
+VOLUME = "realmodel_volume"  # on the object of a sub-block
 OPERATIONS = (  # items of an enum
     ("UNION", "Union", "Join the selected solid to the active one"),
     ("INTERSECT", "Intersect", "Keep what is inside of both solids"),
@@ -29,7 +30,6 @@ OPERATIONS = (  # items of an enum
         "that these enclose with their volumes, and the loops in which they meet",
     ),
 )
-VOLUME = "realmodel_volume"  # on the object of a sub-block
 _BOUNDARIES = {"UNION": "union", "INTERSECT": "intersection", "DIFFERENCE": "difference"}
 _MOST_PARTS = 1000
 _SHARE = 0.8  # of the progress that intersecting takes

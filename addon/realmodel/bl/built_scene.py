@@ -478,8 +478,10 @@ def _clear(scene):
         scene.realmodel.results.clear()
         scene.realmodel.built_stamp = ""
         scene.realmodel.warnings = ""
-        scene.realmodel.is_outdated = False
+        scene.realmodel.is_outdated = scene.realmodel.is_coarse = False
         scene.realmodel.view.compartments = ""
+        scene.realmodel.left_out_holes.clear()
+        scene.realmodel.hole_validation = ""
     model_tree.remove_objects(objects)
     display.cleared(scene)
     planned_holes.update_all(scene)

@@ -5,6 +5,7 @@ script."""
 from . import (
     data_objects,
     display,
+    hole_validation,
     library_rows,
     live,
     looks,
@@ -202,6 +203,13 @@ def misfit_chosen(group, context):
     """A row of the list of misfits was chosen."""
     if not settings.is_filling() and 0 <= group.active_misfit < len(group.misfits) and context is not None:
         handle.show_misfit(context)
+
+
+def left_out_hole_chosen(group, context):
+    """A row of the table of holes that were left out was chosen."""
+    chosen = 0 <= group.active_left_out_hole < len(group.left_out_holes)
+    if not settings.is_filling() and chosen and context is not None:
+        hole_validation.show(context)
 
 
 def property_id(row, _context):

@@ -16,11 +16,11 @@ from ..core.base.triangles import welded
 from ..core.display import polygon_mesh
 from ..core.filling import ITEM, closed_mesh, fill_within, lay_beds
 from ..core.project.looks import look_of
-from . import exaggeration, looks, materials, meshes, placing, shapes
+from . import exaggeration, filled_beds, looks, materials, meshes, placing, shapes
 from .boolean_job import VOLUME
+from .filled_beds import BED
 from .thread_job import ThreadJob
 
-BED = "realmodel_bed"  # on the object of a bed, and on the vertices of a mask: its number, 1 for the oldest
 _SHARE = 0.9  # of the progress that filling takes
 
 
@@ -126,6 +126,9 @@ class FillJob(ThreadJob):
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(model.vertices)
             found = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
+            found = [
+                None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in found
+            ]
         masks = lay_beds(self._strata, self._mesh[0]).numbers(self._shape.vertices)
         return model, found, masks
 

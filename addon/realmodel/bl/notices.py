@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Messages for the panel: settings by their labels; the warnings of a build short, equal ones merged."""
+"""Messages for the panel: settings by their labels; the warnings of a build short, equal ones merged. A range
+beyond the points changes no height and is usual where beds dip: the quality of the surface has it."""
 
 import re
 from pathlib import Path
 
 from ..core.base.errors import number_list
 from ..core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
+from ..core.settings.variogram import RANGE_BEYOND
 
 # By the keys of project files: settings that the panel shows, and the labels of those of several parts.
 _SETTINGS = {key: setting for each in (SERIES, BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}
@@ -31,7 +33,7 @@ def of_model(model):
     more than its surface and its numbers."""
     alike = {}
     several = len(model.project.rocks) > 1
-    for warning in model.warnings:
+    for warning in shown(model):
         if warning.kind == _NO_ACTION:
             continue
         alike.setdefault(re.sub(r"\d[\d.,e+-]*", "0", warning.text), []).append(warning)
@@ -45,6 +47,11 @@ def of_model(model):
         where = f"{number_list(names)}: " if names else ""
         lines.append(" ".join(f"{where}{in_panel_words(group[0].text)}".split()))
     return "\n".join(lines)
+
+
+def shown(model):
+    """The warnings of a model that say something about its blocks."""
+    return [warning for warning in model.warnings if not warning.text.startswith(RANGE_BEYOND)]
 
 
 def read(kept):

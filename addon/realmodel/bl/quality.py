@@ -139,7 +139,10 @@ def lines(quality, chart, unit):
     """A chart in words."""
     if chart == "VARIOGRAM":
         none = ["This surface has no variogram."]
-        return plots.variogram_lines(quality.variogram, unit) if quality.variogram is not None else none
+        if quality.variogram is None:
+            return none
+        remarks = [notices.in_panel_words(text) for text in quality.remarks]
+        return plots.variogram_lines(quality.variogram, unit) + remarks
     if chart == "CROSS_VALIDATION":
         if quality.cross_validation is None:
             return [f"No cross-validation: {quality.missing}."]

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from .. import preferences
+from .versions import GREASE_PENCIL
 
 VERSION = 6  # of the settings in a .blend
 
@@ -52,6 +53,11 @@ def is_mesh_object(_row, item):
 def is_region_object(_row, item):
     """Poll of pointers to objects that can bound a region."""
     return item.type in {"MESH", "CURVE"} and DATA not in item
+
+
+def is_drawn_object(item):
+    """Whether contacts and sticks can be taken from an object: it has lines, or strokes."""
+    return is_region_object(None, item) or item.type in GREASE_PENCIL
 
 
 def is_fault_object(row, item):

@@ -15,6 +15,8 @@ from ..core import InputRefused
 from ..core.base.algebra import begins_run
 from . import exaggeration, meshes, versions
 
+_THIN = 0.01  # of the length of a stroke
+
 
 @contextmanager
 def evaluated_mesh(item, depsgraph, all_layers=False):
@@ -183,9 +185,39 @@ def polyline(item, depsgraph):
     return line
 
 
+def strokes(item):
+    """The strokes of a grease pencil object, each (N, 3) float64 offsets from the origin. A hand draws points
+    by the hundred: those nearer to the one before than a hundredth of the stroke's length are left out, but
+    for its ends. Raises InputRefused where there are none."""
+    matrix = exaggeration.true_matrix(item)
+    found = [thinned(line @ matrix[:3, :3].T + matrix[:3, 3]) for line in versions.strokes(item)]
+    if not found:
+        advice = "draw on a layer that is shown, at the present frame"
+        raise InputRefused("it has no strokes", item=f"object '{item.name}'", advice=advice)
+    return found
+
+
+def thinned(line):
+    """A line (N, 3) without points that are nearer to the one before than a hundredth of its length."""
+    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    kept = [0]
+    for number in range(1, len(line) - 1):
+        if along[number] - along[kept[-1]] >= _THIN * along[-1]:
+            kept.append(number)
+    if len(line) > 1 and along[-1] > 0.0:
+        if len(kept) > 1 and along[-1] - along[kept[-1]] < _THIN * along[-1]:
+            kept.pop()
+        kept.append(len(line) - 1)
+    return line[kept]
+
+
 def lines(item, depsgraph):
-    """The lines of a curve or mesh object, each (N, 3) float64 offsets from the origin, as they were drawn;
-    closed ones end where they begin. Raises InputRefused where there are none, or they have branches."""
+    """The lines of a curve, mesh or grease pencil object, each (N, 3) float64 offsets from the origin, as
+    they were drawn; closed ones end where they begin. Raises InputRefused where there are none, or they have
+    branches."""
+    if item.type in versions.GREASE_PENCIL:
+        return strokes(item)
     with evaluated_mesh(item, depsgraph) as mesh:
         places = offsets(item, mesh)
         edges = versions.edge_vertices(mesh)

@@ -233,6 +233,30 @@ def plain_colors(scene):
     scene.view_settings.gamma = 1.0
 
 
+GREASE_PENCIL = ("GPENCIL", "GREASEPENCIL")  # types of objects; since Blender 4.3 it is the second
+
+
+def strokes(item):
+    """The strokes of a grease pencil object that are seen at the present frame, each (N, 3) float64 in the
+    coordinates of the object."""
+    found = []
+    for layer in item.data.layers:
+        if layer.hide:
+            continue
+        if item.type == "GPENCIL":
+            frame, matrix, key = layer.active_frame, layer.matrix_layer, "co"
+            given = [] if frame is None else frame.strokes
+        else:
+            frame, matrix, key = layer.current_frame(), layer.matrix_local, "position"
+            given = [] if frame is None else frame.drawing.strokes
+        turn = np.array(matrix, np.float64)
+        for stroke in given:
+            places = np.array([tuple(getattr(point, key)) for point in stroke.points], np.float64)
+            if len(places):
+                found.append(places @ turn[:3, :3].T + turn[:3, 3])
+    return found
+
+
 def curves(datablock):
     """The F-curves of a datablock's keyframes, or None where it has none; actions have slots since 4.4."""
     animated = datablock.animation_data

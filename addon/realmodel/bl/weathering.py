@@ -2,8 +2,9 @@
 """Weathering for pictures: a geometry nodes modifier on blocks. Their meshes do not change.
 
 Exposed faces (ground and walls) are worn: edges are rounded, soft rock recedes behind hard rock, layer by
-layer, and grass and scree lie on level ground. The nodes use the attributes of blocks
-(core.display.bedding). Noise is of coordinates of the model, so neighbors of the same hardness still meet.
+layer, and grass and scree lie on level ground, with tufts and stones where wanted. The nodes use the
+attributes of blocks (core.display.bedding). Noise is of coordinates of the model, so neighbors of the same
+hardness still meet.
 """
 
 import math
@@ -12,14 +13,14 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..core.project.looks import LOOKS
-from . import library_rows, looks, materials, meshes, versions
+from ..core.project.looks import DEFAULT, LOOKS
+from . import filled_beds, library_rows, looks, materials, meshes, scatter, versions
 from .nodes import Nodes
 
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 1
+_VERSION = 2
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 _UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6}  # texture units (looks) at 1
@@ -38,6 +39,10 @@ _INPUTS = {
     "Grass": ("NodeSocketMaterial",),
     "Scree": ("NodeSocketMaterial",),
     "Detail": ("NodeSocketInt", 2, 0, FINEST),
+    "Plants and Stones": ("NodeSocketFloat", 0.0, 0.0),
+    "Scatter Size": ("NodeSocketFloatDistance", 1.0, 1e-6),
+    scatter.TUFT: ("NodeSocketObject",),
+    scatter.STONE: ("NodeSocketObject",),
 }
 
 
@@ -57,7 +62,7 @@ def modifier_of(item):
 @dataclass(frozen=True)
 class Weathering:
     """strength, noise: 1 suits the model. grass, scree: radians, the steepest ground that has them, 0: none.
-    detail: the number of subdivisions of polygons."""
+    detail: the number of subdivisions of polygons. plants: how many tufts and stones, 1 suits; 0: none."""
 
     strength: float
     rounding: float
@@ -66,12 +71,31 @@ class Weathering:
     grass: float
     scree: float
     detail: int
+    plants: float = 0.0
 
 
 def put_on(scene, items, given):
-    """Adds Weathering to blocks, or changes its settings."""
-    group, unit = _group(), looks.diagonal(scene) / looks.UNITS
-    values = {
+    """Adds Weathering to blocks, and to beds of filled meshes, or changes its settings."""
+    group, of_model = _group(), looks.diagonal(scene) / looks.UNITS
+    for item in items:
+        is_bed = filled_beds.BED in item
+        unit = filled_beds.size(item) / looks.UNITS if is_bed else of_model
+        modifier = modifier_of(item)
+        if modifier is None:
+            modifier = item.modifiers.new(NAME, "NODES")
+            modifier.show_in_editmode = False
+        modifier.node_group = group
+        for name, value in _values(given, unit).items():
+            versions.set_group_input(modifier, name, value)
+        if is_bed:
+            versions.set_group_input(modifier, "Hardness", _hardness_of_bed(item))
+        item.pop(HARDNESS, None)
+    follow(scene)
+
+
+def _values(given, unit):
+    """The inputs of the modifier. unit: a texture unit."""
+    return {
         "Strength": given.strength * _UNITS["Strength"] * unit,
         "Edge Rounding": given.rounding,
         "Noise Scale": given.noise * _UNITS["Noise Scale"] * unit,
@@ -80,18 +104,18 @@ def put_on(scene, items, given):
         "Grass Slope": given.grass,
         "Scree Slope": given.scree,
         "Detail": given.detail,
-        **{name: _cover(name, unit) for name in _COVERS},
+        "Plants and Stones": given.plants,
+        "Scatter Size": unit,
+        **(covers := {name: _cover(name, unit) for name in _COVERS}),
+        scatter.TUFT: scatter.item(scatter.TUFT) if given.plants else None,
+        scatter.STONE: scatter.item(scatter.STONE, covers["Scree"]) if given.plants else None,
     }
-    for item in items:
-        modifier = modifier_of(item)
-        if modifier is None:
-            modifier = item.modifiers.new(NAME, "NODES")
-            modifier.node_group = group
-            modifier.show_in_editmode = False
-        for name, value in values.items():
-            versions.set_group_input(modifier, name, value)
-        item.pop(HARDNESS, None)
-    follow(scene)
+
+
+def _hardness_of_bed(item):
+    """That of the look of its rock."""
+    given = (slot.material.get(looks.KEY) for slot in item.material_slots if slot.material)
+    return LOOKS[next((look for look in given if look in LOOKS), DEFAULT)].hardness
 
 
 def take_off(items):
@@ -173,7 +197,6 @@ def _fill(nodes):
         shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
     geometry = _covered(nodes, given, geometry, is_top, position)
-    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
 
 
@@ -198,17 +221,24 @@ def _depth(nodes, given, position):
 
 
 def _covered(nodes, given, geometry, is_top, position):
-    """Grass, and scree on steeper ground, with a ragged border."""
+    """Grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
     up = nodes.part(nodes.of("GeometryNodeInputNormal", "Normal"), 2)
     slope = nodes.math("ADD", nodes.math("ARCCOSINE", up), ragged)
-    for name in ("Scree", "Grass"):
+    scattered = []
+    for name, thing in (("Scree", scatter.STONE), ("Grass", scatter.TUFT)):
         steepest = given[f"{name} Slope"]
         here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", slope, steepest), is_top)
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", steepest, 0.0))
         geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=given[name])
-    return geometry
+        scattered.append((thing, here))
+    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
+    joined = nodes.new("GeometryNodeJoinGeometry")
+    for thing, here in scattered:
+        nodes.link(scatter.on(nodes, given, geometry, thing, here), joined.inputs[0])
+    nodes.link(geometry, joined.inputs[0])
+    return joined.outputs[0]
 
 
 class _Nodes(Nodes):
@@ -244,6 +274,16 @@ class _Nodes(Nodes):
             self.link(found.outputs["Index"], node.inputs["Index"])
             sampled.append(_of_type(node.outputs, kind))
         return sampled
+
+    def random(self, low, high, number):
+        """A random number, or vector, for each point. number: another one has other values."""
+        node = self.new("FunctionNodeRandomValue")
+        kind = "VECTOR" if isinstance(low, tuple) else "VALUE"
+        node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
+        for name, value in (("Min", low), ("Max", high)):
+            self.link(value, next(s for s in node.inputs if s.name == name and s.enabled))
+        self.link(number, node.inputs["Seed"])
+        return _of_type(node.outputs, kind)
 
     def on(self, domain, value):
         """A number or a vector as a domain has it."""

@@ -77,7 +77,7 @@ def build(
 ) -> TiledModel:
     """Builds a model in tiles on workers of Dask, and leaves it in a folder that core.open_tiles opens.
 
-    tile_size: width and height in plan, model units; a line between tiles may be off by a sixteenth of this.
+    tile_size: width and height in plan, model units; a line between tiles may shift by a sixteenth of this.
     client: of distributed; None: a LocalCluster of so many `workers`, None: one for each processor. All
     workers have to see the folder under the same path. cells: as of core.build. A run that was stopped goes
     on where it was when it is started again with the same arguments; a folder that is finished is opened.

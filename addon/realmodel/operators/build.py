@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import build_job, built_scene, live, problems, viewports
+from ..bl import build_job, built_scene, live, notices, problems, viewports
 from .background import InBackground, running
 from .reporting import Reporting, a_model, building, not_building
 
@@ -35,7 +35,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
         if self._is_first and scene is not None:
             viewports.frame(scene, viewports.still_open(self._spaces))
         present = sum(block.cells > 0 for block in model.blocks)
-        for warning in model.warnings:
+        for warning in notices.shown(model):
             self.report({"WARNING"}, str(warning))
         seconds = sum(model.timings.values())
         blocks = "1 block" if present == 1 else f"{present} blocks"

@@ -34,7 +34,8 @@ class _Drawing(InViewport):
 
     use_object: BoolProperty(
         name="From Active Object",
-        description="Take the lines of the active curve or mesh in place of drawing them",
+        description="Take the lines of the active curve or mesh, or the strokes of the active grease pencil, "
+        "in place of drawing them",
         options={"SKIP_SAVE"},
     )
 
@@ -67,8 +68,9 @@ class _Drawing(InViewport):
                 raise InputRefused("nothing was drawn", advice="click on the plane, or give use_object")
             return [np.array(self._places)]
         item = context.active_object
-        if item is None or not settings.is_region_object(None, item):
-            raise InputRefused("the active object has no lines", advice="make a curve or a mesh active")
+        if item is None or not settings.is_drawn_object(item):
+            advice = "make a curve, a mesh or grease pencil strokes active"
+            raise InputRefused("the active object has no lines", advice=advice)
         return drawn_data.lines_of(context.scene, item, context.evaluated_depsgraph_get())
 
 

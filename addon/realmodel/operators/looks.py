@@ -6,9 +6,9 @@ import math
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..bl import library_rows, look_assets, looks, project_settings, settings, weathering
+from ..bl import filled_beds, library_rows, look_assets, looks, project_settings, settings, weathering
 from ..core import InputRefused
-from .reporting import Reporting, a_library, a_model
+from .reporting import Reporting, a_library, a_model_or_beds
 
 
 class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
@@ -52,8 +52,9 @@ class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
 
 
 def _blocks(context):
-    """The selected blocks, all where none is selected."""
+    """The selected blocks and beds of filled meshes, all where none is selected."""
     items = [row.object for row in context.scene.realmodel.results if row.object is not None]
+    items += filled_beds.of_scene(context.scene)
     items = [item for item in items if item.type == "MESH" and item.library is None]
     selected = set(context.selected_objects)
     return [item for item in items if item in selected] or items
@@ -63,7 +64,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     """Weather the selected blocks, or all, for pictures: a modifier on top of the exact blocks"""
 
     bl_label = "Weathering"
-    needs = (a_model,)
+    needs = (a_model_or_beds,)
 
     strength: FloatProperty(
         name="Strength",
@@ -112,11 +113,20 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         max=weathering.FINEST,
     )
 
+    plants: FloatProperty(
+        name="Plants and Stones",
+        description="How many tufts of grass and stones lie on grass and scree, as instances; 1 suits the "
+        "model, 0: none",
+        default=0.0,
+        min=0.0,
+        soft_max=4.0,
+    )
+
     def act(self, context):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = _blocks(context)
-        given = weathering.Weathering(*values, *covers, self.detail)
+        given = weathering.Weathering(*values, *covers, self.detail, self.plants)
         weathering.put_on(context.scene, items, given)
         self.report({"INFO"}, f"Weathered {len(items)} blocks; the modifier of each has all settings")
 
@@ -125,7 +135,7 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
     """Remove the weathering of the selected blocks, or of all"""
 
     bl_label = "Remove Weathering"
-    needs = (a_model,)
+    needs = (a_model_or_beds,)
 
     def act(self, context):
         items = [item for item in _blocks(context) if weathering.modifier_of(item) is not None]

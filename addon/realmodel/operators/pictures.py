@@ -9,7 +9,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty
 from ..bl import animation, overlay, picture
 from ..bl.display import capture, viewpoints
 from ..bl.viewports import CAMERA_ELEVATION
-from .reporting import Reporting, a_model
+from .reporting import Reporting, a_model, a_model_or_beds
 
 
 def _size(scene):
@@ -21,7 +21,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
     gives a good picture. Earlier ones of RealModel are replaced, your own cameras and lights stay"""
 
     bl_label = "Light and Camera"
-    needs = (a_model,)
+    needs = (a_model_or_beds,)
 
     view: EnumProperty(
         name="View",
@@ -67,7 +67,7 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
     writes it; an earlier turntable is replaced"""
 
     bl_label = "Turntable"
-    needs = (a_model,)
+    needs = (a_model_or_beds,)
 
     frames: IntProperty(name="Frames", description="Frames of one turn", default=120, min=2, soft_max=1000)
     elevation: FloatProperty(
@@ -109,7 +109,7 @@ class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
     """Render the model with its camera; where the scene has none, set up light and camera first"""
 
     bl_label = "Render Picture"
-    needs = (a_model,)
+    needs = (a_model_or_beds,)
 
     def act(self, context):
         if context.scene.camera is None:

@@ -8,7 +8,7 @@ looked at whenever the panel is drawn, so they read nothing but the scene.
 
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..bl import build_job, project_settings, settings, viewports
+from ..bl import build_job, filled_beds, project_settings, settings, viewports
 from ..bl.display import cuts
 from ..core import InputRefused, RealModelError
 
@@ -84,6 +84,12 @@ def any_surface(context):
 
 def a_model(context):
     return None if len(context.scene.realmodel.results) else "there is no model yet; press Build first"
+
+
+def a_model_or_beds(context):
+    if len(context.scene.realmodel.results) or filled_beds.of_scene(context.scene):
+        return None
+    return "there is no model yet; press Build first, or fill a mesh with strata"
 
 
 def an_interface(context):

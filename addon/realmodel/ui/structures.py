@@ -8,7 +8,7 @@ from ..core.settings.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
 from .lists import OfRows, draw_swatch
 from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
-from .surfaces import draw_figures, draw_filters, draw_property
+from .surfaces import draw_drawing, draw_figures, draw_filters, draw_property
 
 _EMPTY = {
     "FAULT": "Faults displace the layers. Select open meshes or lines on the ground, or import meshes, fault "
@@ -55,7 +55,7 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
             if project_settings.stored_shape(entry) and not entry.filepath:
                 hint(layout, "The shape is stored in the .blend.")
         if kind == "FAULT":
-            _draw_fault(layout, entry)
+            _draw_fault(layout, context, entry)
         else:
             _draw_body(layout, context, entry)
         if context.mode == "EDIT_MESH":
@@ -66,8 +66,8 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
         draw_figures(layout, context, entry)
 
 
-def _draw_fault(layout, fault):
-    layout.operator("realmodel.draw_stick", icon="GREASEPENCIL")
+def _draw_fault(layout, context, fault):
+    draw_drawing(layout, context, "realmodel.draw_stick", "Sticks from Active Object")
     if fault.source in settings.TRACES:
         for key in ("dip", "dip_direction", "elevation"):
             setting_rows.draw(layout, fault, key, FAULT)

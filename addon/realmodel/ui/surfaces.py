@@ -6,6 +6,7 @@ import bpy
 from ..bl import (
     library_rows,
     method_settings,
+    model_tree,
     project_settings,
     series_settings,
     settings,
@@ -101,7 +102,7 @@ def _draw_surface(layout, context, surface):
         field.active = surface.use_continuation
         field.prop(surface, "method", text="")
     if surface.source in ("NONE", "POINTS_FILE", "POINTS_OBJECT"):
-        layout.operator("realmodel.draw_contacts", icon="GREASEPENCIL")
+        draw_drawing(layout, context, "realmodel.draw_contacts", "Contacts from Active Object")
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
@@ -115,6 +116,17 @@ def _draw_dips_unused(layout, surface):
     for text in method_settings.dips_unused(surface):
         for number, line in enumerate(wrapped(text, 0 if column.alert else 2)):
             column.label(text=line, icon="NONE" if number else "ERROR")
+
+
+def draw_drawing(layout, context, operator, text):
+    """The button that draws in the viewport, and where an object with lines is active one that takes
+    these."""
+    column = layout.column(align=True)
+    column.operator(operator, icon="GREASEPENCIL")
+    item = context.active_object
+    is_given = item is not None and item.select_get() and model_tree.TAG not in item
+    if is_given and settings.is_drawn_object(item):
+        column.operator(operator, text=text, icon="OUTLINER_OB_GREASEPENCIL").use_object = True
 
 
 def draw_property(layout, context, row, operator):

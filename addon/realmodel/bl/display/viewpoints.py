@@ -10,7 +10,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import caches, exaggeration, meshes, viewports
+from .. import caches, exaggeration, filled_beds, meshes, viewports
 from . import bodies, cuts, explosion, modes
 
 _H = 0.5**0.5
@@ -104,12 +104,13 @@ def _remember(space):
 
 def model_points(scene, cut=False):
     """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world.
-    cut: around what a section plane has left of the blocks."""
+    cut: around what a section plane has left of the blocks. Without a model: of the beds of filled meshes."""
     group = scene.realmodel
     framed = modes.body_of if cut and cuts.is_shown(scene) else _framed
     items = [framed(scene, row) for row in group.results]
     if not len(items):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
+        items = items or filled_beds.of_scene(scene)
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
     found = []
     for item in items:

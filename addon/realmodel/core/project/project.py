@@ -312,7 +312,7 @@ class Project:
     """Rock masses that make one model, the faults and bodies in them, and the library of their properties.
 
     name: of the model. rocks: its rock masses. path: the project file, if it was read from one.
-    units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
+    units: of the model's lengths, which files in other units are brought to. Where bodies overlap, the later
     one counts. crs: the code of its coordinate reference system, "EPSG:25832", which files that have a place
     for it name.
     """

@@ -107,6 +107,11 @@ def cross_validate_holes(
 
     Raises InputRefused for a model without holes, or of a file without its project; UsageError, Cancelled.
     """
+    return run(lambda work: validated_holes(work, model, folds), progress, cancel, threads=threads)
+
+
+def validated_holes(work: Work, model, folds: int | None = None) -> HoleValidation:
+    """cross_validate_holes as the present phase of the work."""
     model.require_project("cross-validation")
     if folds is not None and (isinstance(folds, bool) or not isinstance(folds, int) or folds < 2):
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
@@ -119,20 +124,16 @@ def cross_validate_holes(
             advice="give boreholes with intervals or picks",
         )
     groups = min(folds or DEFAULT_FOLDS, len(every))
-
-    def task(work: Work) -> HoleValidation:
-        found: dict[tuple[int, str], LeftOutHole] = {}
-        for group in range(groups):
-            out = every[group::groups]
-            with work.part(group / groups, (group + 1) / groups):
-                try:
-                    found |= _without(work, model.project, rocks, out)
-                except InputRefused as error:
-                    lost = [LeftOutHole(rocks[n].name, hole, 0.0, None, (), str(error)) for n, hole in out]
-                    found |= dict(zip(out, lost, strict=True))
-        return HoleValidation([found[each] for each in every], groups)
-
-    return run(task, progress, cancel, threads=threads)
+    found: dict[tuple[int, str], LeftOutHole] = {}
+    for group in range(groups):
+        out = every[group::groups]
+        with work.part(group / groups, (group + 1) / groups):
+            try:
+                found |= _without(work, model.project, rocks, out)
+            except InputRefused as error:
+                lost = [LeftOutHole(rocks[n].name, hole, 0.0, None, (), str(error)) for n, hole in out]
+                found |= dict(zip(out, lost, strict=True))
+    return HoleValidation([found[each] for each in every], groups)
 
 
 def _holes_of(rock: Rock) -> list[str]:

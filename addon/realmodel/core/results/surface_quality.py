@@ -13,7 +13,7 @@ from ..heights import Task
 from ..heights.cross_validation import CrossValidation, distinct_points, validate
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
-from ..settings.variogram import Variogram
+from ..settings.variogram import RANGE_BEYOND, Variogram
 from ..surfaces.observed.sheet_series import companions_of
 
 DEFAULT_FOLDS = 10
@@ -24,7 +24,7 @@ class SurfaceQuality:
     """variogram: that its heights were estimated with, or None. cross_validation: None where there is none,
     then `missing` says why. angles: (T,) the smallest angles of its triangles in plan, degrees.
     mean_deviation, most_deviation: of the standard deviation of its heights over its area, model units; None
-    where the method gives none."""
+    where the method gives none. remarks: warnings about the fit that concern its variances alone."""
 
     variogram: Variogram | None
     cross_validation: CrossValidation | None
@@ -32,6 +32,7 @@ class SurfaceQuality:
     angles: np.ndarray
     mean_deviation: float | None
     most_deviation: float | None
+    remarks: tuple[str, ...] = ()
 
 
 def surface_quality(
@@ -52,6 +53,7 @@ def surface_quality(
             smallest_angles(vertices, triangles),
             mean,
             most,
+            tuple(text for text in (result.warnings if result else ()) if text.startswith(RANGE_BEYOND)),
         )
 
     return run(task, progress, cancel, threads=threads)

@@ -35,6 +35,7 @@ NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 # A fit is not significant where neighbouring points differ as much as any, or its range exceeds the data.
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
+RANGE_BEYOND = "the range of the fitted variogram"  # begins the warning that concerns variances alone
 _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill
 
 
@@ -180,7 +181,7 @@ def fit_warnings(
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the range of the fitted variogram, {number_text(variogram.range)}, far exceeds the extent of "
+            f"{RANGE_BEYOND}, {number_text(variogram.range)}, far exceeds the extent of "
             f"the points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; "
             "the heights may follow a trend: try universal kriging"
         )

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders the looping pictures of the guide in background Blender: docs/images/guide/NAME.webp.
+
+    BLENDER=build/venv-bpy/bin/python build/venv/bin/python scripts/draw_animations.py [NAME ...]
+
+BLENDER is as for draw_gallery.py. Each function in ANIMATIONS is one picture: a generator that changes the
+scene and yields how long each frame is shown, in milliseconds. It needs Pillow.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import gallery_picture
+from gallery_picture import blocks_of, sample
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images" / "guide"
+SIZE = (440, 280)
+RAYS, SECONDS = 8, 12.0  # of a pixel, and of a frame at most
+STEP, REST = 170, 1200  # milliseconds: of a moving picture, and where it stands
+MOST = 1_500_000  # bytes of a file
+
+
+def main(names):
+    """Outside Blender: runs this file in it, then puts the frames together."""
+    from PIL import Image
+
+    program = os.environ.get("BLENDER", "blender")
+    command = [program, "-b", "--factory-startup", "--python-exit-code", "1", "-P", __file__, "--"]
+    if Path(program).name.startswith("python"):
+        command = [program, __file__, "--"]
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([*command, folder, *names], cwd=ROOT, check=False)
+        for path in sorted(Path(folder).glob("*.json")):
+            durations = json.loads(path.read_text(encoding="utf-8"))
+            files = [path.with_name(f"{path.stem}_{n:02}.png") for n in range(len(durations))]
+            frames = [Image.open(file).convert("RGB") for file in files]
+            target = IMAGES / f"{path.stem}.webp"
+            frames[0].save(
+                target,
+                save_all=True,
+                append_images=frames[1:],
+                duration=durations,
+                loop=0,
+                quality=70,
+                method=6,
+            )
+            if target.stat().st_size > MOST:
+                sys.exit(f"{target} has {target.stat().st_size:,} bytes, more than {MOST:,}")
+    return done.returncode
+
+
+# -- in Blender
+
+
+def deposition(folder):
+    """The stages of a castle hill, one after another."""
+    model, picture = sample("castle_hill", folder)
+    last = len(model.project.rocks[0].surfaces) - 1
+    yield from shown(model, picture, [(model.stage(n), None) for n in range(last + 1)], 700)
+
+
+def section_sweep(folder):
+    """A plane sweeps through a castle hill and back."""
+    import numpy as np
+
+    model, picture = sample("castle_hill", folder)
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    planes = low[1] + (high[1] - low[1]) * np.linspace(0.04, 0.86, 8)
+    halves = [(model, None)]
+    halves += [(model.cut_by_plane((0.0, y, 0.0), (0.0, 1.0, 0.0)).above, None) for y in planes]
+    yield from there_and_back(shown(model, picture, halves, STEP))
+
+
+def exploded(folder):
+    """The layers of a castle hill move apart and back."""
+    import numpy as np
+
+    model, picture = sample("castle_hill", folder)
+    size = float(np.ptp(model.vertices[:, 2]))
+    lifts = [0.16 * size * share for share in (0.0, 0.08, 0.3, 0.62, 0.9, 1.0)]
+    yield from there_and_back(shown(model, picture, [(model, lift) for lift in lifts], STEP))
+
+
+def live_editing(folder):
+    """A valley is moved, and the blocks follow."""
+    import numpy as np
+    from realmodel.core import Library, Project, Property, Rock, Surface, build
+
+    along = np.linspace(0.0, 100.0, 61)
+    x, y = (a.ravel() for a in np.meshgrid(along, along))
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(60), np.arange(60)))
+    a = row * 61 + column
+    triangles = np.concatenate([np.stack([a, a + 1, a + 62], 1), np.stack([a, a + 62, a + 61], 1)])
+    fold = 4.0 * np.sin((x + 0.3 * y) / 13.0)
+    colors = ("#8a8f99", "#c9b98f", "#a9532f", "#d9a35f", "#7d8f6a", "#e3d9ae")
+    library = Library([Property(n, f"Rock {n}", color=color) for n, color in enumerate(colors, 1)])
+    models = []
+    for middle in np.linspace(20.0, 80.0, 9):
+        ground = 46.0 + 0.05 * x - 32.0 * np.exp(-(((x - middle - 6.0 * np.sin(y / 16.0)) / 13.0) ** 2))
+        heights = [0.0 * x, *(8.0 * n + fold + 0.05 * x for n in range(1, 6)), ground]
+        surfaces = [
+            Surface(f"S{n}", vertices=np.column_stack([x, y, z]), triangles=triangles, property=max(n, 1))
+            for n, z in enumerate(heights)
+        ]
+        models.append((build(Project("live", [Rock("rock", surfaces)], library=library)), None))
+    picture = gallery_picture.Picture((50.0, 50.0, 20.0), folder)
+    yield from there_and_back(shown(models[0][0], picture, models, STEP))
+
+
+def shown(whole, picture, states, duration):
+    """Shows models one after another; the camera stays where it sees the first one and the last one.
+    states: (model, how far each block is lifted above the one beneath, or None)."""
+    import bpy
+    import numpy as np
+
+    points = [np.array(whole.vertices - picture.origin, float)]
+    lift = max((lift or 0.0) for _, lift in states)
+    points.append(points[0] + (0.0, 0.0, lift * (len(whole.blocks) - 1)))
+    for number, (model, lift) in enumerate(states):
+        for item in [item for item in bpy.context.scene.objects if item.type == "MESH"]:
+            bpy.data.meshes.remove(item.data)
+        shapes = blocks_of(model, picture)
+        for place, shape in enumerate(shapes):
+            if shape is not None and lift:
+                shape.coordinates[:, 2] += lift * place
+        picture.show(model, shapes)
+        picture.points = points
+        yield picture, REST if number in (0, len(states) - 1) else duration
+
+
+def there_and_back(states):
+    """Marks that the frames are to be shown backward, too, after the last one."""
+    for picture, duration in states:
+        yield picture, -duration
+
+
+ANIMATIONS = (deposition, section_sweep, exploded, live_editing)
+
+
+def in_blender(folder, *names):
+    import bpy
+
+    sys.path.insert(0, str(ROOT / "addon"))
+    import realmodel
+
+    realmodel.register_for_batch()
+    gallery_picture.RAYS, gallery_picture.SECONDS = RAYS, SECONDS
+    for draw in ANIMATIONS:
+        name = draw.__name__
+        if names and name not in names:
+            continue
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+        durations, files = [], []
+        for number, (picture, duration) in enumerate(draw(Path(folder))):
+            files.append(Path(folder) / f"{name}_{number:02}.png")
+            picture.render(files[-1], SIZE, 156.0, 26.0, (0.0, 0.0))
+            durations.append(duration)
+        if durations[0] < 0:
+            for number in range(len(files) - 2, 0, -1):
+                path = Path(folder) / f"{name}_{len(durations):02}.png"
+                path.write_bytes(files[number].read_bytes())
+                durations.append(durations[number])
+        (Path(folder) / f"{name}.json").write_text(json.dumps([abs(d) for d in durations]))
+    sys.stdout.flush()
+    os._exit(0)  # the module bpy may hang as it ends
+
+
+if __name__ == "__main__":
+    if "--" in sys.argv:
+        in_blender(*sys.argv[sys.argv.index("--") + 1 :])
+    else:
+        sys.exit(main(sys.argv[1:]))
