@@ -211,7 +211,7 @@ Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::in
 
 std::pair<Array<std::int32_t>, Array<double>> crowded_data(
     const Array<double>& nodes, const Array<std::int32_t>& triangles,
-    const std::tuple<Array<double>, Array<double>, Array<double>>& data) {
+    const std::tuple<Array<double>, Array<double>, Array<double>>& data, double least) {
     const auto& [places, lower, upper] = data;
     const std::vector<double> zeros(static_cast<std::size_t>(nodes.shape(0)), 0.0);
     const interpolation::TiedSheets sheet{
@@ -221,7 +221,7 @@ std::pair<Array<std::int32_t>, Array<double>> crowded_data(
     interpolation::CrowdedData found;
     {
         const py::gil_scoped_release unlocked;
-        found = interpolation::crowded_data(sheet, asked);
+        found = interpolation::crowded_data(sheet, asked, least);
     }
     return {to_array(std::move(found.numbers)), to_array(std::move(found.room))};
 }
@@ -314,6 +314,7 @@ Returns (N,). Those of some nodes are the same as among all, to the last bit.)")
 
 Ascending. Raises InputError: kind "not_finite", "bad_index".)");
     module.def("crowded_data", &crowded_data, arg("nodes"), arg("triangles"), arg("data"),
+               arg("least"),
                R"(The data that a mesh, nodes (N, 2), triangles (T, 3), cannot honor beside others.
 
 data  places (C, 2); lower and upper bounds (C,), equal for contacts

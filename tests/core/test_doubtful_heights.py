@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Warnings about surfaces that miss a point by much, or cut older layers beyond their points."""
 
+import re
+
 import numpy as np
 import pytest
 from realmodel.core import Boreholes, Fault, Project, Rock, Surface, build
@@ -33,14 +35,13 @@ SPHERICAL = {"model": "spherical", "range": 600.0, "sill": 400.0, "nugget": 0.0}
 NUGGET = {**SPHERICAL, "sill": 1400.0, "nugget": 1000.0}
 
 
-def layers_with_an_outlier(off, variogram, thickness=200.0):
+def layers_with_an_outlier(off, variogram, thickness=200.0, tie=False):
     plan = wells(1)
     z = 20 * np.sin(plan[:, 0] / 200)
     z[7] += off
     older, younger = (on(wells(seed), height) for seed, height in ((2, -thickness), (3, thickness)))
-    return [of(older, "S0"), of(on(plan, z), variogram=variogram, tie=False), of(younger, "S2")], on(plan, z)[
-        7
-    ]
+    middle = of(on(plan, z), variogram=variogram, tie=tie)
+    return [of(older, "S0"), middle, of(younger, "S2")], on(plan, z)[7]
 
 
 def test_a_point_that_a_nugget_lets_the_surface_miss_is_named():
@@ -49,6 +50,21 @@ def test_a_point_that_a_nugget_lets_the_surface_miss_is_named():
     assert found.surface == "S1" and found.items == (7,)
     assert f"point 7 at ({point[0]:.9g}, {point[1]:.9g}, {point[2]:.9g})" in found.text
     assert "above it" in found.text and "the nugget (1,000;" in found.text
+
+
+def test_a_tied_surface_passes_through_a_wrong_pick_and_warns_of_it():
+    surfaces, _ = layers_with_an_outlier(190.0, NUGGET, tie=True)
+    (found,) = warnings(surfaces, "residual")
+    assert found.surface == "S1" and found.items == (7,)
+    said = re.fullmatch(
+        r"before it is tied it misses point 7 at \(303.194829, 453.497889, 209.969953\), which lies (.*) "
+        "above it; the neighboring surfaces are 200 away: check the point, through which the surface makes a "
+        "bump",
+        found.text,
+    )
+    assert said and 150 < float(said[1]) < 170
+    assert not warnings(layers_with_an_outlier(0.0, NUGGET, tie=True)[0], "residual")
+    assert not warnings(layers_with_an_outlier(0.0, SPHERICAL, tie=True)[0], "residual")
 
 
 def test_below_too():
@@ -78,8 +94,9 @@ def test_the_base_is_a_neighbor():
     assert found.items == (7,)
 
 
-def test_the_borehole_is_named(tmp_path):
-    surfaces, _ = layers_with_an_outlier(190.0, NUGGET)
+@pytest.mark.parametrize("tie", [False, True])
+def test_the_borehole_and_the_depth_are_named(tmp_path, tie):
+    surfaces, point = layers_with_an_outlier(190.0, NUGGET)
     points = surfaces[1].points
     (tmp_path / "collars.csv").write_text(
         "hole,x,y,z\n" + "".join(f"W-{n},{x!r},{y!r},1000\n" for n, (x, y, _) in enumerate(points.tolist()))
@@ -88,10 +105,11 @@ def test_the_borehole_is_named(tmp_path):
         "hole,depth,surface\n"
         + "".join(f"W-{n},{1000 - z!r},S1\n" for n, z in enumerate(points[:, 2].tolist()))
     )
-    surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET}, tie=False)
+    surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET}, tie=tie)
     holes = Boreholes(collars=tmp_path / "collars.csv", picks=tmp_path / "picks.csv")
     (found,) = warnings(surfaces, "residual", boreholes=holes)
-    assert "of borehole 'W-7'" in found.text
+    assert f"of borehole 'W-7' at a depth of {1000 - point[2]:.6g}," in found.text
+    assert found.text.startswith("before it is tied it misses" if tie else "it misses")
 
 
 def diving(rule="erosional", **options):

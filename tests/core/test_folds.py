@@ -167,6 +167,15 @@ def test_stages_and_files(monkeypatch, tmp_path):
         np.testing.assert_array_equal(stage.vertices, build(folded_project(), stage=m).vertices)
 
 
+def test_a_stage_before_a_body_came(monkeypatch):
+    """Rock that the level above all cuts off, and a structure that is not there yet."""
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    body = Body("body", *box([2.3, 2.2, 1.7], [6.1, 7.3, 6.9]))
+    stage = build(folded_project(bodies=[body])).stage(0)
+    assert (stage.face_surface == -3).any()
+    assert stage.validate().passed, stage.validate().failure()
+
+
 def test_the_same_for_any_number_of_threads(monkeypatch):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     one, three = (build(folded_project(), threads=threads) for threads in (1, 3))

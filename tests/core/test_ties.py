@@ -9,6 +9,7 @@ from realmodel.core import Observations, Project, Rock, Surface, build, load_pro
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.heights.ties import tie_data
+from realmodel.core.results.layer_values import at_places
 from realmodel.core.results.residuals import residuals
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.methods import METHODS
@@ -89,13 +90,14 @@ def test_fewer_nodes_than_points():
 
 def test_a_nugget_makes_no_spikes():
     points = noisy()
-    free, tied = (model_of(points, tie=tie, **NUGGET).surface(0)[0] for tie in (False, True))
-    most = np.abs(residuals(model_of(points, tie=False, **NUGGET))[0].values).max()
-    assert np.abs(tied - free).max() < 1.5 * most
+    free, tied = (model_of(points, tie=tie, **NUGGET) for tie in (False, True))
+    most = np.abs(residuals(free)[0].values).max()
+    nodes = tied.surface(0)[0]
+    assert np.abs(nodes[:, 2] - at_places(*free.surface(0), nodes[:, :2], 0)).max() < 1.5 * most
 
 
 def test_a_surface_that_honors_its_points_keeps_its_heights():
-    plan = noisy()[:, :2]
+    plan = np.array([[x + y / 20, y + x / 30] for x in (15, 50, 85) for y in (17, 52, 81)])
     points = np.column_stack([plan, 0.5 * plan[:, 0] - plan[:, 1]])
     free, tied = (model_of(points, "plane", tie=tie).surface(0)[0] for tie in (False, True))
     assert np.array_equal(free, tied)
@@ -161,7 +163,7 @@ def test_ties_of_rasters_and_surveys_are_not_asked_for():
     free, tied = (model_of(grid, "grid", tie=tie).surface(0)[0] for tie in (False, True))
     assert np.array_equal(free, tied)
     many = np.random.default_rng(1).uniform(0, 1, (10_001, 3))
-    assert not Surface("top", points=many).ties and Surface("top", points=many[1:]).ties
+    assert [len(Surface("top", points=each).tied_points) for each in (many, many[1:])] == [0, 10_000]
 
 
 def test_data_of_one_position_count_once():
@@ -178,3 +180,66 @@ def test_of_close_places_of_several_surfaces_one_becomes_a_vertex_at_a_time():
     mesh = Sheet(np.array([[0.0, 0], [100, 0], [50, 100]]), np.array([[0, 1, 2]], np.int32))
     found = run(lambda work: crowded_places(work, entry, mesh, np.empty((0, 2))))
     assert len(found) == 1
+
+
+def rolling(plan):
+    x, y = plan[:, 0], plan[:, 1]
+    return 6 * np.sin(x / 9) * np.cos(y / 11) + 3 * np.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 30)
+
+
+@pytest.mark.parametrize("per_edge", [3.0, 2.0, 1.3])
+def test_a_survey_denser_than_the_mesh_makes_no_spikes(per_edge):
+    edge_length, random = 8.0, np.random.default_rng(0)
+    spacing = edge_length / per_edge
+    axis = np.linspace(0.5, SIZE - 0.5, int(SIZE / spacing) + 1)
+    plan = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    plan = np.clip(plan + random.uniform(-0.3, 0.3, plan.shape) * spacing, 0, SIZE)
+    points = np.column_stack([plan, rolling(plan)])
+    free, tied = (model_of(points, tie=tie, edge_length=edge_length) for tie in (False, True))
+    places = random.uniform(1, SIZE - 1, (20_000, 2))
+    off_free, off = (np.abs(at_places(*m.surface(0), places, 0) - rolling(places)) for m in (free, tied))
+    assert worst_share(tied) <= 1e-9
+    assert off.max() <= off_free.max()
+    assert np.sqrt((off**2).mean()) <= 0.75 * np.sqrt((off_free**2).mean())
+
+
+def test_observations_on_a_ground_finer_than_the_mesh_are_in_their_blocks():
+    axis = np.arange(0, SIZE + 1, 2.0)
+    plan = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    ground = np.column_stack([plan, 5 * np.sin(plan[:, 0] / 3) * np.sin(plan[:, 1] / 4)])
+    random = np.random.default_rng(5)
+    seen = ground[random.choice(len(ground), 150, replace=False)]
+    tops = [0.3 * (seen[:, 0] - x) for x in (70, 50, 30)]  # beds, and a height at which each is met
+    blocks = np.array(["a", "b", "c", "d"])[(np.array(tops) < seen[:, 2]).sum(axis=0)]
+    holes = np.array([[10.0, 50], [30, 20], [60, 80], [90, 40]])
+    surfaces = [
+        Surface(
+            name,
+            points=np.column_stack([holes, 0.3 * (holes[:, 0] - x) - 3]),
+            method="universal_kriging",
+            rule="conformable",
+            block=name,
+        )
+        for name, x in zip("abc", (70, 50, 30), strict=True)
+    ]
+    surfaces.append(Surface("ground", points=ground, method="grid", block="d"))
+    rock = Rock(
+        "r",
+        surfaces,
+        region=REGION,
+        edge_length=15.0,
+        base_elevation=-100.0,
+        observations=Observations(seen, blocks),
+    )
+    found = build(Project("p", [rock])).observed()
+    assert found.bounds > 150 and not found.violated and found.share == 1
+
+
+MAP = SAMPLES.parent.parent / "shared" / "data" / "field" / "hamersley_map_dips"
+
+
+@pytest.mark.skipif(not MAP.is_dir(), reason="../shared/data/field/hamersley_map_dips is not there")
+def test_a_real_map_is_honored():
+    found = build(load_project(MAP / "project.toml")).observed()
+    assert found.share == 1 and not found.violated
+    assert max(abs(each.residual) for each in found.contacts) < 1e-6

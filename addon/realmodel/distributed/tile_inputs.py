@@ -19,6 +19,7 @@ from ..core.base.errors import naming
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
+from ..core.heights.ties import tie_data
 from ..core.project.project import Project, Surface, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.surfaces.rock_input import RockInput
@@ -107,7 +108,7 @@ def prepared(
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
         for k in (k for k in interpolation_order(entry.rock) if k in fitted):
             found, near[r, k], texts = fitted[k]
-            if entry.rock.surfaces[k].ties and len(entry.rock.surfaces[k].point_array()):
+            if entry.rock.surfaces[k].ties:
                 found, of_ties = _tied(found, entry.rock.surfaces[k], near[r, k], entry, cancel)
                 texts = [*texts, *of_ties]
             local[r, k] = linked(found, entry.rock, k)
@@ -163,10 +164,13 @@ def _fitted(
 def _tied(
     found: LocalHeights, surface: Surface, points: np.ndarray, entry: RockInput, cancel
 ) -> tuple[LocalHeights, list[str]]:
-    """A surface that tiles interpolate, tied to its points, and warnings."""
+    """A surface that tiles interpolate, tied to its points and bounds, and warnings."""
+    data = tie_data(np.ascontiguousarray(surface.tied_points), surface.bounds)
+    if not len(data.places):
+        return found, []
     mesh = Sheet(*map(np.ascontiguousarray, entry.planar_mesh()))
-    given, points = map(np.ascontiguousarray, (surface.point_array(), points))
-    return run(lambda work: found.tied(work, given, points, mesh), cancel=cancel)
+    points = np.ascontiguousarray(points)
+    return run(lambda work: found.tied(work, data, points, mesh), cancel=cancel)
 
 
 def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, list[str]]:

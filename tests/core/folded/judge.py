@@ -114,13 +114,20 @@ def _contacts(case, model):
 
 
 def _lacks(model):
-    """Whether some compartment has the field of all data for want of its own: then data contradict it."""
-    return any(each.kind == "contacts" and "without contacts" in each.text for each in model.warnings)
+    """Whether some compartment has the field of all data for want of its own, or a sheet that is continued
+    from another: then data contradict it."""
+    lacks = ("without contacts", "has no triangles in compartment")
+    return any(text in each.text for each in model.warnings for text in lacks)
+
+
+def _is_tight(case):
+    """Whether the lattice is too coarse for a fold."""
+    return any(series.fold.wavelength < 2 * case.resolution for series in case.series())
 
 
 def _observed(case, model):
     found = model.observed()
-    if found.share is None or case.noise > 0 or _lacks(model):
+    if found.share is None or case.noise > 0 or _is_tight(case) or _lacks(model):
         return []
     failures = []
     if found.share < 0.99:
@@ -135,9 +142,8 @@ def _share(case, model):
     """Of dense data without noise the model is about that which they were drawn from."""
     from realmodel.core.base.work import native_module
 
-    tight = any(series.fold.wavelength < 2 * case.resolution for series in case.series())
     few = case.contacts < DENSE or case.dips < DENSE
-    if few or tight or case.noise > 0 or case.faults or _lacks(model):
+    if few or _is_tight(case) or case.noise > 0 or case.faults or _lacks(model):
         return []
     points = np.random.default_rng(3).uniform(LOW, HIGH, (4000, 3))
     truth = case.blocks_at(points)

@@ -89,7 +89,7 @@ def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: i
     face = built.complex.face_surface
     renumbered = replace(
         built.complex,
-        face_surface=np.where(face < 0, face, np.append(number, np.int32(-1))[face]).astype(np.int32),
+        face_surface=np.where(face < 0, face, number[np.maximum(face, 0)]).astype(np.int32),
         cell_block=number[built.complex.cell_block],
     )
     parts = built.parts and replace(built.parts, part=part[built.parts.part])

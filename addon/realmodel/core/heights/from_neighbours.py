@@ -45,6 +45,7 @@ class DipUse:
 
 
 _FEWEST_DIPS = 2
+_BESIDE = 1e-12  # model units: from a point at 0; its square is no 0
 
 
 def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
@@ -178,8 +179,22 @@ def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.n
     if task.left_out:
         z, variance, alone = task.run(native.krige_left_out, data.points, *arguments)
         return z[: len(task.points)] + offset, variance[: len(task.points)], alone
-    z, variance, alone = task.run(native.krige, data.points, task.nodes, *arguments)
+    z, variance, alone = task.run(native.krige, data.points, _free_nodes(task), *arguments)
     return z + offset, variance, alone
+
+
+def _free_nodes(task: Task) -> np.ndarray:
+    """(N, 2) the nodes at which heights are asked for: where the surface is tied afterwards, those at points
+    lie beside them, as a nugget would make spikes at them, and none at other points."""
+    nodes, plan = task.nodes, task.points[:, :2]
+    if not task.ties:
+        return nodes
+    near = np.flatnonzero(np.isin(nodes[:, 0], plan[:, 0]))
+    here = set(map(tuple, plan[np.isin(plan[:, 0], nodes[near, 0])].tolist()))
+    at = [n for n, place in zip(near.tolist(), nodes[near].tolist(), strict=True) if tuple(place) in here]
+    nodes = np.array(nodes)
+    nodes[at, 0] += np.maximum(np.spacing(np.abs(nodes[at, 0])), _BESIDE)
+    return nodes
 
 
 def krige(task: Task, known: Structure | None = None) -> Result:
@@ -204,7 +219,7 @@ def krige(task: Task, known: Structure | None = None) -> Result:
         z, variance, alone = task.run(native.krige_left_out, task.points, *arguments)
         warnings += without_near_points(alone, len(z))
     else:
-        z, variance, _ = task.run(native.krige, task.points, task.nodes, *arguments)
+        z, variance, _ = task.run(native.krige, task.points, _free_nodes(task), *arguments)
         warnings += _beyond_radius(task)
     return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
 

@@ -48,7 +48,8 @@ class Task:
     the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3)). dips:
     of the surface, no two at one position, or None. bounds: heights that it lies above or below, or None.
     companions: the sheets of its series, with which it is interpolated together, or None. true_thickness: the
-    thickness above the surface that it is parallel to is measured perpendicular to that."""
+    thickness above the surface that it is parallel to is measured perpendicular to that. ties: it is tied to
+    its points afterwards."""
 
     work: Work
     points: np.ndarray
@@ -61,6 +62,7 @@ class Task:
     bounds: Bounds | None = None
     companions: Companions | None = None
     true_thickness: bool = False
+    ties: bool = False
 
     def run(
         self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs

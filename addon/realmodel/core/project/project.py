@@ -136,11 +136,17 @@ class Surface(Shaped):
 
     @builtins.property  # a field of this class is called property
     def ties(self) -> bool:
-        """Whether a surface that is read is made to pass through its points. A grid is not, nor are so many
-        points that they are a survey of the surface: both are finer than a planar mesh should be."""
-        if not (self.tie and self.interpolated and METHODS[self.method_options()[0]].has_contacts):
-            return False
-        return len(self.point_array()) <= MOST_CONTACTS
+        """Whether a surface that is read is made to pass through its contacts and to keep its bounds."""
+        return self.tie and self.interpolated
+
+    @builtins.property  # a field of this class is called property
+    def tied_points(self) -> np.ndarray:
+        """(C, 3) the points that a surface which ties passes through: all, but none of a grid or of so many
+        that they are a survey of the surface. Both are finer than a planar mesh should be."""
+        points = self.point_array()
+        if METHODS[self.method_options()[0]].has_contacts and len(points) <= MOST_CONTACTS:
+            return points
+        return points[:0]
 
     @builtins.property  # a field of this class is called property
     def block_name(self) -> str:

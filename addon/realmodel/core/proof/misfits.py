@@ -16,9 +16,10 @@ from ..cells.model_data import ModelData
 from ..project.project import Rock
 from ..readers.tables.observations import SWITCHED_OFF
 from ..results.residuals import heights_of_points
+from ..surfaces.data_sources import sources_of_rock
 from ..surfaces.series_field import SeriesField
 from .closed_form import AIR, ClosedForm, closed_forms
-from .observed import sources_of, violated_bounds
+from .observed import violated_bounds
 from .seen_places import NEAR, look
 
 MISFIT_KINDS = ("point", "bound", "block", "dip", "left_out")
@@ -70,7 +71,7 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
     forms, first = closed_forms(model), 0
     for number, (entry, form) in enumerate(zip(model.rock_inputs, forms, strict=True)):
         near = tolerance if tolerance is not None else NEAR * _range_of_heights(entry.rock)
-        sources = _sources(entry.rock)
+        sources = sources_of_rock(entry.rock)
         for at, surface in enumerate(entry.rock.surfaces):
             which = first + at, at, number
             found += _points(model, which, sources, near)
@@ -99,18 +100,6 @@ def _range_of_heights(rock) -> float:
     parts += [] if rock.observed is None else [rock.observed.places[:, 2]]
     heights = np.concatenate(parts) if parts else np.empty(0)
     return float(np.ptp(heights)) if len(heights) else 0.0
-
-
-def _sources(rock) -> dict[tuple, tuple[str, float | None]]:
-    """The hole and the depth of places: of observations, and of picks, which have a depth in vertical
-    holes."""
-    found = {} if rock.observed is None else sources_of(rock.observed)
-    for hole, (collar, picks) in rock.hole_picks.items():
-        for _, place in picks:
-            is_below = collar is not None and tuple(collar[:2]) == tuple(place[:2])
-            key = tuple(float(value) for value in place)
-            found.setdefault(key, (hole, float(collar[2] - place[2]) if is_below else None))
-    return found
 
 
 def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: float) -> Iterator[Misfit]:

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
-from ..readers.tables.observations import LeftOut, Observations
+from ..readers.tables.observations import LeftOut
 from ..results.residuals import heights_of_points
+from ..surfaces.data_sources import depth_of, sources_of
 from .closed_form import ClosedForm, closed_forms
 from .seen_places import NEAR, look
 
@@ -124,16 +125,6 @@ def _observed(work: Work, model: ModelData) -> Observed:
     return Observed(blocks, contacts, count, violated, left_out)
 
 
-def _depth(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
-
-
-def sources_of(given: Observations) -> dict[tuple, tuple[str, float | None]]:
-    """The hole and the depth of places."""
-    rows = zip(given.places.tolist(), given.holes.tolist(), given.depths.tolist(), strict=True)
-    return {tuple(place): (hole, _depth(depth)) for place, hole, depth in rows}
-
-
 def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float) -> list[ViolatedBound]:
     """The bounds that a surface does not keep. surface: its number in the model, in its rock mass, and that
     of the rock mass."""
@@ -152,7 +143,7 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
             rock.name,
             rock.surfaces[at].name,
             str(bounds.holes[row]),
-            _depth(bounds.depths[row]),
+            depth_of(bounds.depths[row]),
             tuple(bounds.places[row].tolist()),
             bool(bounds.is_lower[row]),
             float(beyond[row]),

@@ -18,6 +18,7 @@ from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
 from ..settings.methods import SURFACE_OPTIONS
 from ..settings.rules import RULES
+from .data_sources import sources_of_rock
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
@@ -58,14 +59,17 @@ def doubtful_heights(
 def _missed(
     work: Work, entry: RockInput, number: int, points: np.ndarray, are_all: bool
 ) -> BuildWarning | None:
-    """The warning about the point that a surface misses by most. are_all: the points are all that it has, and
-    have the numbers that users know.
+    """The warning about the point that a surface misses by most, a tied one before it was. are_all: the
+    points are all that it has, and have the numbers that users know.
 
     It is given where the residual, less what the mesh does not show, is larger than the median distance to
     the surfaces before and after it; or larger than a quarter of this, if it is an outlier: larger than any
     that as many normally distributed residuals with the deviation of the other ones would have.
     """
     rock, shape = entry.rock, entry.surface(number)
+    is_tied = shape in entry.untied and len(rock.surfaces[number].tied_points) > 0
+    if is_tied:
+        shape = entry.untied[shape]
     z = heights_at(work, shape, points[:, :2])
     known = np.isfinite(z)
     sizes = np.where(known, np.abs(points[:, 2] - z), 0.0)
@@ -80,12 +84,14 @@ def _missed(
     largest = float(beyond_mesh.max())
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
         return None
-    place, hole = place_text(points[worst].tolist()), _hole(rock, number, points[worst])
+    place, hole = place_text(points[worst].tolist()), _hole(rock, points[worst])
     named = f"point {worst}" if are_all else "the point"
     side = "above" if points[worst, 2] > z[worst] else "below"
+    before = "before it is tied " if is_tied else ""
     text = (
-        f"it misses {named} at {place}{hole}, which lies {number_text(sizes[worst])} {side} it; the "
-        f"neighboring surfaces are {number_text(apart)} away: {_remedy(entry.interpolations[number])}"
+        f"{before}it misses {named} at {place}{hole}, which lies {number_text(sizes[worst])} {side} it; the "
+        f"neighboring surfaces are {number_text(apart)} away: "
+        f"{_remedy(entry.interpolations[number], is_tied)}"
     )
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
 
@@ -132,16 +138,16 @@ def _distance_to_neighbors(
     return float(np.median(apart)) if len(apart) else None
 
 
-def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
-    """The borehole that a point comes from, as a part of a sentence."""
-    name = rock.surfaces[number].name
-    for hole, (_, picks) in rock.hole_picks.items():
-        if any(surface == name and np.array_equal(place, point) for surface, place in picks):
-            return f" of borehole '{hole}'"
-    return ""
+def _hole(rock: Rock, point: np.ndarray) -> str:
+    """The borehole that a point comes from, and the depth, as a part of a sentence."""
+    hole, depth = sources_of_rock(rock).get(tuple(point.tolist()), ("", None))
+    at = "" if depth is None else f" at a depth of {depth:.6g}"
+    return f" of borehole '{hole}'{at}" if hole else ""
 
 
-def _remedy(result) -> str:
+def _remedy(result, is_tied: bool) -> str:
+    if is_tied:
+        return "check the point, through which the surface makes a bump"
     nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
     cause = f"nugget ({number_text(nugget)}; 0 honors every point)" if nugget else "method"
     return f"check the point, the {cause}, and the edge length"

@@ -20,7 +20,7 @@ from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height
 from ..heights.run import elsewhere, few_points, refused_points, runs_away
-from ..heights.ties import Terms, correction, missed_warnings, tie_data, tied_heights
+from ..heights.ties import Terms, TieData, correction, missed_warnings, tied_heights
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
 from .rock_input import named_surfaces
@@ -43,7 +43,8 @@ class LocalHeights:
     height. hull: the corners of the points' hull, where extrapolation differs from the method. border: for
     triangulations, the points on the border of the hull, and the box around all. over: the number of the
     surface that this one is parallel to, or a height. least: the minimum thickness above the older surface.
-    terms: the correction with which it honors its points.
+    ties: it is tied to its points, by terms: the correction with which it honors them, None where it does
+    so without.
     """
 
     method: str
@@ -61,6 +62,7 @@ class LocalHeights:
     border: tuple[np.ndarray, Box] | None = None
     over: int | float | None = None
     least: float | None = None
+    ties: bool = False
     terms: Terms | None = None
 
     @property
@@ -105,19 +107,18 @@ class LocalHeights:
         return z if self.terms is None else tied_heights(task.work, z, task.nodes, self.terms)
 
     def tied(
-        self, work: Work, given: np.ndarray, points: np.ndarray, mesh: Sheet
+        self, work: Work, data: TieData, points: np.ndarray, mesh: Sheet
     ) -> tuple[LocalHeights, list[str]]:
-        """The same, tied to its points, `given`, on a planar mesh, and warnings. points: as of heights."""
-        data = tie_data(given, None)
+        """The same, tied to its data on a planar mesh, and warnings. points: as of heights."""
         around = native_module().nodes_around(*mesh.arrays, data.places)
         nodes = np.ascontiguousarray(mesh.vertices[around])
-        z = np.full(len(mesh.vertices), np.nan)
+        z, free = np.full(len(mesh.vertices), np.nan), replace(self, ties=True)
         if self.border is None:
-            z[around] = self.heights(work, points, nodes)
+            z[around] = free.heights(work, points, nodes)
         else:
-            z[around], _ = self.certain_heights(work, points, nodes, self.border[1])
+            z[around], _ = free.certain_heights(work, points, nodes, self.border[1])
         terms, after = correction(work, *mesh.arrays, z, data)
-        return replace(self, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
+        return replace(free, terms=terms if len(terms.radii) else None), missed_warnings(data, after)
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
         outside = result.outside
@@ -128,7 +129,7 @@ class LocalHeights:
         return replace_extrapolated(task, result, outside)
 
     def _task(self, work: Work, points: np.ndarray, nodes: np.ndarray) -> Task:
-        return Task(work, points, nodes, self.settings)
+        return Task(work, points, nodes, self.settings, ties=self.ties)
 
     def _result(self, task: Task) -> Result:
         if self.known is not None:
@@ -222,7 +223,8 @@ def is_local(surface: Surface) -> bool:
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if method == "parallel":
-        return settings["thickness"] is not None and not (surface.ties and len(surface.point_array()))
+        is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+        return settings["thickness"] is not None and not is_tied
     if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False
     if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left

@@ -26,6 +26,7 @@ from ..settings.series import SHEETS
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
+from .observed.conformable import proposals
 from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
@@ -75,6 +76,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         rock = with_least_thickness(replace(rock, surfaces=[each.surface for each in own]))
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
         entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=field.left_out)
+        entry.has_faults = bool(project.faults)
         if rock.observed is not None:
             apply_observations(work, entry)
         apply_dips(work, entry, field.ground, field.mapped)
@@ -238,6 +240,15 @@ def settle_methods(work: Work, entry: RockInput) -> None:
             settle_method(work, entry, number)
 
 
+def _propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> None:
+    """Adds warnings about surfaces of the method "auto" that are conformable."""
+    chosen = sorted(number for number in numbers if entry.rock.surfaces[number].method == "auto")
+    if len(chosen) < 2:
+        return
+    with work.part(0.0, 0.0), work.phase(0.0, 1.0, "comparing surfaces"):
+        entry.warnings += proposals(work, entry.rock, chosen)
+
+
 def interpolate_rock(
     work: Work,
     entry: RockInput,
@@ -257,6 +268,7 @@ def interpolate_rock(
             entry.surfaces[number] = plan
     if not flat and entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
+        _propose_series(work, entry, waiting)
     for number in work.share_out(waiting):
         with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number)
@@ -268,3 +280,4 @@ def interpolate_rock(
         entry.warnings += points_too_low(work, entry, sorted(waiting))
         if keep is as_it_is:  # tiles have no such warnings
             entry.warnings += doubtful_heights(work, entry, sorted(waiting))
+        entry.untied.clear()

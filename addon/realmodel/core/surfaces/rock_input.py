@@ -35,8 +35,9 @@ class RockInput:
     because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
-    fields: of series whose surfaces are level sets; such a surface is a level set, in each compartment of its
-    field.
+    has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
+    level sets; such a surface is a level set, in each compartment of its field. untied: of sheets that were
+    tied to their data what they were before, until doubts about them are told.
     """
 
     rock: Rock
@@ -52,7 +53,9 @@ class RockInput:
     left_out: list[LeftOut] = field(default_factory=list)
     used: np.ndarray | None = None
     edge: float | None = None
+    has_faults: bool = False
     fields: list[SeriesField] = field(default_factory=list)
+    untied: dict[Sheet, Sheet] = field(default_factory=dict, metadata=NOT_STORED)
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
@@ -125,6 +128,7 @@ class RockInput:
             left_out=self.left_out,
             used=self.used,
             edge=self.edge,
+            has_faults=self.has_faults,
             fields=[kept for each in self.fields if (kept := each.stage(m)) is not None],
         )
 

@@ -97,15 +97,15 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     with naming(surface_item(rock, surface), surface.shape_source):
         if trend is not None:
-            result = _on_trend(work, entry, number, trend, others)
+            result, free = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
             companions = companions_of(rock, number)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            task = replace(task, dips=surface.known_dips(), companions=companions)
+            task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
             bounds = bounds_beside(surface, companions)
             task = replace(task, bounds=bounds, true_thickness=surface.true_thickness)
-            result = _tied(task, give(method, task), surface)
+            result, free = _tied(task, give(method, task), surface)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
@@ -116,26 +116,31 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             warnings += _older_points_above(work, rock, number, shape)
             shape, raised = _above_older(work, entry, number, shape)
             warnings += raised
+    if free is not result.z and entry.draws is None:
+        entry.untied[shape] = where_known(nodes, triangles, free)
     entry.surfaces[number] = shape
     entry.interpolations[number] = result
     entry.attributes[number] = attributes
     entry.warnings += warnings
 
 
-def _tied(task: Task, result: Interpolation, surface: Surface) -> Interpolation:
-    """The heights with which a surface honors its points and bounds on the mesh of its region."""
+def _tied(task: Task, result: Interpolation, surface: Surface) -> tuple[Interpolation, np.ndarray]:
+    """The heights with which a surface honors its points and bounds on the mesh of its region; and those that
+    it had, the same array where it keeps them."""
     if not surface.ties or task.triangles is None or not len(task.triangles):
-        return result
-    data = tie_data(task.points, task.bounds)
+        return result, result.z
+    data = tie_data(surface.tied_points, task.bounds)
     z, warnings = corrected(task.work, task.nodes, task.triangles, result.z, data)
-    if z is result.z:
-        return replace(result, warnings=(*result.warnings, *warnings))
-    z = within_bounds(task, z, result.z)
-    return replace(result, z=z, warnings=(*result.warnings, *warnings))
+    free = result.z
+    if z is not free:
+        z = within_bounds(task, z, free)
+    return replace(result, z=z, warnings=(*result.warnings, *warnings)), free
 
 
-def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: dict) -> Interpolation:
-    """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
+def _on_trend(
+    work: Work, entry: RockInput, number: int, trend: Trend, others: dict
+) -> tuple[Interpolation, np.ndarray]:
+    """The heights of a surface of a RockInput on a trend, within the bounds of its method, as of _tied."""
     surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
     dips = surface.known_dips()
     points, mis_ties = without_mis_ties(surface.point_array())

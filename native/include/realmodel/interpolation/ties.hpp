@@ -86,7 +86,9 @@ struct CrowdedData {
 /// corrections: their places should become nodes themselves. Of inequalities only those count that
 /// a gentle surface would not meet beside the nearest data.
 /// @param sheet  its heights say where it is
+/// @param least  of the square of a datum's row, a third in the middle of a triangle: where others
+///               leave less, corrections would be large
 /// @throws InputError kind "not_finite" (items: the node), "bad_index" (items: the triangle)
-CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data);
+CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data, double least);
 
 }  // namespace realmodel::interpolation

@@ -27,10 +27,11 @@ constexpr int kMostPasses = 6;       // over the last level, until what is left 
 constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
 constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
-constexpr double kCrowded = 0.05;    // of a row's square: less left by others needs a finer mesh
-constexpr double kMostCrowded = 0.02;  // as much less than that as the order of rows may matter
+constexpr double kMostCrowded = 0.02;  // of the square of a row: less left by others asks as much
 
-constexpr double kSteep = 4;
+constexpr double kSteep = 1;
+constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
+constexpr double kSignRidge = 1e-9;    // of the diagonal, where only signs of terms are wanted
 constexpr std::size_t kLookedAt = 32;  // data around an inequality
 
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
@@ -77,7 +78,11 @@ private:
 class Tying {
 public:
     Tying(const TieRows& rows, double tolerance, const Execution& execution)
-        : rows_(rows), tolerance_(tolerance), execution_(execution), z_(rows.heights) {
+        : rows_(rows),
+          tolerance_(tolerance),
+          execution_(execution),
+          centers_(rows.positions, rows.sided, rows.faults),
+          z_(rows.heights) {
         state_.assign(rows.rows.size(), State::kIdle);
     }
 
@@ -95,6 +100,7 @@ public:
         spacing_ = std::sqrt(rows_.area / static_cast<double>(count));
         if (active_.empty()) activate_some(wrong);
         do {
+            release_unneeded();
             leave_out_crowded();
             meet_active();
         } while (activate_some(beyond()));
@@ -148,10 +154,45 @@ private:
         return !wrong.empty();
     }
 
-    double residual(std::int32_t row) const {
+    double residual(std::int32_t row) const { return target(row) - rows_.rows[row].value(z_); }
+
+    double target(std::int32_t row) const {
         const auto found = target_.find(row);
-        const double target = found == target_.end() ? rows_.rows[row].lower : found->second;
-        return target - rows_.rows[row].value(z_);
+        return found == target_.end() ? rows_.rows[row].lower : found->second;
+    }
+
+    /// Releases inequalities that hold the sheet back from what the others ask for: in the smallest
+    /// correction of the nodes alone that meets all active rows, their terms have the wrong sign
+    /// (Lawson and Hanson 1974, "Solving Least Squares Problems", chapter 23).
+    void release_unneeded() {
+        for (;;) {
+            Eigen::VectorXd right(static_cast<Eigen::Index>(active_.size()));
+            bool has_inequality = false;
+            for (std::size_t i = 0; i < active_.size(); ++i) {
+                const TieRow& row = rows_.rows[active_[i]];
+                has_inequality = has_inequality || !row.is_contact();
+                right[static_cast<Eigen::Index>(i)] = target(active_[i]) - row.value(rows_.heights);
+            }
+            if (!has_inequality) return;
+            const Eigen::VectorXd terms =
+                TieSystem(rows_, active_, DBL_MIN, kSignRidge).solve(right);
+            Members unneeded;
+            for (std::size_t i = 0; i < active_.size(); ++i) {
+                const std::int32_t row = active_[i];
+                if (rows_.rows[row].is_contact() || releases_[row] == kMostReleases) continue;
+                const double term = terms[static_cast<Eigen::Index>(i)];
+                if (target(row) == rows_.rows[row].lower ? term < 0 : term > 0)
+                    unneeded.push_back(static_cast<std::int32_t>(i));
+            }
+            if (unneeded.empty()) return;
+            for (const std::int32_t at : unneeded) {
+                const std::int32_t row = active_[at];
+                state_[row] = State::kIdle;
+                target_.erase(row);
+                ++releases_[row];
+            }
+            remove(active_, unneeded);
+        }
     }
 
     /// Gives up active rows that nodes cannot honor beside others.
@@ -275,25 +316,31 @@ private:
         }
         const KernelSum sum(rows_.positions, rows_.sided, rows_.faults, coefficients,
                             radii_[level]);
-        const NodeLoop loop{z_.size(), 256, execution_};
+        const NodeLoop loop{centers_.size(), 4, execution_};
         loop.over_nodes([] { return 0; },
-                        [&](int, std::size_t i) {
-                            const auto number = static_cast<std::int32_t>(i);
-                            corrections_[level][i] = sum.at(rows_.center(number));
-                            double correction = 0;
-                            for (const auto& of_level : corrections_)
-                                correction += of_level[i];
-                            z_[i] = rows_.heights[i] + correction;
+                        [&](int, std::size_t number) {
+                            const NodeBlock block = centers_[number];
+                            const Eigen::ArrayXd found = sum.at(block);
+                            for (std::size_t k = 0; k < block.numbers.size(); ++k) {
+                                const std::uint32_t i = block.numbers[k];
+                                corrections_[level][i] = found[static_cast<Eigen::Index>(k)];
+                                double correction = 0;
+                                for (const auto& of_level : corrections_)
+                                    correction += of_level[i];
+                                z_[i] = rows_.heights[i] + correction;
+                            }
                         });
     }
 
     const TieRows& rows_;
     double tolerance_;
     Execution execution_;
+    NodeBlocks centers_;
     std::vector<double> z_;  // at the centers, corrected
     std::vector<State> state_;
     Members active_;
     std::unordered_map<std::int32_t, double> target_;  // of active inequalities
+    std::unordered_map<std::int32_t, int> releases_;
     double spacing_ = 0;
     std::vector<double> radii_;
     std::vector<std::vector<double>> coefficients_, corrections_;  // of each level
@@ -360,7 +407,7 @@ Ties tie(const TiedSheets& sheets, const TieData& data, double tolerance,
     return ties;
 }
 
-CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data) {
+CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data, double least) {
     const TieRows rows(sheet, data);
     const std::vector<bool> contradicts = steep_bounds(data, sheet.nodes);
     Members members;
@@ -373,7 +420,7 @@ CrowdedData crowded_data(const TiedSheets& sheet, const TieData& data) {
     CrowdedData crowded;
     const spatial::NearestPoints tree(places);
     std::vector<spatial::Neighbor> near;
-    for (const std::int32_t at : crowded_members(rows, members, kCrowded)) {
+    for (const std::int32_t at : crowded_members(rows, members, least)) {
         crowded.numbers.push_back(members[at]);
         tree.find(places[at], 2, near);
         crowded.room.push_back(std::sqrt(near.back().squared_distance));

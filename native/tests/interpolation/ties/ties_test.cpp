@@ -132,6 +132,22 @@ TEST(Ties, BoundsHoldBesideContacts) {
     EXPECT_LE(std::abs(found[3]), 3 + 1e-10);
 }
 
+TEST(Ties, LowerBoundsDenserThanNodesAllHold) {
+    // A surface that is high enough keeps them all, though no nodes could meet each of them.
+    const Grid grid(8);
+    std::mt19937_64 random(3);
+    const auto draw = [&] { return static_cast<double>(random() >> 11) / 9007199254740992.0; };
+    Asked asked;
+    for (int i = 0; i < 300; ++i)
+        asked.add({7 * draw(), 7 * draw()}, 100 * draw(), kNone);
+    const std::vector<double> z(grid.nodes.size(), 50);
+    const Ties ties = tie({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), kTolerance);
+    for (const double after : ties.after)
+        EXPECT_LE(after, 2 * kTolerance);
+    const std::vector<double> tied = tied_heights(z, grid.nodes, {}, ties.terms);
+    EXPECT_LT(*std::max_element(tied.begin(), tied.end()), 250);
+}
+
 TEST(Ties, ContactsComeBeforeBoundsThatContradictThem) {
     const Grid grid(20);
     const std::vector<double> z(grid.nodes.size(), 0);
@@ -197,7 +213,8 @@ TEST(Ties, CrowdedDataAreThoseThatNodesCannotTellApart) {
     asked.contact({10.25, 10.2}, 3);
     asked.contact({15.3, 4.3}, 4);       // alone
     asked.add({15.31, 4.3}, -kNone, 5);  // which that implies
-    const CrowdedData found = crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data());
+    const CrowdedData found =
+        crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), 0.3);
     ASSERT_EQ(found.numbers.size(), 2u);
     EXPECT_EQ(found.numbers[0], 1);
     EXPECT_TRUE(found.numbers[1] == 2 || found.numbers[1] == 3);
@@ -211,8 +228,9 @@ TEST(Ties, BoundsThatContradictNearDataAreCrowded) {
     Asked asked;
     asked.contact({10.3, 10.3}, 5);
     asked.add({10.3001, 10.3}, 9, kNone);
-    EXPECT_EQ(crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data()).numbers.size(),
-              1u);
+    EXPECT_EQ(
+        crowded_data({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), 0.3).numbers.size(),
+        1u);
 }
 
 }  // namespace

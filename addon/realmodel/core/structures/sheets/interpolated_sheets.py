@@ -507,6 +507,8 @@ class InterpolatedSurface:
                 else where_known(mesh.vertices, mesh.triangles, after)
             )
             self.made[new] = self.made[sheet]
+            if new is not sheet and self.entry.draws is None:
+                self.entry.untied[new] = sheet
             found.append(new)
         return found
 

@@ -108,6 +108,7 @@ def warn_of_doubts(work: Work, entry: RockInput, stage: int | None, keep: StoreA
     """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
     for number in sorted(interpolation_order(entry.rock, stage)):
         _warn_of_doubts(work, entry, number, keep)
+    entry.untied.clear()
 
 
 def _keep(entry: RockInput, number: int, keep: StoreArray) -> None:
