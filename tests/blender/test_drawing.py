@@ -234,7 +234,7 @@ class States(PanelCase):
             ops.boreholes_read(filepath=str(path))
 
     def series_of_fields(self):
-        """Operators of a series with dips, one of whose surfaces has dips of its own, as before it was grouped."""
+        """Operators of a series, one of whose surfaces has dips of its own as before it was grouped."""
         self.field_data()
         ops.series_add(kind=FIELD)
         drawn = self.draw().operators
@@ -254,7 +254,7 @@ class States(PanelCase):
         ops.open_sample(sample="gravel_plain")
         self.model.view.show_misfits = True
         self.model.active_misfit = 0
-        self.model.left_out_holes.add()
+        self.model.left_out_holes.add().refused = "the data were too few"
         with settings.filling():
             self.model.active_left_out_hole = 0
         activity.running = True
