@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 # What the guide and the reference refer to beside themselves.
 OTHERS = ("docs/dev/geometry.md", "docs/dev/meshing.md")
-LARGE, WIDTH = 20_000, 900  # bytes of a picture that is made smaller; pixels, a little more than a page has
+LARGE, WIDTH = 20_000, 800  # bytes of a picture that is made smaller; pixels, a little more than a page has
 PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>{title}</title><style>
@@ -63,7 +63,9 @@ def _in_zip(picture):
         return picture, content
     image.thumbnail((WIDTH, image.height))
     smaller = BytesIO()
-    image.convert("RGB").save(smaller, "JPEG", quality=75, optimize=True, progressive=True)
+    image.convert("RGB").save(smaller, "JPEG", quality=70, optimize=True, progressive=True)
+    if smaller.tell() >= len(content):
+        return picture, content
     return str(PurePosixPath(picture).with_suffix(".jpg")), smaller.getvalue()
 
 

@@ -11,6 +11,7 @@ from realmodel import preferences
 from realmodel.bl import quality, samples, settings
 from realmodel.bl.display import ensembles
 from realmodel.core.settings.methods import METHODS
+from realmodel.core.settings.series import FIELD
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab
 
 _opened = None  # files that are opened while a panel is drawn; None: none is
@@ -224,7 +225,7 @@ class States(PanelCase):
         """A surface with dips, of a rock mass with observations and dips."""
         tables = (
             ("seen", "x,y,z,block\n1,2,3,Sand\n"),
-            ("dips", "x,y,dip,strike\n1,2,5,0\n"),
+            ("dips", "x,y,z,dip,strike\n1,2,3,5,0\n"),
             ("dips_of_rock", "x,y,z,dip,strike,block\n1,2,3,5,0,Sand\n"),
         )
         for name, text in tables:
@@ -232,9 +233,18 @@ class States(PanelCase):
             path.write_text(text)
             ops.boreholes_read(filepath=str(path))
 
-    def test_every_operator_has_a_button(self):
+    def series_of_fields(self):
+        """Operators of a series, one of whose surfaces has dips of its own as before it was grouped."""
+        self.field_data()
+        ops.series_add(kind=FIELD)
         drawn = self.draw().operators
+        ops.series_take_dips()
+        return drawn | self.draw().operators
+
+    def test_every_operator_has_a_button(self):
+        drawn = self.draw().operators | self.series_of_fields()
         activity = bpy.context.window_manager.realmodel
+        ops.series_remove()
         self.field_data()
         drawn |= self.draw().operators
         ops.datum_pick(location=(1, 2, 3))
@@ -244,6 +254,9 @@ class States(PanelCase):
         ops.open_sample(sample="gravel_plain")
         self.model.view.show_misfits = True
         self.model.active_misfit = 0
+        self.model.left_out_holes.add().refused = "the data were too few"
+        with settings.filling():
+            self.model.active_left_out_hole = 0
         activity.running = True
         drawn |= self.draw().operators
         activity.running = False
