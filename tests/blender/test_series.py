@@ -381,6 +381,10 @@ class LiveField(PanelCase):
         for name, volume in self.volumes().items():
             self.assertAlmostEqual(volume, before[name], delta=1e-6 * before[name])
 
+    def test_a_level_set_is_not_edited(self):
+        self.model.rocks[0].active_surface = 1
+        self.refused(ops.edit_surface, "Pick Datum")
+
     def test_a_build_ends_it(self):
         self.move_a_contact(20.0)
         self.step()

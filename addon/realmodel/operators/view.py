@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, project_settings, settings, units, viewports
+from ..bl import display, project_settings, series_settings, settings, units, viewports
 from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
 from .in_viewport import Pointing
@@ -126,11 +126,17 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
         return max(1, width), max(1, height)
 
 
+def a_sheet(context):
+    surface = settings.active_surface(context.scene)
+    is_sheet = not series_settings.is_level_set(surface)
+    return None if is_sheet else "a level set follows from its series: move its contacts and dips (Pick Datum)"
+
+
 class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
     """Edit the interface of the active surface: show the blocks with it and enter Edit Mode"""
 
     bl_label = "Edit Surface"
-    needs = (a_surface, an_interface)
+    needs = (a_surface, a_sheet, an_interface)
 
     def act(self, context):
         edit_interface(context, settings.active_surface(context.scene).interface)
