@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl import observed_blocks, project_settings, surface_dips
+from realmodel.bl import borehole_points, observed_blocks, project_settings, surface_dips
 from realmodel.bl.field import data, edits, handle
 
 POINTS = [(10, 10, 20), (90, 10, 20), (90, 90, 20), (10, 90, 20), (50, 50, 40)]
@@ -68,7 +68,7 @@ class FieldData(PanelCase):
         self.assertLess(np.array(row.interface.bound_box)[:, 2].max(), 21)
         self.save_and_open()
         row = self.model.rocks[0].surfaces[0]
-        self.assertEqual(data.left_out(row).tolist(), [[50, 50, 40]])
+        self.assertEqual(borehole_points.left_out(row).tolist(), [[50, 50, 40]])
         ops.data_switch_on()
         ops.build()
         self.assertGreater(np.array(row.interface.bound_box)[:, 2].max(), 35)

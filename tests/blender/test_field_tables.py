@@ -7,6 +7,7 @@ from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
 from realmodel.bl import (
     borehole_picks,
+    borehole_points,
     data_objects,
     method_settings,
     observed_blocks,
@@ -193,6 +194,15 @@ class FieldTables(PanelCase):
         self.refused(ops.dips_remove, "has no dips")
         ops.build()
         self.assertEqual(len(self.model.results), 3)
+
+    def test_picks_that_are_switched_off(self):
+        picks = (
+            "hole,x,y,z,surface,depth,use\nP0,5,5,60,Clay,12,0\nP1,95,5,60,Clay,13,1\nP2,50,95,60,Clay,14,1\n"
+        )
+        self.read({"picks.csv": picks}, add_surfaces=True)
+        (row,) = self.rock.surfaces
+        self.assertEqual(borehole_points.left_out(row).tolist(), [[5, 5, 48]])
+        self.assertEqual(borehole_points.own_points(self.scene, row)[:, 2].tolist(), [47, 46])
 
     def test_observations_can_be_removed(self):
         self.read(TABLES)

@@ -10,7 +10,7 @@ from . import data_objects, library_rows, reading_text, settings, stored_arrays
 
 
 def give(scene, rock, picks, add_surfaces=False, units=()):
-    """Adds points to the surfaces of their names.
+    """Adds points to the surfaces of their names; those that are switched off stay with them.
 
     rock: its row. picks: realmodel.core.Picks in model units. add_surfaces: adds those that are not there,
     the oldest first. units: names of blocks with intervals or observations; their surfaces are called so,
@@ -37,6 +37,9 @@ def give(scene, rock, picks, add_surfaces=False, units=()):
         for row in rock.surfaces:  # Blender may have moved all of them when some were added
             if own.get(row.name) is not None:
                 keep_points(row, np.concatenate([own[row.name], points[row.name]]))
+            off = picks.switched_off.get(row.name)
+            if off is not None and row.source == "POINTS_FILE":
+                keep_left_out(row, np.concatenate([left_out(row), off]))
         warnings += [
             f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
             for name, array in own.items()
@@ -73,3 +76,13 @@ def keep_points(row, points):
     reading_text.fill(row, {})
     row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""
     row.interface_digest = ""
+
+
+def left_out(row):
+    """(Q, 3) the points of a surface that are switched off. Raises InputRefused for damaged text."""
+    return stored_arrays.unpack(row.left_out)["points"] if row.left_out else np.empty((0, 3))
+
+
+def keep_left_out(row, places):
+    """Stores the points of a surface that are switched off."""
+    row.left_out = stored_arrays.pack(points=places) if len(places) else ""

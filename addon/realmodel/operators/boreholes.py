@@ -151,7 +151,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         )
         rock = rock or add_rock(scene)
         warnings = [*found.picks.warnings, *found.warnings, *left_out_texts(found.left_out).values()]
-        if found.picks.points or found.new:
+        if found.picks.points or found.picks.switched_off or found.new:
             warnings += borehole_points.give(scene, rock, found.picks, self.add_surfaces, found.new)
         given = list(found.picks.points.values())
         if len(found.observations):

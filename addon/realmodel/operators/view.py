@@ -128,8 +128,8 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
 
 def a_sheet(context):
     surface = settings.active_surface(context.scene)
-    is_sheet = not series_settings.is_level_set(surface)
-    return None if is_sheet else "a level set follows from its series: move its contacts and dips (Pick Datum)"
+    is_one = series_settings.is_level_set(surface)
+    return "a level set follows from its series: move its contacts and dips (Pick Datum)" if is_one else None
 
 
 class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):

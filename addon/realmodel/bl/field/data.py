@@ -17,7 +17,6 @@ from .. import (
     observed_blocks,
     series_settings,
     settings,
-    stored_arrays,
     surface_dips,
 )
 
@@ -134,7 +133,7 @@ def switched_off(scene):
     for rock in scene.realmodel.rocks:
         for row in rock.surfaces:
             with suppress(RealModelError):  # damaged text, which a build refuses
-                count += len(left_out(row))
+                count += len(borehole_points.left_out(row))
     return count
 
 
@@ -165,13 +164,8 @@ def own_points(scene, row):
     points = borehole_points.own_points(scene, row)
     if points is None:
         return np.empty((0, 3))
-    off = set(map(tuple, left_out(row).tolist()))
+    off = set(map(tuple, borehole_points.left_out(row).tolist()))
     return points[[tuple(point) not in off for point in points.tolist()]] if off else points
-
-
-def left_out(row):
-    """(Q, 3) the points of a surface that are switched off. Raises InputRefused for damaged text."""
-    return stored_arrays.unpack(row.left_out)["points"] if row.left_out else np.empty((0, 3))
 
 
 def interval_rows(observations):
@@ -195,7 +189,7 @@ def _holes_of_points(rock):
 
 def _points(scene, rock, row, holes):
     try:
-        used, off = own_points(scene, row), left_out(row)
+        used, off = own_points(scene, row), borehole_points.left_out(row)
     except (RealModelError, KeyError):
         return []
     places = np.concatenate([used, off])

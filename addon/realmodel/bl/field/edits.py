@@ -8,6 +8,7 @@ import numpy as np
 from ...core import InputRefused
 from .. import (
     borehole_picks,
+    borehole_points,
     observed_blocks,
     reading_text,
     series_settings,
@@ -73,9 +74,9 @@ def move(scene, datum, place):
         points[group.rows[number]] = place
         _keep_points(row, points)
     else:
-        off = data.left_out(row).copy()
+        off = borehole_points.left_out(row).copy()
         off[group.rows[number]] = place
-        _keep_left_out(row, off)
+        borehole_points.keep_left_out(row, off)
     borehole_picks.move(rock, datum.place, place)
     return datum._replace(place=tuple(float(value) for value in place))
 
@@ -99,20 +100,16 @@ def _keep_dips(datum, row, dips):
 
 
 def _switch_point(scene, row, place, used):
-    off = data.left_out(row)
+    off = borehole_points.left_out(row)
     if used:
-        _keep_left_out(row, off[(off != place).any(axis=1)])
+        borehole_points.keep_left_out(row, off[(off != place).any(axis=1)])
         if row.stored:  # else its file still has the point
             _keep_points(row, np.concatenate([data.own_points(scene, row), place[None]]))
         return
     if row.stored:
         points = data.own_points(scene, row)
         _keep_points(row, points[(points != place).any(axis=1)], stays_of_file=True)
-    _keep_left_out(row, np.concatenate([off, place[None]]))
-
-
-def _keep_left_out(row, places):
-    row.left_out = stored_arrays.pack(points=places) if len(places) else ""
+    borehole_points.keep_left_out(row, np.concatenate([off, place[None]]))
 
 
 def _keep_points(row, points, stays_of_file=False):
