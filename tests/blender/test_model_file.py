@@ -68,7 +68,7 @@ class Opened(PanelCase):
     def test_a_stage_a_section_and_a_build_follow(self):
         model, file = self.saved("two_layers")
         ops.open_project(filepath=str(file))
-        self.assertEqual(shown_models.at_stage(self.scene, 0).volume, model.stage(0).volume)
+        self.assertEqual(shown_models.at_stage(self.scene, 0, "columns").volume, model.stage(0).volume)
         self.assertEqual(ops.section(location=(50, 30, 10), normal=(1, 0, 0)), {"FINISHED"})
         ops.build()
         mine = shown_models.whole(self.scene)

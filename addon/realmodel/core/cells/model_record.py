@@ -17,6 +17,7 @@ from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NamedArrays, StoredClasses, fits, hints_of
 from ..fields import Anisotropy, Lattice, ScalarField, SolvedField
+from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..project.library import Library, Property
 from ..project.project import Project, Rock, Surface
@@ -30,7 +31,6 @@ from ..settings.variogram import Structure, Variogram
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import RockStructure
-from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import FaultShape, RockFaults
 from ..surfaces.surface_arrays import SurfaceArrays
 from .blocks import blocks_of_arrays

@@ -13,10 +13,10 @@ from ..base.errors import UsageError
 from ..base.work import Work, native_module, run
 from ..cells.model_data import ModelData
 from ..fields import level_solids, within_lattice
+from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..results.section_data import SectionData
 from ..surfaces.rock_input import RockInput
-from ..surfaces.series_field import SeriesField
 
 _FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice
 _ROUNDS = 14  # in which triangles of a section are halved at most

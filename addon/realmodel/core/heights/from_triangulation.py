@@ -1,15 +1,71 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Methods on the Delaunay triangulation of the points: linear, natural neighbours."""
+"""Methods on the Delaunay triangulation of the points (linear, natural neighbors), and extrapolation: nodes
+outside the points' convex hull, and their heights."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
+from ..base.mapped_arrays import in_pieces
 from ..base.work import native_module
-from .extrapolation import outside_hull
+from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
+
+
+def hull_corners(points: np.ndarray) -> np.ndarray:
+    """(H, 3) corners of the convex hull of points (P, 3) in plan, at height 0: the same nodes are outside."""
+    corners = np.empty((0, 2))
+    for piece in in_pieces(points):
+        corners = native_module().hull_corners(np.concatenate([corners, piece[:, :2]]))
+    return np.column_stack([corners, np.zeros(len(corners))])
+
+
+def hull_border(points: np.ndarray) -> np.ndarray:
+    """(B, 3) those of points (P, 3), no two at one place, that are on the border of their convex hull, as
+    coordinates from the first of them show it; counterclockwise."""
+    border, start = np.empty((0, 3)), points[0, :2]
+    for piece in in_pieces(points):
+        rows = np.concatenate([border, piece])
+        border = rows[native_module().hull_border(np.ascontiguousarray(rows[:, :2] - start))]
+    return border
+
+
+def outside_hull(task: Task) -> np.ndarray:
+    """(N,) bool: the nodes outside the convex hull of the points; its border is inside. Exact."""
+    if not len(task.points):
+        return np.zeros(len(task.nodes), bool)
+    return task.run(native_module().outside_hull, task.points, task.nodes)
+
+
+def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Result:
+    """Replaces the heights of nodes outside the hull by the option `extrapolate`: those of the method, of the
+    nearest point, or none (NaN)."""
+    wanted = task.settings.get("extrapolate", "method")
+    if wanted == "method" or not outside.any():
+        return result
+    z = result.z.copy()
+    variance = None if result.variance is None else result.variance.copy()
+    if wanted == "none":
+        z[outside] = np.nan
+        if variance is not None:
+            variance[outside] = np.nan
+        return replace(result, z=z, variance=variance)
+    nodes = np.ascontiguousarray(task.nodes[outside])
+    if result.variogram is not None:
+        # Kriging from one point gives its height, with twice the semivariance as variance of the error.
+        variogram = result.variogram.native(task.settings["anisotropy"])
+        krige = native_module().krige
+        z[outside], deviation, _ = task.run(krige, task.points, nodes, variogram, (1, 0, 0.0))
+        if variance is not None:
+            variance[outside] = deviation
+    else:
+        z[outside] = nearest_heights(task, nodes)
+        if variance is not None:
+            variance[outside] = np.nan
+    return replace(result, z=z, variance=variance)
 
 
 def linear(task: Task) -> Result:

@@ -13,7 +13,7 @@ from ..base.work import Work, refused_as
 from ..settings.dips import Dips
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
 from . import automatic, bounded
-from .extrapolation import outside_hull, replace_extrapolated
+from .from_triangulation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 from .mis_ties import without_mis_ties
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
+from ..fields.series_field import SeriesField
 from ..settings.rules import RULES
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import RockFaults, sides_of
 from ..surfaces.wrong_sides import heights_at
 

@@ -13,11 +13,11 @@ from ..base.algebra import norm
 from ..base.elementary import atan2
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
+from ..fields.series_field import SeriesField
 from ..project.project import Rock
 from ..readers.tables.observations import SWITCHED_OFF
 from ..results.residuals import heights_of_points
 from ..surfaces.data_sources import sources_of_rock
-from ..surfaces.series_field import SeriesField
 from .closed_form import AIR, ClosedForm, closed_forms
 from .observed import violated_bounds
 from .seen_places import NEAR, look

@@ -10,10 +10,10 @@ from ..base.errors import number_list, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work
 from ..fields import ScalarField, SolvedField, are_on
+from ..fields.series_field import SeriesField
 from ..project.series import Series
 from ..readers.tables.observations import KINDS
 from ..surfaces.rock_input import RockInput
-from ..surfaces.series_field import SeriesField
 from ..surfaces.wrong_sides import heights_at
 from .series_data import SeriesData
 

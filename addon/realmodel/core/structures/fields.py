@@ -20,11 +20,11 @@ from ..fields import (
     with_contacts,
     within_lattice,
 )
+from ..fields.series_field import SeriesField
 from ..project.series import Series, members
 from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
-from ..surfaces.series_field import SeriesField
 from ..surfaces.sides import sides_of
 from .contradicting_bounds import without_contradictions
 from .field_warnings import (

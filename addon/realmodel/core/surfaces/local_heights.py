@@ -14,7 +14,7 @@ from ..base.mapped_arrays import MappedArrays, in_memory
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module, refused_as
 from ..heights import from_neighbours
-from ..heights.extrapolation import hull_border, hull_corners, outside_hull, replace_extrapolated
+from ..heights.from_triangulation import hull_border, hull_corners, outside_hull, replace_extrapolated
 from ..heights.interpolation import Result, Task, run_method
 from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height

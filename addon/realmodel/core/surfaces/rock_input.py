@@ -12,13 +12,13 @@ from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
 from ..base.triangles import median_edge
+from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..heights.draws import Draw
 from ..project.project import Rock
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
 from .rock_structure import RockStructure
-from .series_field import SeriesField
 from .sides import RockFaults
 
 

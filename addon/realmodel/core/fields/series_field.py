@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import ScalarField, rises
+from .lattice import ScalarField, rises
 
 
 @dataclass(eq=False)
