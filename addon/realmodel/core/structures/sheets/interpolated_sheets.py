@@ -472,7 +472,8 @@ class InterpolatedSurface:
             settings.get(option) is None for option in BOUNDS
         )
         dies_out = faults.active(self.number) & np.array(faults.dies_out, bool)
-        return self.surface.ties and is_free and bool(dies_out.any())
+        has_data = self.bounds is not None or len(self.surface.tied_points) > 0
+        return self.surface.ties and is_free and has_data and bool(dies_out.any())
 
     def tied(self, sheets: list[Sheet]) -> list[Sheet]:
         """Its different sheets, tied to the data in their compartments; the same objects where they were."""
@@ -491,7 +492,8 @@ class InterpolatedSurface:
         of_points = sheet_of(self.placed.sides)
         certain = self.counts & ~self.placed.moved.any(axis=1)
         # As in _certain: what lies on the other side alone does not show a sheet.
-        of_points = np.where(self.counts & np.isin(of_points, of_points[certain]), of_points, -1)
+        is_tied = self.counts & np.isin(of_points, of_points[certain]) & (len(self.surface.tied_points) > 0)
+        of_points = np.where(is_tied, of_points, -1)
         of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
         data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
