@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from realmodel.core import Observations, Project, Rock, Surface, build, load_project
+from realmodel.core import Fault, Observations, Project, Rock, Surface, build, load_project
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run
 from realmodel.core.heights.ties import tie_data
@@ -243,3 +243,23 @@ def test_a_real_map_is_honored():
     found = build(load_project(MAP / "project.toml")).observed()
     assert found.share == 1 and not found.violated
     assert max(abs(each.residual) for each in found.contacts) < 1e-6
+
+
+def test_a_survey_is_not_tied_beside_a_fault_that_dies_out(monkeypatch):
+    rng = np.random.default_rng(3)
+    plan = rng.uniform(0, 10, (60, 2))
+    points = np.column_stack([plan, np.sin(2 * plan[:, 0])])
+    plane = np.array([[5.0, -1, -9], [5, 4, -9], [5, 4, 9], [5, -1, 9]])
+    fault = Fault("F", plane, np.array([[0, 1, 2], [0, 2, 3]]), dies_out=True)
+    square = [[0, 0], [10, 0], [10, 10], [0, 10]]
+
+    def residual(most):
+        monkeypatch.setattr("realmodel.core.project.project.MOST_CONTACTS", most)
+        rock = Rock(
+            "r", [Surface("s", points=points, method="idw")], square, edge_length=2.0, base_elevation=-5
+        )
+        (found,) = residuals(build(Project("p", [rock], faults=[fault])))
+        return float(np.abs(found.values).max())
+
+    assert residual(60) < 1e-9
+    assert residual(59) > 0.1
