@@ -567,12 +567,12 @@ def mapped(walk):
     yield from settled(walk)
     frame(walk)
     yield from settled(walk)
-    pictures = [labeled(middle(walk), "The map on its ground, and dips")]
+    pictures = [labeled(seen(walk, walk.region("WINDOW")), "The map on its ground, and dips")]
     yield from build(walk)
     view.show_map = False
     frame(walk)
     yield from settled(walk)
-    pictures.append(labeled(middle(walk), "The model"))
+    pictures.append(labeled(seen(walk, walk.region("WINDOW")), "The model"))
     side_by_side(pictures, "map", 2, 2)
 
 
