@@ -15,6 +15,7 @@ from ..cells.model_data import ModelData
 from ..fields import level_solids, within_lattice
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
+from ..results.model_fields import names_of_compartments
 from ..results.section_data import SectionData
 from ..surfaces.rock_input import RockInput
 
@@ -108,9 +109,7 @@ def _blocks_of(model: ModelData, rock: int, own: SeriesField) -> np.ndarray:
 
 def _local(model: ModelData, entry: RockInput) -> np.ndarray:
     """For each compartment of a model its number in a rock mass; -1 where it is of another."""
-    names = [name or entry.rock.name for name in entry.divided().names]
-    if len(model.rock_inputs) > 1:
-        names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
+    names = names_of_compartments(model, entry)
     known = {name: number for number, name in enumerate(names)}
     if len(names) == 1:
         return np.zeros(max(len(model.compartment_names), 1), np.int64)

@@ -17,10 +17,16 @@ def field_of(model, series: str, compartment: str | None) -> ScalarField:
     fields = own.distinct()
     if compartment is None and len(fields) == 1:
         return own.fields[0]
-    names = [name or entry.rock.name for name in entry.divided().names]
-    if len(model.rock_inputs) > 1:
-        names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
+    names = names_of_compartments(model, entry)
     if compartment not in names:
         what = f"series '{series}' has a field in each of several compartments"
         raise UsageError(f"{what}: name one of {', '.join(names)}")
     return own.fields[names.index(compartment)]
+
+
+def names_of_compartments(model, entry) -> list[str]:
+    """What the compartments of a rock mass are called in a model."""
+    names = [name or entry.rock.name for name in entry.divided().names]
+    if len(model.rock_inputs) > 1:
+        names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
+    return names
