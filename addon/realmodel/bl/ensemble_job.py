@@ -2,10 +2,8 @@
 """An ensemble of the built model, made in a thread; the main thread puts it into the scene: volumes, and the
 blocks of each realization on a section."""
 
-import bpy
 import numpy as np
 
-from ..core import BuildFailed
 from ..core.ensembles import Realizer, section_samples
 from ..core.ensembles.ensemble import realized
 from . import project_settings, settings, shapes
@@ -25,7 +23,7 @@ class EnsembleJob(ThreadJob):
 
     def __init__(self, scene, realizations, seed, line=None, depsgraph=None):
         """Raises InputRefused."""
-        self._scene, self._count, self._seed = scene.name, realizations, seed
+        self._count, self._seed = realizations, seed
         self._done = 0
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
         self._plane = self._line = None
@@ -67,11 +65,7 @@ class EnsembleJob(ThreadJob):
         return found, samples, np.stack(blocks)
 
     def _put(self, made):
-        scene = bpy.data.scenes.get(self._scene)
-        if scene is None:
-            raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
-        if scene.realmodel.built_stamp != self._request.stamp or not len(scene.realmodel.results):
-            raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
+        scene = self._request.scene()
         self._request.keep()
         ensembles.put(scene, *made, self._seed)
         return made[0]

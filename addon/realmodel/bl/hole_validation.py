@@ -4,10 +4,8 @@ row to the hole."""
 
 import json
 
-import bpy
 import numpy as np
 
-from ..core import BuildFailed
 from ..core.proof.left_out_holes import validated_holes
 from . import borehole_picks, project_settings, settings, viewports
 from .display import shown_models
@@ -26,7 +24,7 @@ class HoleValidationJob(ThreadJob):
 
     def __init__(self, scene, folds=None):
         """Raises InputRefused."""
-        self._scene, self._folds = scene.name, folds
+        self._folds = folds
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
 
     def run(self):
@@ -42,11 +40,7 @@ class HoleValidationJob(ThreadJob):
             return validated_holes(job, model, self._folds)
 
     def _put(self, found):
-        scene = bpy.data.scenes.get(self._scene)
-        if scene is None:
-            raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
-        if scene.realmodel.built_stamp != self._request.stamp or not len(scene.realmodel.results):
-            raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
+        scene = self._request.scene()
         self._request.keep()
         _fill(scene.realmodel, found)
         return found
@@ -119,7 +113,4 @@ def show(context):
     group.view.show_boreholes = group.view.show_hole_names = True
     places = project_settings.in_world(scene, line)
     size = max(_FRAMED * heights.extent(scene), 0.6 * float(np.linalg.norm(np.ptp(places, axis=0))))
-    for space in viewports.spaces(context):
-        space.region_3d.view_location = places.mean(axis=0)
-        space.region_3d.view_distance = 2.5 * size
-    viewports.redraw()
+    viewports.look_at(context, places.mean(axis=0), size)

@@ -6,7 +6,6 @@ import json
 import bmesh
 import bpy
 import numpy as np
-from mathutils import Vector
 
 from ..core import InputRefused
 from . import (
@@ -148,7 +147,4 @@ def _frame(context, places, least):
         return
     low, high = places.min(axis=0), places.max(axis=0)
     size = max(float(np.linalg.norm(high - low)), least)
-    for space in viewports.spaces(context):
-        space.region_3d.view_location = Vector((low + high) / 2)
-        space.region_3d.view_distance = 2.5 * size
-    viewports.redraw()
+    viewports.look_at(context, (low + high) / 2, size)

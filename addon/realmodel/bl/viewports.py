@@ -163,6 +163,14 @@ def forget_status():
     _status.clear()
 
 
+def look_at(context, place, size):
+    """Turns the viewports of a context to a place (3,), around which they show what has this size."""
+    for space in spaces(context):
+        space.region_3d.view_location = place
+        space.region_3d.view_distance = 2.5 * size
+    redraw()
+
+
 def redraw():
     """Redraws the viewports, their sidebars, and the status bar."""
     show_status()

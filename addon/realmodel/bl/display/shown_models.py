@@ -5,7 +5,9 @@ A stage costs about as much as building the surfaces up to it with whole blocks 
 blocks that differ are transferred to Blender.
 """
 
-from ...core import build
+import bpy
+
+from ...core import BuildFailed, build
 from ...core.cells.assembly import build_stage
 from ...core.display import polygon_mesh
 from .. import block_shapes, built_models, caches, compartments, project_settings, settings, viewports
@@ -26,6 +28,7 @@ class StageRequest:
     """
 
     def __init__(self, scene, stage, cells=None):
+        self._scene = scene.name
         self.stamp, self.stage = scene.realmodel.built_stamp, stage
         self.is_whole = stage >= settings.last_stage(scene)
         self.cells = cells if self.is_whole else cells or "blocks"
@@ -40,6 +43,15 @@ class StageRequest:
         if self.is_whole:
             return built_models.current(scene, self.cells)
         return _stages.get((self.stamp, self.stage, self.cells))
+
+    def scene(self):
+        """The scene, which still shows the model that it showed. Raises BuildFailed."""
+        scene = bpy.data.scenes.get(self._scene)
+        if scene is None:
+            raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
+        if scene.realmodel.built_stamp != self.stamp or not len(scene.realmodel.results):
+            raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
+        return scene
 
     def make(self):
         """The realmodel.core.Model. Raises InputRefused, BuildFailed, Cancelled."""

@@ -62,10 +62,7 @@ def show(context):
 
 
 def _look_at(context, place):
-    for space in viewports.spaces(context):
-        space.region_3d.view_location = place
-        space.region_3d.view_distance = 2.5 * _FRAMED * heights.extent(context.scene)
-    viewports.redraw()
+    viewports.look_at(context, place, _FRAMED * heights.extent(context.scene))
 
 
 def show_misfit(context):
