@@ -40,7 +40,7 @@ def _of_nodes(task: Task, heights: np.ndarray, option: str) -> np.ndarray:
 
 
 def _triangulated(task: Task, reference, option: str) -> Sheet:
-    """The triangles of a reference that is no height."""
+    """The triangles of a surface that is referred to."""
     if isinstance(reference, str):
         if reference not in task.surfaces:
             raise OptionRefused(

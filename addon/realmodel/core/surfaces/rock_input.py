@@ -37,7 +37,7 @@ class RockInput:
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
     level sets; such a surface is a level set, in each compartment of its field. untied: of sheets that were
-    tied to their data what they were before, until doubts about them are told.
+    tied to their data what they were before, until the warnings about doubtful heights are made.
     """
 
     rock: Rock

@@ -10,7 +10,8 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t kOfBlock = 64;     // nodes, about: more centers reach larger blocks in vain
+constexpr std::size_t kOfBlock =
+    64;  // nodes, about: many centers reach only some of a larger block
 constexpr std::size_t kMostBlocks = 16;  // that a thread does in a row
 
 }  // namespace
