@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.algebra import are_among
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
@@ -190,8 +191,7 @@ def _free_nodes(task: Task) -> np.ndarray:
     if not task.ties:
         return nodes
     near = np.flatnonzero(np.isin(nodes[:, 0], plan[:, 0]))
-    here = set(map(tuple, plan[np.isin(plan[:, 0], nodes[near, 0])].tolist()))
-    at = [n for n, place in zip(near.tolist(), nodes[near].tolist(), strict=True) if tuple(place) in here]
+    at = near[are_among(nodes[near], plan[np.isin(plan[:, 0], nodes[near, 0])])]
     nodes = np.array(nodes)
     nodes[at, 0] += np.maximum(np.spacing(np.abs(nodes[at, 0])), _BESIDE)
     return nodes

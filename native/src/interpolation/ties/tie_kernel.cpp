@@ -10,8 +10,7 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t kOfBlock =
-    64;  // nodes, about: many centers reach only some of a larger block
+constexpr std::size_t kOfBlock = 64;     // nodes, about: of larger blocks centers reach only some
 constexpr std::size_t kMostBlocks = 16;  // that a thread does in a row
 
 }  // namespace
