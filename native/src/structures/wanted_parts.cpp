@@ -87,7 +87,7 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
 /// The last structure that acts between two cells, -1 none. It must part their sides. What is cut
 /// off against no rock lies against what is below the oldest surface: a fault displaces that, too,
 /// and what fills a void from a base elevation may have it beside it. Where a body was protected,
-/// what came later may end at its border.
+/// what came later may end at its border, and within it at a fault that displaced what protects.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
     assert(low >= 0 || high >= 0);
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
@@ -95,15 +95,23 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
     const ComplexView& model = overlay_.model();
     const bool differs = low < 0 || high < 0 || model.block(low) != model.block(high);
     const bool is_cut_off = differs && !(ends_itself(low, region) && ends_itself(high, region));
+    const bool is_at_body = is_in_body(below) || is_in_body(above);
     std::int32_t found = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off && (low < 0 || high < 0 || sides_.is_body(of.structure)))
+        if (is_cut_off && (low < 0 || high < 0 || is_at_body))
             last = of.structure;
     }
     return found >= 0 ? found : last;
+}
+
+bool WantedParts::is_in_body(const Sides& sides) const {
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+        if (sides[s] < 0 && sides_.is_body(static_cast<std::int32_t>(s))) return true;
+    }
+    return false;
 }
 
 bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) const {

@@ -33,6 +33,7 @@ private:
     std::int8_t of_item(std::size_t item, std::size_t face) const;
     std::int32_t acting(std::size_t region, std::int32_t low, std::int32_t high) const;
     bool does_act(std::int32_t structure, std::int32_t cell) const;
+    bool is_in_body(const Sides& sides) const;
     bool is_there_without_structures(std::size_t region, std::int32_t low, std::int32_t high) const;
     bool is_sliver(std::size_t region) const;
     void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;

@@ -8,7 +8,7 @@ import numpy as np
 from stacks import places
 
 from . import signs
-from .contract import AIR, UNDECIDED, Contract
+from .contract import AIR, UNDECIDED, Contract, is_inside
 from .located import Faces, distances
 
 NEAR = 128  # units in the last place: what is nearer to some surface is not decided
@@ -403,7 +403,10 @@ class Judgement:
                 if inner[g] != outer[g] and any(self._displaces(g, block) for block in blocks)
             ]
             own = name - self.surfaces
-            if 0 <= own < len(self.case.faults) and own not in acting:
+            # in a body that was protected in parts, what came later ends where a fault displaced what protects
+            in_body = any(is_inside(p, body.vertices[body.triangles])[0] for body in self.case.bodies)
+            is_needed = own in acting or (in_body and blocks[0] != blocks[1])
+            if 0 <= own < len(self.case.faults) and not is_needed:
                 failures.append(f"unacting: {said}, which does not act there")
             is_cut = not vertical and not 0 <= name < self.surfaces  # columns in bodies end at surfaces
             same = blocks[0] == blocks[1] and len(set(model.cell_compartment[cells])) == 1
