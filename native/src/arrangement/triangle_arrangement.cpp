@@ -207,10 +207,23 @@ void TriangleArrangement::clip_edges(std::int32_t edges_of, std::int32_t into) {
         clip_segment(corners[i], corners[(i + 1) % 3], edges_of, into);
 }
 
+/// Whether a segment in the plane of a triangle has no point of it: then a line along an edge or
+/// along the segment parts them. No point has to be made to know it.
+bool TriangleArrangement::passes_by(const Triangle& t, SpacePointId p, SpacePointId q) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const SpacePointId a = t.corners[k], b = t.corners[(k + 1) % 3];
+        if (orientation(t, a, b, p) < 0 && orientation(t, a, b, q) < 0) return true;
+    }
+    const int side = orientation(t, p, q, t.corners[0]);
+    return side != 0 && side == orientation(t, p, q, t.corners[1]) &&
+           side == orientation(t, p, q, t.corners[2]);
+}
+
 /// Where a segment of one triangle runs over another in its plane.
 void TriangleArrangement::clip_segment(SpacePointId p, SpacePointId q, std::int32_t of,
                                        std::int32_t into) {
     const Triangle& t = triangles_[index(into)];
+    if (passes_by(t, p, q)) return;
     for (std::size_t k = 0; k < 3; ++k) {
         const SpacePointId a = t.corners[k], b = t.corners[(k + 1) % 3];
         const int first = orientation(t, a, b, p), second = orientation(t, a, b, q);
@@ -222,25 +235,6 @@ void TriangleArrangement::clip_segment(SpacePointId p, SpacePointId q, std::int3
         (first < 0 ? p : q) = c;
     }
     add_segment(of, into, p, q);
-}
-
-/// Where two triangles lie in one plane, what meets one of them there divides the other as well,
-/// whether or not the two were asked for.
-void TriangleArrangement::exchange_segments() {
-    struct Found {
-        Segment segment;
-        std::int32_t of, into;
-    };
-    std::vector<Found> found;
-    for (const auto& [one, other] : in_one_plane_) {
-        for (const auto& [of, into] : {std::pair(one, other), std::pair(other, one)}) {
-            for (const Segment& s : triangles_[index(of)].segments) {
-                if (s.other != into) found.push_back({s, of, into});
-            }
-        }
-    }
-    for (const auto& [segment, of, into] : found)
-        clip_segment(segment.ends[0], segment.ends[1], of, into);
 }
 
 }  // namespace realmodel::arrangement

@@ -149,6 +149,7 @@ private:
     int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
               const End& on_b) const;
     void add_segment(std::int32_t one, std::int32_t other, SpacePointId p, SpacePointId q);
+    bool passes_by(const Triangle& t, SpacePointId p, SpacePointId q) const;
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);
     void exchange_segments();

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <iterator>
 #include <numeric>
+#include <unordered_map>
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "arrangement/triangle_regions.hpp"
@@ -25,10 +26,13 @@ constexpr std::size_t kChunk = 1 << 8;
 /// found by a tree.
 constexpr std::size_t kLarge = 1 << 9;
 
-Box box_of(const exact::SpacePoints& points, const std::array<SpacePointId, 2>& line) {
+/// Rounding keeps the order of numbers: what has no point in common with the box of rounded points
+/// has none with the exact ones.
+template <std::size_t N>
+Box box_of(const exact::SpacePoints& points, const std::array<SpacePointId, N>& corners) {
     Box box;
-    for (const SpacePointId end : line)
-        box.include(points.rounded(end));
+    for (const SpacePointId corner : corners)
+        box.include(points.rounded(corner));
     return box;
 }
 
@@ -167,7 +171,9 @@ bool TriangleArrangement::do_cross(const Triangle& t, const SegmentPair& pair) c
 
 namespace {
 
-/// Segments of a triangle with the boxes around them, in the order of one coordinate of these.
+/// Segments of a triangle with the boxes around them, in the order of one coordinate of these. Of
+/// those with the same ends, which follow one another and come from triangles in one plane, the
+/// first.
 template <class Segment>
 struct BoxedSegment {
     const Segment* segment;
@@ -180,8 +186,10 @@ std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& poin
                                                   std::size_t axis) {
     std::vector<BoxedSegment<Segment>> boxed;
     boxed.reserve(segments.size());
-    for (const Segment& s : segments)
-        boxed.push_back({&s, box_of(points, s.ends)});
+    for (const Segment& s : segments) {
+        if (boxed.empty() || boxed.back().segment->ends != s.ends)
+            boxed.push_back({&s, box_of(points, s.ends)});
+    }
     std::sort(boxed.begin(), boxed.end(), [axis](const auto& s, const auto& r) {
         const double x = s.box.low[axis], y = r.box.low[axis];
         return x != y ? x < y : *s.segment < *r.segment;
@@ -209,6 +217,45 @@ std::vector<std::optional<Item>> made_for_all(std::size_t count, const Execution
 }
 
 }  // namespace
+
+/// Where two triangles lie in one plane, what meets one of them there divides the other as well,
+/// whether or not the two were asked for.
+void TriangleArrangement::exchange_segments() {
+    struct Found {
+        Segment segment;
+        std::int32_t of, into;
+    };
+    std::unordered_map<std::int32_t, spatial::BoxTree> trees;
+    const auto tree_of = [&](std::int32_t triangle) -> const spatial::BoxTree& {
+        const auto at = trees.find(triangle);
+        if (at != trees.end()) return at->second;
+        std::vector<Box> boxes;
+        for (const Segment& s : triangles_[index(triangle)].segments)
+            boxes.push_back(box_of(points_, s.ends));
+        return trees.try_emplace(triangle, std::move(boxes)).first->second;
+    };
+    std::vector<Found> found;
+    for (const auto& [one, other] : in_one_plane_) {
+        for (const auto& [of, into] : {std::pair(one, other), std::pair(other, one)}) {
+            const auto& segments = triangles_[index(of)].segments;
+            const std::size_t first = found.size();
+            tree_of(of).find(box_of(points_, triangles_[index(into)].corners), [&](std::int32_t n) {
+                const Segment& s = segments[index(n)];
+                if (s.other != into) found.push_back({s, of, into});
+            });
+            const auto own = found.begin() + static_cast<std::ptrdiff_t>(first);
+            std::sort(own, found.end(),
+                      [](const Found& a, const Found& b) { return a.segment < b.segment; });
+            found.erase(std::unique(own, found.end(),
+                                    [](const Found& a, const Found& b) {
+                                        return a.segment.ends == b.segment.ends;
+                                    }),
+                        found.end());
+        }
+    }
+    for (const auto& [segment, of, into] : found)
+        clip_segment(segment.ends[0], segment.ends[1], of, into);
+}
 
 /// Pairs of segments of one triangle that cross each other.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
