@@ -21,9 +21,11 @@ namespace {
 
 constexpr std::size_t kItemsAtOnce = 1 << 10;
 /// What is nearer than so many units in the last place comes together, kGrowth times as many where
-/// rounds do not settle.
+/// rounds do not settle, but never so many that the shape of the surfaces is lost (5e-7 of a
+/// coordinate).
 constexpr double kNearest = 64;
 constexpr double kGrowth = 32;
+constexpr double kFarthest = 0x1p31;
 constexpr int kExactRounds = 4, kSnapRounds = 4;  ///< before that
 constexpr int kLocalRounds = 16;
 constexpr int kMostRounds = 40;
@@ -247,13 +249,14 @@ void Refiner::divide_or_snap(ExactDivision& division, Numbers& touched) {
         const auto changed = snap(std::move(pairs));
         touched.insert(touched.end(), changed.begin(), changed.end());
         if (!changed.empty()) {
-            if (++snap_rounds_ % kSnapRounds == 0 || count >= last_meetings_) ulps_ *= kGrowth;
+            if (++snap_rounds_ % kSnapRounds == 0 || count >= last_meetings_)
+                ulps_ = std::min(kGrowth * ulps_, kFarthest);
             last_meetings_ = count;
             return;
         }
         apart = meetings;
     }
-    if (++exact_rounds_ % kExactRounds == 0) ulps_ *= kGrowth;
+    if (++exact_rounds_ % kExactRounds == 0) ulps_ = std::min(kGrowth * ulps_, kFarthest);
     division.divide(apart);
 }
 
