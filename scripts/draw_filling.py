@@ -76,14 +76,7 @@ def filled_boulder():
 
 def cliff():
     """As the recipe says it."""
-    bpy.ops.mesh.primitive_cube_add(size=30.0)
-    item = bpy.context.object
-    item.scale = 1.5, 0.7, 0.6
-    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
-    subdivision.subdivision_type, subdivision.levels = "SIMPLE", 6
-    displace = item.modifiers.new("Displace", "DISPLACE")
-    displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
-    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    gallery_picture.cliff(levels=6)
     bpy.ops.realmodel.fill_with_strata(preset="CLIFF")
     bpy.ops.realmodel.weathering(strength=3.0, detail=2, plants=1.0)
     bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(120.0))

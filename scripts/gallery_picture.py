@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of models with titles, labels and legends, and what stands in their scenes: for draw_gallery.py
-and draw_looks.py, in Blender."""
+"""Pictures of models with titles, labels and legends, and what stands in their scenes: for the scripts that
+draw, in Blender. tests/blender/test_recipes.py has the cliff from here."""
 
 import os
 from dataclasses import dataclass, field
@@ -326,6 +326,22 @@ def generator(name):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def cliff(levels):
+    """The sculpted block of the recipe for a cliff, not yet filled; the active object. levels: of its
+    subdivision."""
+    import bpy
+
+    bpy.ops.mesh.primitive_cube_add(size=30.0)
+    item = bpy.context.object
+    item.scale = 1.5, 0.7, 0.6
+    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
+    subdivision.subdivision_type, subdivision.levels = "SIMPLE", levels
+    displace = item.modifiers.new("Displace", "DISPLACE")
+    displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
+    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    return item
 
 
 def around(made, origin, like, reach, step):
