@@ -2,6 +2,7 @@
 """The recipes of the guide, step by step, each from Blender's usual new file."""
 
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -132,13 +133,9 @@ class ForGeologists(Recipe):
 
     def test_logged_boreholes(self):
         """docs/guide/boreholes.md"""
-        collars = (
-            "hole,x,y,z,end\nB1,5,5,60,30\nB2,95,5,61,26\nB3,95,95,62,42\nB4,5,95,60,15\nB5,50,50,58,30\n"
-        )
-        intervals = (
-            "hole,from,to,block\nB1,0,8,Gravel\nB1,8,20,CLY\nB1,20,30,Sandstone\nB2,0,11,Gravel\n"
-            "B2,11,19,CLY\nB2,19,26,Sandstone\nB3,0,17,Gravel\nB3,17,42,Sandstone\nB4,0,9,Gravel\n"
-            "B4,9,15,CLY\nB5,0,10,Gravel\nB5,10,17,CLY\nB5,17,18,LC\nB5,18,30,Sandstone\n"
+        page = (SAMPLES.parent / "docs" / "guide" / "boreholes.md").read_text(encoding="utf-8")
+        collars, intervals = (
+            table.replace("    ", "") for table in re.findall(r"(?:^    \w+,.*\n)+", page, re.MULTILINE)
         )
         files = [self.written("collars.csv", collars), self.written("intervals.csv", intervals)]
         ops.boreholes_read(
