@@ -44,6 +44,16 @@ def field_range(model: ModelData, series: str) -> tuple[float, float]:
     return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
 
 
+def field_surfaces(model: ModelData, series: str) -> list[tuple[str, float]]:
+    """The surfaces of a series, oldest first, and the value of its field on each. Raises UsageError where
+    there is no such field."""
+    _, entry, own = _found(model, series)
+    levels = own.fields[0].levels.tolist()
+    return [
+        (entry.rock.surfaces[number].name, level) for number, level in zip(own.numbers, levels, strict=True)
+    ]
+
+
 def field_section(
     model: ModelData, series: str, found: SectionData, values: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
