@@ -539,7 +539,7 @@ private:
     void report_missed(Field& out) const {
         for (const Inequality& inequality : inequalities_) {
             const double lack = inequality.least - spline_->of(inequality.functional);
-            if (lack <= 1e3 * kMet) continue;
+            if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
             auto& missed = inequality.kind == Kind::kPolarity ? out.dips_missed : out.bounds_missed;
             if (missed.empty() || missed.back() != inequality.item)
                 missed.push_back(inequality.item);
