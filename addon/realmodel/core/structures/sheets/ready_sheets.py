@@ -70,7 +70,7 @@ class ReadyMesh:
 
     def _lips(self, near: np.ndarray) -> np.ndarray:
         """(V, F) bool: of the vertices near faults, (V, F) bool, those on a border of the mesh."""
-        around = self.triangles[near.any(axis=1)[self.triangles].any(axis=1)]
+        around = self.triangles[np.logical_or.reduce(near, axis=1)[self.triangles].any(axis=1)]
         rows, around = np.unique(around, return_inverse=True)
         vertices, found = self.vertices[rows], np.zeros_like(near)
         is_border = np.zeros(len(rows), bool)
