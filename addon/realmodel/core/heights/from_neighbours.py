@@ -142,7 +142,7 @@ def _joint_structure(task: Task, companions: Companions) -> Structure:
         found = _of_all_sheets(found, task, len(points), count)
         variogram = without_thickness(found.variogram, model)
         found = replace(found, variogram=variogram, sheets=model)
-        offsets = _offsets(alone, found, points, dips)
+        offsets = mean_offsets(alone, found, points, dips)
     return replace(found, sheets=replace(model, offsets=offsets))
 
 
@@ -166,7 +166,7 @@ def _of_all_sheets(found: Structure, task: Task, sheets: int, count: int) -> Str
     return replace(found, neighbours=neighbours, dips=use)
 
 
-def _offsets(
+def mean_offsets(
     task: Task, known: Structure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
 ) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: by how much it differs from what the others
