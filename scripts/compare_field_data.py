@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The table of docs/dev/field_data.md: of eight histories in closed form the share of random points that
-models have in the right block, from contacts of holes alone and from logs, outcrops and dips.
+models have in the right block, from contacts of holes alone, from logs, outcrops and dips, and from these
+with conformable surfaces as series of sheets.
 
     scripts/compare_field_data.py [--history NAME]... [--method NAME] [--seeds N]
         [--write docs/dev/field_data.md]
@@ -24,8 +25,8 @@ from field_data.measured import measure, project, random_points, right_share  # 
 from realmodel.core import build  # noqa: E402
 
 HEADER = (
-    "| history | surfaces | holes | contacts alone | with logs, outcrops and dips | observations kept |",
-    "|---|---|---|---|---|---|",
+    "| history | surfaces | holes | contacts alone | and logs, dips | and series | observations kept |",
+    "|---|---|---|---|---|---|---|",
 )
 TABLE = re.compile(re.escape("\n".join(HEADER)) + r"\n(?:\|.*\n)*")
 
@@ -36,12 +37,14 @@ def row(history, method, seeds):
     for seed in range(1, seeds + 1):
         data = measure(history, seed)
         points = random_points(history)
-        alone, whole = (build(project(history, data, each, method)) for each in (True, False))
-        kept = whole.observed().share
-        shares.append((right_share(alone, *points), right_share(whole, *points), kept))
-    alone, whole, kept = np.mean(shares, axis=0)
+        models = [build(project(history, data, what, method)) for what in ("contacts", "all", "series")]
+        kept = min(model.observed().share for model in models[1:])
+        shares.append((*(right_share(model, *points) for model in models), kept))
+    alone, whole, series, kept = np.mean(shares, axis=0)
     surfaces = len(history.layers)
-    return f"| {history.name} | {surfaces} | {history.holes} | {alone:.3f} | {whole:.3f} | {kept:.3f} |"
+    with_series = f"{series:.3f}" if history.conformable else ""
+    given = f"| {history.name} | {surfaces} | {history.holes} | {alone:.3f} | {whole:.3f} |"
+    return f"{given} {with_series} | {kept:.3f} |"
 
 
 def main():

@@ -11,7 +11,6 @@ The module bpy has a denoiser, which Debian's Blender lacks.
 import math
 import os
 import sys
-from itertools import pairwise
 from pathlib import Path
 
 import bpy
@@ -76,14 +75,7 @@ def filled_boulder():
 
 def cliff():
     """As the recipe says it."""
-    bpy.ops.mesh.primitive_cube_add(size=30.0)
-    item = bpy.context.object
-    item.scale = 1.5, 0.7, 0.6
-    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
-    subdivision.subdivision_type, subdivision.levels = "SIMPLE", 6
-    displace = item.modifiers.new("Displace", "DISPLACE")
-    displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
-    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    gallery_picture.cliff(levels=6)
     bpy.ops.realmodel.fill_with_strata(preset="CLIFF")
     bpy.ops.realmodel.weathering(strength=3.0, detail=2, plants=1.0)
     bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(120.0))
@@ -93,22 +85,10 @@ def cliff():
 
 
 def print_parts():
-    """Three beds moved apart, with pegs on two of them and holes for them."""
+    """Beds moved apart, with pegs on them and holes for these."""
     boulder().scale = (1.6, 1.2, 0.7)
-    bpy.ops.realmodel.fill_with_strata(beds=3, dip=0.0, rock_looks=False, seed=3)
+    bpy.ops.realmodel.fill_with_strata(preset="PRINT", beds=3, peg_size=0.12, rock_looks=False, seed=3)
     beds = sorted(bpy.context.selected_objects, key=lambda item: item.name)
-    for lower, upper in pairwise(beds):
-        level = max((lower.matrix_world @ Vector(corner)).z for corner in lower.bound_box)
-        for x in (-1.1, 0.9):
-            for bed, wide, operation in ((lower, 1.0, "UNION"), (upper, 1.05, "DIFFERENCE")):
-                bpy.ops.mesh.primitive_cylinder_add(
-                    vertices=24, radius=0.16 * wide, depth=0.4 * wide, location=(x, 0.0, level)
-                )
-                bed.select_set(True)
-                bpy.context.view_layer.objects.active = bed
-                bpy.ops.realmodel.boolean(operation=operation)
-                for each in bpy.context.view_layer.objects:
-                    each.select_set(False)
     for number, bed in enumerate(beds):
         bed.location.z += 0.9 * number
     bpy.ops.realmodel.set_up_picture()

@@ -30,8 +30,6 @@ from gallery_picture import (
     SAMPLES,
     SECONDS,
     SIZE,
-    WHITE,
-    add_legend,
     aim,
     apply_looks,
     around,
@@ -39,12 +37,12 @@ from gallery_picture import (
     board,
     box,
     generator,
+    legend_band,
     meadow,
     put_over,
     read_pixels,
     sample,
     smooth,
-    top_corners,
     truck,
     write_title,
 )
@@ -52,6 +50,7 @@ from gallery_picture import (
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
 FRAME = (600, 300)  # of a film strip
+BASE = 3  # the rock mass of Haut-Barr around the others
 
 
 def main(names):
@@ -113,15 +112,18 @@ def faults(folder):
 
 
 def basin(folder):
-    """A section through a rift basin: half of the model, its faults named."""
+    """A section through a rift basin: half of the model, its faults drawn and named."""
     import numpy as np
     from realmodel.core.display import polygon_mesh
+    from realmodel.core.results.section_faults import traces_on_plane
 
     model, picture = sample("rift_basin", folder)
     section = 1500.0
     half = model.cut_by_plane((0.0, section, 0.0), (0.0, 1.0, 0.0)).above
     picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
     apply_looks(model, 0.8)
+    traces = traces_on_plane(model, (0.0, section, 0.0), (0.0, 1.0, 0.0))
+    picture.lines = [ends - np.array(picture.origin) for trace in traces for ends in trace.ends]
     made = generator("rift_basin")
     labels = [
         (f"{name} fault", (x_of(section, z), section, z) - np.array(picture.origin), offset)
@@ -140,6 +142,24 @@ def basin(folder):
         "A section through tilted fault blocks; what filled the basin as it opened was eroded and covered.",
         labels,
         room=(0.1, 0.0),
+    )
+
+
+def castle_hill(folder):
+    """A castle hill, cut open from one valley to the other."""
+    model, picture = sample("castle_hill", folder)
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    half = model.cut_by_plane((0.0, low[1] + 0.3 * (high[1] - low[1]), 0.0), (0.0, 1.0, 0.0)).above
+    picture.show(half, blocks_of(half, picture))
+    apply_looks(model, 0.8)
+    picture.sun = math.radians(130.0), math.radians(40.0)
+    picture.draw(
+        "castle_hill",
+        160.0,
+        25.0,
+        "Castle Hill",
+        "Two valleys cut through red sandstone, down to the granite. Loess and alluvium are younger.",
+        room=(0.18, 0.1),
     )
 
 
@@ -246,24 +266,38 @@ def tunnel(folder):
 
 
 def rocks(folder):
-    """Haut-Barr at low sun, its rocks with the looks that suit them, in a meadow."""
+    """Haut-Barr at low sun, weathered, with the looks that suit its rocks, in a meadow."""
+    import bpy
     import numpy as np
+    from realmodel.bl import batch, project_settings, weathering
 
     model, picture = sample("haut_barr", folder)
+    scene = bpy.context.scene
+    batch.write_scene(model)
+    scene.realmodel.view.show_legend = False
+    picture.origin = tuple(project_settings.model_origin(scene))
     shapes = blocks_of(model, picture)
-    picture.show(model, shapes, only_outside=True)
-    tops = [shape.coordinates[top_corners(shape)] for shape in shapes if shape is not None]
-    lowest = min(float(corners[:, 2].min()) for corners in tops if len(corners))
-    apply_looks(model, 1.0)
-    meadow("Soil", lowest, 2500.0)
-    picture.landscape(sun=(math.radians(246.0), math.radians(13.0)), haze=6000.0)
-    picture.look(np.array([-95.0, -150.0, 15.0]), np.array([-31.0, 0.0, 12.0]), lens=24.5)
+    picture.points = [shape.coordinates for shape in shapes if shape is not None]
+    blocks = [row.object for row in scene.realmodel.results if row.object is not None]
+    for item in scene.objects:
+        item.hide_render = item not in blocks
+    base = [shape for block, shape in zip(model.blocks, shapes, strict=True) if block.rock == BASE]
+    near, far = meadow(next(item for item in blocks if item.name.startswith("Soil")), base, 2500.0)
+    slopes = math.radians(34.0), math.radians(44.0)
+    weathering.put_on(scene, [*blocks, near], weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, 0.6))
+    weathering.put_on(scene, [far], weathering.Weathering(0.0, 0.0, 1.0, 3, *slopes, 0))
+    far.location.z = -2.0  # the meadow is worn, so its rim is lower than it was
+    picture.landscape(sun=(math.radians(226.0), math.radians(17.0)), haze=6000.0)
+    middle = np.concatenate(picture.points)
+    middle = 0.5 * (middle.min(axis=0) + middle.max(axis=0))
+    eye, target = np.array([-100.0, -84.0, -5.0]), np.array([-19.0, 4.0, 1.0])
+    picture.look(middle + eye, middle + target, lens=24.0)
     picture.finish(
         "rocks",
         "Haut-Barr",
         "Bedding follows the layers as they were deposited: sets and slip faces of sandstone under "
         "conglomerate.",
-        exposure=0.3,
+        exposure=0.35,
     )
 
 
@@ -290,11 +324,11 @@ def quarry(folder):
     made, origin = generator("quarry"), np.array(picture.origin)
     picture.show(model, blocks_of(model, picture), only_outside=True)
     apply_looks(model, 1.0)
-    around(made, origin, "Loam", 700.0, 20.0)
+    around(made, origin, "Loam", 4000.0, 40.0)
     taken = model.eroded().taken.sum(axis=0)
     rows = [(b.name, f"{v:,.0f} m\u00b3") for b, v in zip(model.blocks, taken, strict=True) if v > 0]
-    picture.landscape(sun=(math.radians(262.0), math.radians(36.0)), haze=9000.0)
-    picture.look(np.array([62.0, 2.0, 186.0]) - origin, np.array([196.0, 150.0, 72.0]) - origin, lens=24.0)
+    picture.landscape(sun=(math.radians(232.0), math.radians(44.0)), haze=5000.0)
+    picture.look(np.array([66.0, 6.0, 168.0]) - origin, np.array([200.0, 150.0, 78.0]) - origin, lens=26.0)
     board([("Excavated", ""), *reversed(rows), ("Total", f"{taken.sum():,.0f} m\u00b3")])
     for x, y, z, heading in ((196.0, 172.0, made.BOTTOM, 20.0), (262.0, 148.0, made.BOTTOM, 115.0)):
         truck(np.array([x, y, z]) - origin, math.radians(heading))
@@ -302,7 +336,7 @@ def quarry(folder):
         "quarry",
         "Quarry",
         "Benches of twelve meters with their ramps, cut exactly; on the board what they take of each layer.",
-        color=WHITE,
+        exposure=0.15,
     )
 
 
@@ -382,17 +416,30 @@ def stages(folder):
         drawing = Drawing(*(POINTS / SIZE[0] * side for side in FRAME))
         events = dict.fromkeys(surfaces[number].name for surfaces in lists if number < len(surfaces))
         drawing.text(12, drawing.height - 24, f"Stage {number}: {', '.join(events)}", LABEL, INK)
-        if number == last:
-            add_legend(drawing, list(picture.names.items()))
         put_over(file, drawing)
         frames.append(read_pixels(file))
         file.unlink()
     rows = [np.concatenate(frames[n : n + 3], axis=1) for n in range(0, len(frames), 3)]
+    rows.append(legend_band(picture.names, rows[-1].shape[1]))
     with open(folder / "stages.png", "wb") as out:
         write_pixels(np.concatenate(rows), out, 144)
 
 
-SCENES = (rocks, canyon, quarry, island, diagram, basin, fold, dome, faults, intrusion, tunnel, stages)
+SCENES = (
+    castle_hill,
+    rocks,
+    canyon,
+    quarry,
+    island,
+    diagram,
+    basin,
+    fold,
+    dome,
+    faults,
+    intrusion,
+    tunnel,
+    stages,
+)
 
 
 def in_blender(folder, *names):

@@ -440,7 +440,7 @@ def quality(walk):
     from driver import read_picture
 
     yield from example(walk, "castle_hill")
-    bpy.context.scene.realmodel.rocks[0].active_surface = 5
+    bpy.context.scene.realmodel.rocks[0].active_surface = 9
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):

@@ -21,7 +21,7 @@ PREVIEWS = ROOT / "addon" / "realmodel" / "previews" / "looks.jpg"
 WEATHERED = ROOT / "docs" / "images" / "weathering.jpg"
 PICTURES = ROOT / "build" / "looks"  # one for each
 WEATHERING = "weathering"
-HALF = (560, 440)  # of the pictures before and after
+HALF = (800, 620)  # of the pictures before and after
 SIZE = (400, 325)  # of the picture of a look
 SMALL = (320, 260)  # in the sheet
 COLUMNS = 4
@@ -56,15 +56,17 @@ def pictures_of(names):
 
 def put_together():
     """Makes the sheet of looks, the previews, and the pair of pictures of weathering."""
-    from PIL import Image
+    from PIL import Image, ImageDraw, ImageFont
     from realmodel.core.project.looks import LOOKS
 
     if (pictures := pictures_of(LOOKS)) is not None:
         make_sheet(pictures, [look.label for look in LOOKS.values()])
     if (pictures := pictures_of([f"{WEATHERING}_{name}" for name in ("before", "after")])) is not None:
         pair = Image.new("RGB", (2 * HALF[0], HALF[1]))
-        for number, picture in enumerate(pictures):
+        pen, font = ImageDraw.Draw(pair), ImageFont.load_default(26)
+        for number, (picture, text) in enumerate(zip(pictures, ("As built", "Weathered"), strict=True)):
             pair.paste(picture, (number * HALF[0], 0))
+            pen.text((number * HALF[0] + 24, 18), text, INK, font)
         pair.save(WEATHERED, quality=82, optimize=True)
 
 
@@ -203,6 +205,7 @@ def draw_weathering(folder):
 
     scene = bpy.context.scene
     built_scene.write_model(scene, cliff())
+    scene.realmodel.view.show_legend = False
     items = [row.object for row in scene.realmodel.results if row.object is not None]
     points = np.concatenate([np.array(meshes.mesh_coordinates(item.data), float) for item in items])
     for item in scene.objects:
@@ -210,7 +213,7 @@ def draw_weathering(folder):
     set_up(points, 150.0, 22.0, HALF)
     render(folder, "weathering_before")
     slopes = (math.radians(24.0), math.radians(36.0))
-    weathering.put_on(scene, items, weathering.Weathering(2.5, 0.6, 2.0, 1, *slopes, 3))
+    weathering.put_on(scene, items, weathering.Weathering(2.5, 0.6, 2.0, 1, *slopes, 3, 1.0))
     render(folder, "weathering_after")
 
 

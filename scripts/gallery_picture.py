@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of models with titles, labels and legends, and what stands in their scenes: for draw_gallery.py
-and draw_looks.py, in Blender."""
+"""Pictures of models with titles, labels and legends, and what stands in their scenes: for the scripts that
+draw, in Blender. tests/blender/test_recipes.py has the cliff from here."""
 
 import os
 from dataclasses import dataclass, field
@@ -16,6 +16,7 @@ POINTS = 900.0  # the width of a picture, as labels are measured
 LABEL, TITLE = 12.0, 17.0
 HORIZON, ZENITH = (0.66, 0.76, 0.86), (0.09, 0.25, 0.62)  # of a landscape's sky, linear
 WHITE, INK, SOFT = (1.0, 1.0, 1.0), (0.13, 0.15, 0.18), (0.35, 0.38, 0.42)
+FAULT = (0.62, 0.05, 0.05)
 
 
 @dataclass
@@ -26,6 +27,7 @@ class Picture:
     folder: Path  # of the file
     names: dict = field(default_factory=dict)  # of the properties that are shown: their colors
     points: list = field(default_factory=list)  # that the camera sees
+    lines: list = field(default_factory=list)  # drawn over the picture: positions in the scene
     sun: tuple | None = None  # azimuth and elevation, radians; None: where it always stands
 
     def show(self, model, shapes, shifts=None, only_outside=False):
@@ -57,7 +59,7 @@ class Picture:
     def draw(self, name, azimuth, elevation, title, subtitle, labels=(), legend=True, room=(0.0, 0.0)):
         """Renders and writes the picture. azimuth, elevation: degrees of where it is seen from. labels:
         (text, position in the scene, offset in points from there). room: shares of width and height to be
-        left free at the left and at the top."""
+        left free at the left and at the top. Over it are the `lines`."""
         import bpy
         from bpy_extras.object_utils import world_to_camera_view
         from mathutils import Vector
@@ -72,9 +74,15 @@ class Picture:
         for number, line in enumerate(subtitle.split("\n")):
             drawing.text(28, height - 60 - 1.45 * LABEL * number, line, LABEL, SOFT)
         bpy.context.view_layer.update()
-        for text, position, offset in labels:
+
+        def seen(position):
             x, y, _ = world_to_camera_view(scene, camera, Vector(position))
-            add_label(drawing, (x * drawing.width, y * height), offset, text)
+            return x * drawing.width, y * height
+
+        for line in self.lines:
+            drawing.line([seen(position) for position in line], FAULT, 1.6)
+        for text, position, offset in labels:
+            add_label(drawing, seen(position), offset, text)
         if legend:
             add_legend(drawing, list(self.names.items()))
         put_over(file, drawing)
@@ -83,7 +91,7 @@ class Picture:
         """Sun and sky of a landscape. sun: azimuth and elevation, radians. haze: how far one sees clearly."""
         import bpy
         import numpy as np
-        from realmodel.bl import materials, picture
+        from realmodel.bl import materials, picture, weathering
 
         scene = bpy.context.scene
         picture.set_up(scene, np.concatenate(self.points), SIZE, sun=sun)
@@ -93,7 +101,7 @@ class Picture:
         lamp.data.energy, lamp.data.angle = 3.6, 0.01
         put_sky(scene.world)
         for material in list(bpy.data.materials):
-            if haze and materials.KEY in material:
+            if haze and (materials.KEY in material or weathering.KEY in material):
                 haze_before(material, HORIZON, haze)
 
     def look(self, eye, target, lens):
@@ -234,6 +242,28 @@ def add_legend(drawing, entries):
     charts.legend(drawing, (30, 20 + height + 9), "", colors, LABEL)
 
 
+def legend_band(names, width):
+    """(height, width, 4): the properties and their colors in a row. names: of the properties: their colors.
+    width: in pixels."""
+    import numpy as np
+    from realmodel.core.drawing.drawing import Drawing
+    from realmodel.core.drawing.glyphs import text_width
+    from realmodel.core.drawing.raster import over, rasterize
+
+    drawing = Drawing(POINTS * width / SIZE[0], 3.0 * LABEL)
+    taken = sum(text_width(name, LABEL) + 24.0 for name in names)
+    apart, x = (drawing.width - taken) / (len(names) + 1), 0.0
+    for name, color in names.items():
+        x += apart
+        color = tuple(int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+        drawing.rectangle((x, LABEL, 18.0, LABEL), color, SOFT, 0.5)
+        drawing.text(x + 24.0, 1.12 * LABEL, name, LABEL, INK)
+        x += text_width(name, LABEL) + 24.0
+    pixels = np.ones((round(drawing.height * width / drawing.width), width, 4), np.float32)
+    over(pixels, rasterize(drawing, width / drawing.width, None), 0, 0)
+    return pixels
+
+
 def write_title(file, title, subtitle, color=None):
     """Writes a title into a picture, at the upper left."""
     from realmodel.core.drawing.drawing import Drawing
@@ -328,11 +358,26 @@ def generator(name):
     return module
 
 
+def cliff(levels):
+    """The sculpted block of the recipe for a cliff, not yet filled; the active object. levels: of its
+    subdivision."""
+    import bpy
+
+    bpy.ops.mesh.primitive_cube_add(size=30.0)
+    item = bpy.context.object
+    item.scale = 1.5, 0.7, 0.6
+    subdivision = item.modifiers.new("Subdivision", "SUBSURF")
+    subdivision.subdivision_type, subdivision.levels = "SIMPLE", levels
+    displace = item.modifiers.new("Displace", "DISPLACE")
+    displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
+    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    return item
+
+
 def around(made, origin, like, reach, step):
     """The ground beyond the border of a sample, by the formula that made it, in the material of a block."""
     import bpy
     import numpy as np
-    from realmodel.bl import meshes
 
     x = np.arange(-reach, made.WIDTH + reach + 1, step)
     y = np.arange(-reach, made.LENGTH + reach + 1, step)
@@ -347,11 +392,7 @@ def around(made, origin, like, reach, step):
     triangles = np.concatenate(
         [np.stack([first, first + 1, over + 1], 1), np.stack([first, over + 1, over], 1)]
     )
-    mesh = meshes.triangle_mesh("Around", points, triangles, smooth=True)
-    top = mesh.attributes.new(meshes.PREFIX + "is_top", "BOOLEAN", "FACE")
-    top.data.foreach_set("value", np.ones(len(triangles), bool))
-    mesh.materials.append(bpy.data.objects[like].data.materials[0])
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Around", mesh))
+    ground("Around", points, triangles, bpy.data.objects[like])
 
 
 def painted(name, color, roughness=0.7):
@@ -412,9 +453,10 @@ def board(rows):
     before = set(bpy.data.objects)
     parent = empty(
         camera.matrix_world
-        @ Matrix.Translation((-5.3, -0.6, -8.0))
+        @ Matrix.Translation((-5.3, -1.5, -8.0))
         @ Matrix.Rotation(0.16, 4, "Y")
         @ Matrix.Rotation(-0.10, 4, "X")
+        @ Matrix.Scale(0.62, 4)
     )
     pitch, width = 0.34, 4.2
     height = pitch * len(rows) + 0.42
@@ -486,22 +528,59 @@ def box(low, high):
     return np.where(corners == 0, low, high), np.array(triangles, np.int32)
 
 
-def top_corners(shape):
-    """The vertices of the polygons on which nothing lies, as often as they are corners."""
+def meadow(like, shapes, reach):
+    """The land around a model in the material of a block, an object: at the model's border as high as that,
+    level far away. shapes: of the blocks at the border. reach: how far it goes. Returns two objects: the part
+    nearby, and the rest."""
     import numpy as np
 
-    return shape.corners[np.repeat(shape.bedding.is_top, np.diff(shape.offsets))]
+    rim = np.concatenate([shape.coordinates[wall_corners(shape)] for shape in shapes if shape is not None])
+    rim = np.array(rim, float)
+    cells = np.round(rim[:, :2]).astype(int)
+    order = np.lexsort((-rim[:, 2], cells[:, 1], cells[:, 0]))
+    _, first = np.unique(cells[order], axis=0, return_index=True)
+    rim = rim[order[first]]
+    low, high = rim[:, :2].min(axis=0) - 60.0, rim[:, :2].max(axis=0) + 60.0
+    away = np.geomspace(reach, 4.0, 24)
+    sides = [
+        np.concatenate([begin - away, np.arange(begin, end, 2.0), end + away[::-1]])
+        for begin, end in zip(low, high, strict=True)
+    ]
+    x, y = (a.ravel() for a in np.meshgrid(*sides))
+    apart = np.hypot(x[:, None] - rim[:, 0], y[:, None] - rim[:, 1])
+    nearest, far = apart.argmin(axis=1), apart.min(axis=1)
+    level = float(np.median(rim[:, 2]))
+    z = level + (rim[nearest, 2] - level) * np.exp(-((far / 40.0) ** 2)) - 0.25
+    z += 0.35 * np.sin(x / 9.0 + 1.3 * np.sin(y / 14.0)) * (1.0 - np.exp(-((far / 12.0) ** 2)))
+    columns, rows = map(len, sides)
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(columns - 1), np.arange(rows - 1)))
+    a = row * columns + column
+    triangles = np.concatenate(
+        [np.stack([a, a + 1, a + columns + 1], 1), np.stack([a, a + columns + 1, a + columns], 1)]
+    )
+    points = np.column_stack([x, y, z])
+    is_near = far[triangles].max(axis=1) < 90.0
+    parts = ("Meadow", triangles[is_near]), ("Fields", triangles[~is_near])
+    return [ground(name, points, chosen, like) for name, chosen in parts]
 
 
-def meadow(like, height, reach):
-    """A level plane in the material of a block."""
+def ground(name, points, triangles, like):
+    """An object that is ground, in the material of another one."""
     import bpy
     import numpy as np
     from realmodel.bl import meshes
 
-    corners = np.array([[x * reach, y * reach, height] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-    mesh = meshes.triangle_mesh("Meadow", corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    mesh = meshes.triangle_mesh(name, points, triangles, smooth=True)
     top = mesh.attributes.new(meshes.PREFIX + "is_top", "BOOLEAN", "FACE")
-    top.data.foreach_set("value", np.ones(2, bool))
-    mesh.materials.append(bpy.data.objects[like].data.materials[0])
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Meadow", mesh))
+    top.data.foreach_set("value", np.ones(len(triangles), bool))
+    mesh.materials.append(like.data.materials[0])
+    item = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
+def wall_corners(shape):
+    """The vertices of the polygons where the model ends, but for its floor, as often as they are corners."""
+    import numpy as np
+
+    return shape.corners[np.repeat(shape.face_surface == -1, np.diff(shape.offsets))]

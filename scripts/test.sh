@@ -3,7 +3,8 @@
 # Installs what the tests need, builds, and runs every test. The last line is
 #   N passed, N failed, N skipped
 # (a check that is no test, such as the format, counts as one failed where it fails); the exit status is
-# 1 if anything failed. What each step printed is kept in build/test.
+# 1 if anything failed. What each step printed is kept in build/test. Steps that use one processor run beside
+# one another, and what they printed is shown when they have ended.
 #
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
@@ -49,6 +50,7 @@ wants() { # STEP...
 
 logs=$root/build/test
 mkdir -p "$logs"
+unset PYTHONDONTWRITEBYTECODE # hundreds of interpreters would compile all modules again
 # The interpreter inside Debian's Blender; the tests of the core run on the same version.
 python=/usr/bin/python3
 [[ -x $python ]] || python=$(command -v python3)
@@ -56,6 +58,7 @@ venv=$root/build/venv
 venv_bpy=$root/build/venv-bpy
 
 passed=0 failed=0 skipped=0 not_run=() failures=()
+declare -A ended=() # the exit status of each step
 
 count() { # NAME REPORT: adds its tests to the sums, and what failed to the list
     local counts p f s test
@@ -68,14 +71,43 @@ count() { # NAME REPORT: adds its tests to the sums, and what failed to the list
     echo "     $p passed, $f failed, $s skipped"
 }
 
-step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed if no test of its did
-    local name=$1 start=$SECONDS status=0 failed_before=$failed log
+step() { # NAME COMMAND...: runs it and shows what it prints
+    local name=$1 start=$SECONDS status=0
     shift
-    log=$logs/$name.log
     echo "==== $name"
     [[ -z ${counted[$name]-} ]] || rm -f "${counted[$name]}"
-    "$@" </dev/null > >(tee "$log") 2>&1 || status=$?
+    "$@" </dev/null > >(tee "$logs/$name.log") 2>&1 || status=$?
     wait "$!" # until tee has written all of it
+    end_of "$name" "$status" $((SECONDS - start))
+}
+
+beside() { # [NAME FUNCTION]...: several steps, one on each processor; each is shown when it has ended
+    if (($# == 2)); then
+        step "$@" # shown while it runs
+        return
+    fi
+    local -A running=() begun=()
+    local pid status
+    while (($# > 0 || ${#running[@]} > 0)); do
+        if (($# > 0 && ${#running[@]} < $(nproc))); then
+            [[ -z ${counted[$1]-} ]] || rm -f "${counted[$1]}"
+            "$2" </dev/null >"$logs/$1.log" 2>&1 &
+            running[$!]=$1 begun[$!]=$SECONDS
+            shift 2
+            continue
+        fi
+        status=0
+        wait -n -p pid "${!running[@]}" || status=$?
+        echo "==== ${running[$pid]}"
+        cat "$logs/${running[$pid]}.log"
+        end_of "${running[$pid]}" "$status" $((SECONDS - begun[$pid]))
+        unset "running[$pid]"
+    done
+}
+trap 'kill 0' INT # what runs in the background hears no Ctrl-C
+
+end_of() { # NAME STATUS SECONDS: says how it ended, and counts it as failed if no test of its did
+    local name=$1 status=$2 failed_before=$failed log=$logs/$1.log
     if [[ -n ${counted[$name]-} ]]; then
         count "$name" "${counted[$name]}" || ((status != 0)) || status=1
     fi
@@ -83,12 +115,12 @@ step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed
         ((failed += 1))
         failures+=("$name: exit status $status; its output is in $log, and ends with"$'\n'"$(tail -n 5 "$log" | cut -c 1-200)")
     fi
+    ended[$name]=$status
     if ((status == 0)); then
-        echo "---- $name: $((SECONDS - start)) s"
+        echo "---- $name: $3 s"
     else
-        echo "---- $name: FAILED, exit status $status, $((SECONDS - start)) s; its output is in $log"
+        echo "---- $name: FAILED, exit status $status, $3 s; its output is in $log"
     fi
-    return "$status"
 }
 declare -A counted=(
     [native]=$logs/release.xml [asan]=$logs/asan.xml [tsan]=$logs/tsan.xml [core]=$logs/core.xml
@@ -111,8 +143,10 @@ finish() {
     exit $((failed > 0))
 }
 
-install() {
-    local groups=(build)
+install() { scripts/install_dependencies.sh build; }
+
+install_more() { # what compiling does not need
+    local groups=()
     wants format shellcheck && groups+=(test)
     wants core && groups+=(solvers)
     wants blender package && groups+=(blender)
@@ -122,9 +156,14 @@ install() {
     wants builds && groups+=(clang)
     wants tidy && groups+=(tidy)
     wants tsan && groups+=(tsan)
-    scripts/install_dependencies.sh "${groups[@]}" &&
-        scripts/python_environment.sh "$venv" scripts/requirements/test.txt "$python"
+    ((${#groups[@]} == 0)) || scripts/install_dependencies.sh "${groups[@]}"
 }
+
+install_environment() { scripts/python_environment.sh "$venv" scripts/requirements/test.txt "$python"; }
+
+install_bpy() { scripts/python_environment.sh "$venv_bpy" scripts/requirements/bpy.txt "$python"; }
+
+build() { scripts/build.sh "$python"; }
 
 cpp_files() { git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp'; }
 
@@ -153,8 +192,8 @@ check_tidy() {
 # A shell that starts this script in the background has it ignore Ctrl-C, which some tests send.
 in_time() { timeout --kill-after=10 "$1" env --default-signal=INT "${@:2}"; } # LIMIT COMMAND...
 
-test_core() { # by modules on all processors; a test that hangs fails after ten minutes, and the others go on
-    in_time 45m "$venv/bin/python" -m pytest tests/core --numprocesses "$(nproc)" --dist loadfile --timeout 600 \
+test_core() { # on all processors; a test that hangs fails after ten minutes, and the others go on
+    in_time 45m "$venv/bin/python" -m pytest tests/core --numprocesses "$(nproc)" --dist worksteal --timeout 600 \
         --junitxml="$logs/core.xml"
 }
 
@@ -174,27 +213,34 @@ test_package() { # zip and wheels of the modules that can be made here, and the 
         in_time 20m "$venv/bin/python" -m pytest tests/package --junitxml="$logs/package.xml"
 }
 
-step install install || finish
-wants format && step format check_format
-wants ruff && step ruff check_ruff
-wants types && step types check_types
-wants site && step site check_site
-wants shellcheck && step shellcheck check_shell
-if wants native core blender gui bpy; then
-    step build scripts/build.sh "$python" || finish
-fi
-wants native && step native test_native release
-wants core && step core test_core
-wants blender && step blender test_blender
-wants gui && step gui test_gui
+step install install
+((ended[install] == 0)) || finish
+needed=()
+wants native core blender gui bpy && needed+=(build build)
+needed+=(install-more install_more environment install_environment)
 if wants bpy; then
-    if ! "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
+    if "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
+        needed+=(bpy-install install_bpy)
+    else
         skip bpy "bpy 4.5 exists for Python 3.11 only; $python is $("$python" --version)"
-    elif step bpy-install scripts/python_environment.sh "$venv_bpy" scripts/requirements/bpy.txt "$python"; then
-        step bpy test_bpy
     fi
 fi
-wants package && step package test_package
+beside "${needed[@]}"
+((ended[install-more] == 0 && ended[environment] == 0 && ${ended[build]-0} == 0)) || finish
+wants native && step native test_native release
+wants core && step core test_core
+# What uses one processor, the longest first.
+alone=()
+wants blender && alone+=(blender test_blender)
+wants package && alone+=(package test_package)
+((${ended[bpy-install]-1} != 0)) || alone+=(bpy test_bpy)
+wants gui && alone+=(gui test_gui)
+wants types && alone+=(types check_types)
+wants site && alone+=(site check_site)
+wants ruff && alone+=(ruff check_ruff)
+wants format && alone+=(format check_format)
+wants shellcheck && alone+=(shellcheck check_shell)
+beside "${alone[@]}"
 wants asan && step asan test_sanitized asan
 if wants builds; then
     if command -v clang++ >/dev/null; then

@@ -211,6 +211,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     field_of: StringProperty(options={"HIDDEN"})  # JSON of the state that the shapes of the field are of
     field_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # the values at the ends of their scale
+    field_surfaces: StringProperty(options={"HIDDEN"})  # JSON: [[surface, value of the field on it]]
     show_residuals: BoolProperty(
         name="Residuals",
         description="Show the points of the surfaces, colored by point minus surface",

@@ -15,7 +15,14 @@ import bpy
 import numpy as np
 
 APART = 0.45  # how far the parts are drawn apart, of their distance from the middle
-COLORS = {"clay": (0.62, 0.23, 0.11, 1), "slate": (0.09, 0.22, 0.36, 1), "brass": (0.95, 0.62, 0.13, 1)}
+COLORS = {
+    "clay": (0.62, 0.23, 0.11, 1),
+    "slate": (0.09, 0.22, 0.36, 1),
+    "brass": (0.95, 0.62, 0.13, 1),
+    "ink": (0.01, 0.01, 0.015, 1),
+}
+NAMES = ("A sheet divides a sculpture", "Two cylinders", "Two tori")
+TOWARDS_CAMERA = (1.16, 0.0, 0.0)
 
 
 def grid(n, m, is_closed, place):
@@ -138,6 +145,20 @@ def _as_tube(item):
     tube["realmodel"] = "loop"
 
 
+def label(parts, name, x):
+    """Writes beneath a pair what came of it."""
+    kinds = [item["realmodel"] for item in parts.all_objects if item.type == "MESH" and "realmodel" in item]
+    loops = sum(kind == "loop" for kind in kinds)
+    counts = f"{kinds.count('sub_block')} sub-blocks, {loops} loop{'s' if loops > 1 else ''}"
+    for line, (text, size) in enumerate(((name, 0.34), (counts, 0.26))):
+        curve = bpy.data.curves.new(text, "FONT")
+        curve.body, curve.size, curve.align_x = text, size, "CENTER"
+        curve.materials.append(bpy.data.materials.get("ink") or _material("ink"))
+        item = bpy.data.objects.new(text, curve)
+        item.location, item.rotation_euler = (x, -1.5, -2.0 - 0.4 * line), TOWARDS_CAMERA
+        bpy.context.scene.collection.objects.link(item)
+
+
 def make():
     """The three scenes side by side; returns the collections of their parts."""
     quarter = math.pi / 2
@@ -157,9 +178,11 @@ def make():
     ]
     bpy.context.view_layer.update()
     made = []
-    for first, second in pairs:
+    for (first, second), name in zip(pairs, NAMES, strict=True):
         parts = divide(first, second)
-        show(parts, (first.location + second.location) / 2)
+        middle = (first.location + second.location) / 2
+        show(parts, middle)
+        label(parts, name, middle.x)
         made.append(parts)
     return made
 
@@ -168,7 +191,7 @@ def light_and_camera(scene):
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     sun.rotation_euler, sun.data.energy, sun.data.angle = (0.7, 0.2, 0.5), 3.5, 0.1
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.location, camera.rotation_euler = (0.2, -14.0, 6.2), (1.16, 0.0, 0.0)
+    camera.location, camera.rotation_euler = (0.2, -14.0, 5.9), TOWARDS_CAMERA
     camera.data.lens = 42
     for item in (sun, camera):
         scene.collection.objects.link(item)
@@ -177,8 +200,8 @@ def light_and_camera(scene):
     scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.9, 0.93, 1.0, 1.0)
     scene.render.engine = "CYCLES"
-    scene.cycles.samples = 96
-    scene.render.resolution_x, scene.render.resolution_y = 1280, 520
+    scene.cycles.samples = 32
+    scene.render.resolution_x, scene.render.resolution_y = 1280, 600
     scene.view_settings.view_transform = "Standard"
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, mean_spacing, nearest_distance,
-// line_sums.
+// krige, krige_left_out, fit_variogram, fit_sheets, idw, idw_left_out, spline, mean_spacing,
+// nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -16,6 +16,7 @@
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/line_sums.hpp"
 #include "realmodel/interpolation/nearest_distance.hpp"
+#include "realmodel/interpolation/sheet_fit.hpp"
 #include "realmodel/interpolation/thin_plate.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 #include "rows.hpp"
@@ -198,23 +199,8 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
     return to_array(std::move(sums));
 }
 
-py::dict fit_variogram(const Array<double>& points,
-                       const std::optional<std::pair<double, double>>& anisotropy,
-                       const std::string& drift, int neighbours, bool are_apart,
-                       const std::optional<DipsTuple>& dips, bool has_bounds,
-                       WatchedExecution* execution) {
-    const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours,    !anisotropy,
-                                            are_apart,       dips_of(dips), has_bounds};
-    const interpolation::Anisotropy along =
-        anisotropy ? interpolation::Anisotropy{anisotropy->first, anisotropy->second}
-                   : interpolation::Anisotropy{};
-    interpolation::FittedVariogram fitted;
-    {
-        const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, along, options, run(execution));
-    }
-    const interpolation::Variogram& variogram = fitted.variogram;
+/// As variogram_of takes it.
+py::dict variogram_dict(const interpolation::Variogram& variogram) {
     std::vector<NestedTuple> further;
     for (const interpolation::NestedStructure& part : variogram.further) {
         further.emplace_back(std::string(name_of(part.model)), part.range, part.sill,
@@ -228,9 +214,67 @@ py::dict fit_variogram(const Array<double>& points,
     out["anisotropy_ratio"] = variogram.anisotropy.ratio;
     out["anisotropy_azimuth"] = variogram.anisotropy.azimuth;
     out["further"] = further;
-    out["lags"] = to_array(std::move(fitted.experimental.lags));
-    out["gamma"] = to_array(std::move(fitted.experimental.gamma));
-    out["pairs"] = to_array(std::move(fitted.experimental.pairs));
+    return out;
+}
+
+void add_experimental(py::dict& out, interpolation::ExperimentalVariogram&& experimental) {
+    out["lags"] = to_array(std::move(experimental.lags));
+    out["gamma"] = to_array(std::move(experimental.gamma));
+    out["pairs"] = to_array(std::move(experimental.pairs));
+}
+
+interpolation::Anisotropy anisotropy_of(const std::optional<std::pair<double, double>>& of) {
+    return of ? interpolation::Anisotropy{of->first, of->second} : interpolation::Anisotropy{};
+}
+
+py::dict fit_variogram(const Array<double>& points,
+                       const std::optional<std::pair<double, double>>& anisotropy,
+                       const std::string& drift, int neighbours, bool are_apart,
+                       const std::optional<DipsTuple>& dips, bool has_bounds,
+                       WatchedExecution* execution) {
+    const auto from = rows<3>(points, "points");
+    const interpolation::FitOptions options{drift_of(drift), neighbours,    !anisotropy,
+                                            are_apart,       dips_of(dips), has_bounds};
+    const interpolation::Anisotropy along = anisotropy_of(anisotropy);
+    interpolation::FittedVariogram fitted;
+    {
+        const py::gil_scoped_release unlocked;
+        fitted = interpolation::fit_variogram(from, along, options, run(execution));
+    }
+    py::dict out = variogram_dict(fitted.variogram);
+    add_experimental(out, std::move(fitted.experimental));
+    return out;
+}
+
+/// The sheet of each point and of each dip, and how many there are.
+using SheetNumbersTuple = std::tuple<Array<std::int32_t>, Array<std::int32_t>, std::size_t>;
+
+std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbersTuple& sheets,
+                                   const std::optional<std::pair<double, double>>& anisotropy,
+                                   const std::string& drift, const std::optional<DipsTuple>& dips,
+                                   const std::optional<py::dict>& variogram,
+                                   WatchedExecution* execution) {
+    const auto from = rows<3>(points, "points");
+    const auto& [of_points, of_dips, count] = sheets;
+    const std::vector<double> variances(count);
+    const interpolation::Sheets numbers{view(of_points), view(of_dips), variances};
+    interpolation::FitOptions options;
+    options.drift = drift_of(drift);
+    options.finds_anisotropy = !anisotropy;
+    options.dips = dips_of(dips);
+    std::optional<interpolation::Variogram> given;
+    if (variogram) given = variogram_of(*variogram);
+    std::optional<interpolation::FittedSheets> fitted;
+    {
+        const py::gil_scoped_release unlocked;
+        fitted = interpolation::fit_sheets(from, numbers, anisotropy_of(anisotropy), options, given,
+                                           run(execution));
+    }
+    if (!fitted) return std::nullopt;
+    py::dict out = variogram_dict(fitted->variogram);
+    add_experimental(out, std::move(fitted->experimental));
+    out["thickness"] = fitted->thickness;
+    out["constants"] = to_array(std::move(fitted->constants));
     return out;
 }
 
@@ -355,6 +399,20 @@ Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth
 krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
 Cancelled.)");
+    module.def(
+        "fit_sheets", &fit_sheets, arg("points"), arg("sheets"),
+        arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
+        arg("dips") = py::none(), arg("variogram") = py::none(), arg("execution") = py::none(),
+        R"(Fits what sheets have in common to their points (P, 3) float64, at most 150, and dips.
+
+sheets      (sheet of each point (P,), of each dip (D,) int32, their number)
+anisotropy, drift, dips  as fit_variogram
+variogram   one that is not to be changed, as krige takes it; None: the likeliest
+
+Returns a dict: the variogram of the field that they share, as fit_variogram; thickness, the variance of each thickness between two of them in units of its sill; and
+constants (S,) float64, what each lies above the first point. None where the data are too few or too
+many.
+Raises InputError as fit_variogram; Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

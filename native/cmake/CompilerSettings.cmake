@@ -20,7 +20,9 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # for the sanitizers: assertions s
 
 find_program(REALMODEL_CCACHE ccache)
 if(REALMODEL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${REALMODEL_CCACHE}")
+    # Without these it keeps nothing that includes a precompiled header, as the tests do.
+    set(CMAKE_CXX_COMPILER_LAUNCHER
+        "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${REALMODEL_CCACHE}")
 endif()
 
 add_library(realmodel_settings INTERFACE)

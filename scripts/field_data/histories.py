@@ -30,12 +30,14 @@ class Layer:
 
 @dataclass(frozen=True)
 class History:
-    """Surfaces, oldest first; the youngest is the ground. holes, outcrops: how many are made."""
+    """Surfaces, oldest first; the youngest is the ground. holes, outcrops: how many are made. conformable:
+    runs of names of surfaces that lie parallel to one another, as a geologist would tell."""
 
     name: str
     layers: Sequence[Layer]
     holes: int
     outcrops: int
+    conformable: Sequence[Sequence[str]] = ()
 
     def heights(self, plan: np.ndarray) -> np.ndarray:
         """(S, N) of all surfaces at places (N, 2)."""
@@ -221,13 +223,17 @@ def _pinching():
     )
 
 
+def _names(letter: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{letter}{k}" for k in range(count))
+
+
 HISTORIES = (
-    History("undulating", _undulating(), 20, 30),
-    History("onlap", _onlap(), 20, 30),
-    History("unconformity", _unconformity(), 20, 40),
-    History("channels", _channels(), 25, 40),
-    History("dipping", _dipping(), 12, 40),
-    History("folded", _folded(), 15, 60),
-    History("discontinuous", _discontinuous(), 20, 60),
+    History("undulating", _undulating(), 20, 30, (_names("H", 5),)),
+    History("onlap", _onlap(), 20, 30, (_names("L", 5),)),
+    History("unconformity", _unconformity(), 20, 40, (_names("B", 4), ("C1", "C2"))),
+    History("channels", _channels(), 25, 40, (("B", "C"),)),
+    History("dipping", _dipping(), 12, 40, (_names("D", 7),)),
+    History("folded", _folded(), 15, 60, (_names("F", 6),)),
+    History("discontinuous", _discontinuous(), 20, 60, (_names("P", 4), ("Q1", "Q2"))),
     History("pinching", _pinching(), 20, 40),
 )

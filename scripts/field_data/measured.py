@@ -9,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 from realmodel.core import Dips, Model, Observations, Project, Rock, Surface
 from realmodel.core.base.work import run
+from realmodel.core.project.series import Series
 from realmodel.core.proof.closed_form import closed_forms
+from realmodel.core.settings.series import SHEETS
 
 from .histories import BASE, GRID, LENGTH, History
 
@@ -68,9 +70,11 @@ def _dips(history: History, draw: np.random.Generator) -> list[Dips | None]:
     return found
 
 
-def project(history: History, data: Measured, contacts_alone: bool, method: str | None = None) -> Project:
-    """The project of a history. contacts_alone: without observations and dips, surfaces without a contact
-    left out."""
+def project(history: History, data: Measured, what: str, method: str | None = None) -> Project:
+    """The project of a history. what: "contacts", without observations and dips, surfaces without a contact
+    left out; "all"; or "series", all with what is conformable as series of sheets."""
+    contacts_alone = what == "contacts"
+    series = {name: run[0] for run in history.conformable for name in run} if what == "series" else {}
     surfaces = []
     steps = np.arange(0, LENGTH + GRID / 2, GRID)
     x, y = (each.ravel() for each in np.meshgrid(steps, steps))
@@ -85,6 +89,7 @@ def project(history: History, data: Measured, contacts_alone: bool, method: str 
             given.points = data.contacts[number]
         else:
             given.dips = data.dips[number]
+            given.series = series.get(layer.name)
         surfaces.append(given)
     rock = Rock(
         "r",
@@ -93,6 +98,7 @@ def project(history: History, data: Measured, contacts_alone: bool, method: str 
         edge_length=EDGE,
         base_elevation=BASE - 1000,
         observations=None if contacts_alone else Observations.joined([data.logs, data.outcrops]),
+        series=[Series(name, SHEETS) for name in dict.fromkeys(series.values())],
     )
     return Project(history.name, [rock])
 

@@ -62,7 +62,14 @@ class Filling(PanelCase):
         self.assertIn("realmodel_thickness", beds[3].data.attributes)
 
     def test_presets_set_values_that_others_override(self):
-        for preset, count in (("CLIFF", 14), ("CANYON", 24), ("ISLAND", 9), ("FOLDED", 16), ("FAULTED", 14)):
+        for preset, count in (
+            ("CLIFF", 14),
+            ("CANYON", 24),
+            ("ISLAND", 9),
+            ("FOLDED", 16),
+            ("FAULTED", 14),
+            ("PRINT", 4),
+        ):
             item = cube(preset)
             self.assertEqual(len(self.filled(item, preset=preset, rock_looks=False)), count)
         self.assertEqual(len(self.filled(cube("Other"), preset="CLIFF", beds=5, rock_looks=False)), 5)
@@ -82,6 +89,19 @@ class Filling(PanelCase):
         floor = min(coordinates(bed.data)[:, 2].min() for bed in beds)
         self.assertAlmostEqual(floor, low.min() - max(np.ptp(low), 10.0), places=4)
         self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+
+    def test_gaps_and_pegs_for_a_print(self):
+        item = cube("A")
+        beds = self.filled(item, preset="PRINT", pegs=1, peg_size=0.2, rock_looks=False)
+        self.assertEqual([bed.name for bed in beds], [f"A Bed {n}" for n in range(1, 5)])
+        self.assertTrue(all(not open_edges(bed.data) for bed in beds))
+        lost = volume(item.data) - sum(volume(bed.data) for bed in beds)
+        gap, peg = 0.004 * 2.0, 0.2 * 2.0
+        self.assertGreater(lost, 3 * 4.0 * gap)
+        self.assertLess(lost, 3 * (4.0 * gap + ((peg + 2 * gap) ** 2 - peg**2) * peg) + 1e-6)
+        for lower, upper in pairwise(beds):
+            top, floor = coordinates(lower.data)[:, 2].max(), coordinates(upper.data)[:, 2].min()
+            self.assertGreater(top, floor, "the peg reaches into the next bed")
 
     def test_light_and_camera_see_the_beds_where_there_is_no_model(self):
         self.refused(ops.set_up_picture, "fill a mesh with strata")

@@ -2,13 +2,18 @@
 """The recipes of the guide, step by step, each from Blender's usual new file."""
 
 import math
+import re
+import sys
 from pathlib import Path
 
 import bpy
 import numpy as np
-from blender_state import open_edges, volume
-from panel_case import SAMPLES, PanelCase, ops, select
-from realmodel.bl import notices, quality, weathering
+from blender_state import coordinates, open_edges, volume
+from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
+from realmodel.bl import compartments, looks, notices, project_settings, quality, weathering
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+import gallery_picture
 
 
 class Recipe(PanelCase):
@@ -35,15 +40,7 @@ class ForArtists(Recipe):
 
     def cliff(self):
         bpy.data.objects.remove(bpy.data.objects["Cube"])
-        bpy.ops.mesh.primitive_cube_add(size=30.0)
-        item = bpy.context.object
-        item.scale = 1.5, 0.7, 0.6
-        subdivision = item.modifiers.new("Subdivision", "SUBSURF")
-        subdivision.subdivision_type, subdivision.levels = "SIMPLE", 5
-        displace = item.modifiers.new("Displace", "DISPLACE")
-        displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
-        displace.texture.noise_scale, displace.strength = 6.0, 5.0
-        select(item)
+        select(gallery_picture.cliff(levels=5))
         ops.fill_with_strata(preset="CLIFF")
         return list(bpy.data.collections["Cube Strata"].objects)
 
@@ -55,6 +52,26 @@ class ForArtists(Recipe):
         ops.set_up_picture(sun_elevation=math.radians(20.0))
         picture = self.rendered()
         self.assertGreater(np.ptp(picture.mean(axis=2)), 0.3)
+
+    def test_a_canyon(self):
+        ops.open_sample(sample="canyon")
+        ops.rock_looks(look="AUTO")
+        self.no_warnings()
+        self.assertEqual(len(self.model.results), 43)
+        for row in self.model.results:
+            self.assertIn(looks.KEY, row.object.data.materials[0])
+        ops.set_up_picture(sun_elevation=math.radians(30.0))
+        self.assertIsNotNone(self.scene.camera)
+
+    def test_a_canyon_of_a_terrain(self):
+        terrain = sheet("Terrain", lambda x, y: 30.0 - 25.0 * math.exp(-(((x - 50.0) / 15.0) ** 2)), n=16)
+        select(terrain)
+        ops.fill_with_strata(preset="CANYON", base_depth=0.2)
+        beds = list(bpy.data.collections["Terrain Strata"].objects)
+        self.assertEqual(len(beds), 24)
+        height = np.ptp(coordinates(terrain.data)[:, 2])
+        floor = min(coordinates(bed.data)[:, 2].min() for bed in beds)
+        self.assertAlmostEqual(floor, coordinates(terrain.data)[:, 2].min() - 0.2 * height, places=3)
 
     def test_a_cutaway_diagram(self):
         ops.open_sample(sample="block_diagram")
@@ -77,21 +94,10 @@ class ForArtists(Recipe):
     def test_a_print_in_parts(self):
         item = bpy.data.objects["Cube"]
         select(item)
-        ops.fill_with_strata(beds=3, dip=0.0, rock_looks=False)
-        beds = sorted(bpy.data.collections["Cube Strata"].objects, key=lambda bed: bed.name)
-        boundary = max((bed.matrix_world @ v.co).z for bed in beds[:1] for v in bed.data.vertices)
-        pegs = []
-        for radius, depth in ((0.2, 0.3), (0.21, 0.315)):
-            bpy.ops.mesh.primitive_cylinder_add(radius=radius, depth=depth, location=(0.0, 0.0, boundary))
-            pegs.append(bpy.context.object)
-        before = [volume(bed.data) for bed in beds]
-        for peg, bed, operation in zip(pegs, beds, ("UNION", "DIFFERENCE"), strict=False):
-            select(peg, bed)
-            ops.boolean(operation=operation)
-        halves = [volume(peg.data) / 2 for peg in pegs]
-        self.assertAlmostEqual(volume(beds[0].data), before[0] + halves[0], places=4)
-        self.assertAlmostEqual(volume(beds[1].data), before[1] - halves[1], places=4)
-        self.assertEqual([open_edges(bed.data) for bed in beds], [0, 0, 0])
+        ops.fill_with_strata(preset="PRINT", rock_looks=False)
+        beds = list(bpy.data.collections["Cube Strata"].objects)
+        self.assertEqual([open_edges(bed.data) for bed in beds], [0, 0, 0, 0])
+        self.assertLess(sum(volume(bed.data) for bed in beds), 8.0)
         select(beds[0])
         path = str(self.folder / "bed.stl")
         if bpy.app.version >= (4, 2, 0):
@@ -127,13 +133,9 @@ class ForGeologists(Recipe):
 
     def test_logged_boreholes(self):
         """docs/guide/boreholes.md"""
-        collars = (
-            "hole,x,y,z,end\nB1,5,5,60,30\nB2,95,5,61,26\nB3,95,95,62,42\nB4,5,95,60,15\nB5,50,50,58,30\n"
-        )
-        intervals = (
-            "hole,from,to,block\nB1,0,8,Gravel\nB1,8,20,CLY\nB1,20,30,Sandstone\nB2,0,11,Gravel\n"
-            "B2,11,19,CLY\nB2,19,26,Sandstone\nB3,0,17,Gravel\nB3,17,42,Sandstone\nB4,0,9,Gravel\n"
-            "B4,9,15,CLY\nB5,0,10,Gravel\nB5,10,17,CLY\nB5,17,18,LC\nB5,18,30,Sandstone\n"
+        page = (SAMPLES.parent / "docs" / "guide" / "boreholes.md").read_text(encoding="utf-8")
+        collars, intervals = (
+            table.replace("    ", "") for table in re.findall(r"(?:^    \w+,.*\n)+", page, re.MULTILINE)
         )
         files = [self.written("collars.csv", collars), self.written("intervals.csv", intervals)]
         ops.boreholes_read(
@@ -189,6 +191,70 @@ class ForGeologists(Recipe):
         rock.edge_length, rock.series[0].resolution = 60.0, 40.0
         ops.build()
         self.assertEqual(len(self.volumes()), 5)
+
+    def test_a_section_for_a_report(self):
+        """docs/guide/report_section.md"""
+        ops.open_sample(sample="gravel_plain")
+        ops.section_plane(axis="Y")
+        plane = self.model.view.plane
+        plane.location.y += 30.0
+        ops.section_update()
+        ops.section()
+        made = bpy.context.active_object
+        y = plane.matrix_world.translation.y
+        self.assertLess(np.abs(coordinates(made.data)[:, 1] - y).max(), 0.01)
+        ops.section(flat=True)
+        self.assertIsNot(bpy.context.active_object, made)
+        low, high = np.ptp(coordinates(made.data), axis=0), coordinates(made.data).max(axis=0)
+        path = outline("Line", [(high[0] - low[0] * share, y) for share in (0.8, 0.5, 0.3)], cyclic=False)
+        select(path)
+        ops.fence()
+        self.assertTrue(bpy.context.active_object.name.startswith("Fence"))
+        self.model.view.section_holes = "GP01, GP07, GP03"
+        ops.fence_holes()
+        self.assertTrue(bpy.context.active_object.name.startswith("Holes"))
+        for ending in ("svg", "dxf", "png"):
+            file = self.folder / f"section.{ending}"
+            ops.save_section(filepath=str(file), exaggeration=5.0)
+            self.assertGreater(file.stat().st_size, 1_000)
+
+    def test_a_quarry(self):
+        """docs/guide/quarry_volumes.md: your own pit"""
+        ops.open_sample(sample="two_layers")
+        if not len(self.model.results):
+            ops.build()
+        before = self.volumes()
+        ops.copy_table()
+        top = max(coordinates(row.object.data)[:, 2].max() for row in self.model.results)
+        middle = -project_settings.model_origin(self.scene) + (50.0, 50.0, 0.0)
+        bpy.ops.mesh.primitive_cube_add(size=20.0, location=(middle[0], middle[1], top))
+        ops.fault_body_from_selected()
+        self.model.bodies[0].void = True
+        ops.build()
+        taken = sum(before.values()) - sum(self.volumes().values())
+        self.assertGreater(taken, 0.0)
+        self.assertLess(taken, 20.0**3 / 2)
+        ops.copy_table()
+
+    def test_a_fault(self):
+        """docs/guide/structures.md"""
+        places = [(x, y) for x in range(5, 100, 10) for y in range(5, 100, 10)]
+        for n, z in enumerate((0.0, 20.0, 40.0)):
+            rows = [f"{x},{y},{z - (4.0 if x > 52.0 else 0.0)}" for x, y in places]
+            ops.surface_add(filepath=self.written(f"s{n}.csv", "\n".join(["x,y,z", *rows])))
+        ops.region_around()
+        fault = sheet("Fault", 0.0, n=1, size=200.0)
+        fault.data.vertices.foreach_set(
+            "co", np.array([(52.0, y, z) for z in (-90.0, 110.0) for y in (-50.0, 150.0)], np.float32).ravel()
+        )
+        select(fault)
+        ops.fault_body_from_selected()
+        self.assertEqual(len(self.model.faults), 1)
+        ops.build()
+        self.assertEqual(len(compartments.names(self.scene)), 2)
+        throws = [abs(throw) for _, _, throw, _ in compartments.read(self.scene)["faults"]]
+        self.assertTrue(all(abs(throw - 4.0) < 0.1 for throw in throws), throws)
+        self.model.view.color_by = "COMPARTMENT"
 
     def test_a_simulation(self):
         """docs/guide/simulation.md"""

@@ -304,6 +304,9 @@ class FieldShown(PanelCase):
         self.assertGreater(len(used), 8)
         (key,) = [key for key in overlay._keys(self.scene) if key.title == "Field of folded beds"]
         self.assertEqual(tuple(key.limits), tuple(view.field_limits))
+        self.assertEqual([name for name, _ in key.names], ["lower bed", "middle bed", "upper bed"])
+        levels = [level for _, level in key.names]
+        self.assertEqual(sorted(levels), levels)
         view.plane.location.y += 100.0
         bpy.context.view_layer.update()
         cuts.cut_now(self.scene)

@@ -9,6 +9,7 @@ import pytest
 from realmodel.core import UsageError
 from realmodel.core.drawing import WRITERS, Drawing, save_drawing
 from realmodel.core.drawing.charts import Axes, color_bar, legend, round_length, tick_texts, ticks
+from realmodel.core.drawing.drawing import Text
 from realmodel.core.drawing.glyphs import text_width
 from realmodel.core.drawing.png import write_pixels
 from realmodel.core.drawing.raster import over, rasterize
@@ -92,6 +93,17 @@ def chart():
     legend(drawing, (150, 100), "Block", [("Clay", RED), ("Sand", BLUE)])
     color_bar(drawing, (150, 20, 8, 40), (0.0, 1.0), np.eye(3))
     return drawing
+
+
+def test_names_beside_a_color_bar_do_not_overlap():
+    """They stand where their values are, and apart where these are near: a run of them keeps its middle."""
+    drawing = Drawing(200.0, 120.0)
+    names = [("Base", 0.1), ("Lower", 0.5), ("Upper", 0.51), ("Top", 0.9)]
+    color_bar(drawing, (20, 10, 8, 100), (0.0, 1.0), np.eye(3), names[::-1])
+    texts = [item for item in drawing.items if isinstance(item, Text)]
+    assert [text.text for text in texts] == ["Base", "Lower", "Upper", "Top"]
+    heights = [text.y + 0.36 * 8.0 for text in texts]
+    assert heights == pytest.approx([20.0, 60.5 - 4.4, 60.5 + 4.4, 100.0])
 
 
 @pytest.mark.parametrize("ending", WRITERS)

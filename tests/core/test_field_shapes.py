@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from realmodel.core import UsageError, build, load_project
 from realmodel.core.base.work import run
-from realmodel.core.display.field_shapes import field_levels, field_range, field_section, series_with_fields
+from realmodel.core.display import polygon_mesh
+from realmodel.core.display.field_shapes import (
+    field_levels,
+    field_range,
+    field_section,
+    field_surfaces,
+    series_with_fields,
+)
 from realmodel.core.proof.closed_form import closed_forms
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
@@ -70,3 +77,33 @@ def test_level_sets_lie_in_the_rock(model):
 def test_another_name_is_refused(model):
     with pytest.raises(UsageError, match="no series 'other'"):
         field_range(model, "other")
+
+
+def test_layers_of_a_series_have_their_heights_by_its_field(model):
+    """So that laminae of looks follow beds that stand upright or are overturned."""
+    (own,) = model.rock_inputs[0].fields
+    blocks = zip(model.blocks, polygon_mesh.of_blocks(model, np.zeros(3)), strict=True)
+    series = {block.surface: shape for block, shape in blocks if block.surface in own.numbers}
+    seen = 0
+    for surface, shape in series.items():
+        of_corner = np.repeat(shape.face_surface, np.diff(shape.offsets))
+        for bound, expected in ((surface, 1.0), (surface - 1, 0.0)):
+            if bound in own.numbers:
+                heights = shape.bedding.height[of_corner == bound]
+                assert heights == pytest.approx(expected, abs=1e-6)
+                seen += len(heights)
+        inner = shape.bedding.height[of_corner < 0]
+        assert inner.min() < 0.3 and inner.max() > 0.7
+        (thickness,) = set(shape.bedding.thickness.tolist())
+        assert 20.0 < thickness < 400.0
+    assert seen > 1000
+
+
+def test_surfaces_have_the_values_of_the_field(model):
+    (name,) = series_with_fields(model)
+    surfaces = field_surfaces(model, name)
+    (own,) = model.rock_inputs[0].fields
+    assert [each for each, _ in surfaces] == [model.surface_names[number] for number in own.numbers]
+    assert [level for _, level in surfaces] == own.fields[0].levels.tolist()
+    with pytest.raises(UsageError, match="no series 'other' with a field"):
+        field_surfaces(model, "other")

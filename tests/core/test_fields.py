@@ -152,6 +152,26 @@ def test_bounds_hold_on_the_lattice():
     assert _share_right(overturned, after) > _share_right(overturned, before)
 
 
+def test_bounds_that_contradict_other_data_are_left_out():
+    data = _data(overturned)
+    points = np.random.default_rng(5).uniform(*LATTICE.corners, (150, 3))
+    block = np.searchsorted(LEVELS, overturned(points))
+    wrong = np.flatnonzero(block == 0)[[3, 8]]
+    said = block.copy()
+    said[wrong] = 4
+    bounded = replace(
+        data,
+        bounds=points,
+        bound_below=(said - 1).astype(np.int32),
+        bound_above=np.where(said < 4, said, -1).astype(np.int32),
+    )
+    field = _solve(bounded)
+    assert field.bounds_missed.tolist() == wrong.tolist()
+    right = np.searchsorted(field.levels, field.at(points)) == block
+    assert right[np.setdiff1d(np.arange(150), wrong)].all()
+    assert _share_right(overturned, field) > 0.97
+
+
 def test_many_contacts_are_met_by_few_of_them():
     rng = np.random.default_rng(6)
     places = rng.uniform(0, 1000, (6000, 2))
@@ -288,5 +308,5 @@ def test_folds_of_known_truth(name):
         block = np.array([unit.get(text, -1) for text in truth["block"]])
         places = truth["points"][block >= 0]
     found = np.searchsorted(field.levels, field.at(places))
-    assert (found == block[block >= 0]).mean() > 0.98
+    assert (found == block[block >= 0]).mean() > 0.993
     assert not len(field.critical_points)

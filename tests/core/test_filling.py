@@ -2,6 +2,7 @@
 """Strata in any solid: the beds are closed and together the solid, and lie where the formulas say."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -156,6 +157,59 @@ def test_level_beds_cover_an_unconformity():
     assert [block.volume for block in model.blocks[7:]] == pytest.approx([100] * 3)
     levels = model.block_boundary(8).vertices[:, 2]
     assert np.unique(levels.round(9)) == pytest.approx([8, 9])
+
+
+PRINT = Strata(beds=4, variation=0, gap=0.1, pegs=2, peg_size=1.0)
+
+
+def test_gaps_and_pegs():
+    model = fill_with_strata(*box((0, 0, 0), (10, 10, 10)), PRINT)
+    gaps = {block.name: block.volume for block in model.blocks if not block.property}
+    beds = [block.volume for block in model.blocks if block.property]
+    # a hole is as much wider as the gap on each side, and as much higher in all
+    taken, added = 2 * 1.2**2 * 1.0, 2 * 1.0
+    assert gaps == pytest.approx({f"Gap {n}": 10 + taken - added for n in (1, 2, 3)})
+    assert beds == pytest.approx([247.5 - 2.5 + added, *2 * [240 - taken + added], 245 - taken])
+    assert model.warnings == [] and model.validate().passed
+    heights = np.unique(model.block_boundary(0).vertices[:, 2].round(9))
+    assert heights.tolist() == [0, 2.45, 3.45]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_gaps_part_all_beds(name):
+    """In folds, along faults and over an unconformity."""
+    strata = replace(CASES[name], gap=0.01, pegs=3, peg_size=0.12)
+    vertices, triangles = ball()
+    model = fill_with_strata(vertices, triangles, strata)
+    assert model.validate().passed
+    assert model.volume == pytest.approx(volume(vertices, triangles), rel=1e-12)
+    beds = [block for block in model.blocks if block.property]
+    assert [block.name for block in beds] == [f"Bed {n + 1}" for n in range(strata.beds)]
+    assert all(block.volume > 0 for block in beds)
+    number_of = np.append([block.property > 0 for block in model.blocks], False)
+    both = number_of[model.face_blocks].all(axis=1) & (model.face_blocks[:, 0] != model.face_blocks[:, 1])
+    assert not both.any()
+    assert ("Gap at Faults" in {block.name for block in model.blocks}) == bool(strata.faults)
+
+
+def test_a_gap_at_a_fault_has_its_width():
+    strata = Strata(beds=4, variation=0, faults=1, throw=1.0, gap=0.25)
+    model = fill_with_strata(*box((0, 0, 0), (10, 4, 8)), strata)
+    (gap,) = (block for block in model.blocks if block.name == "Gap at Faults")
+    assert gap.volume == pytest.approx(0.25 * 4 * 8)
+
+
+def test_pegs_need_room():
+    strata = replace(PRINT, peg_size=4.0)
+    assert fill_with_strata(*box((0, 0, 0), (40, 40, 10)), strata).warnings == []
+    narrow = fill_with_strata(*box((0, 0, 0), (5, 5, 10)), strata)
+    assert [warning.text for warning in narrow.warnings] == [
+        "there is room for only 0 of the pegs; 6 are left out"
+    ]
+    with pytest.raises(InputRefused, match=r"gaps of 3 leave nothing of a bed of 2\.5; choose smaller gaps"):
+        fill_with_strata(*box((0, 0, 0), (9, 9, 10)), replace(PRINT, gap=3.0))
+    with pytest.raises(UsageError, match="peg_size and gap must be above 0"):
+        Strata(pegs=1, peg_size=1.0)
 
 
 def test_several_parts_holes_and_parts_that_cross():

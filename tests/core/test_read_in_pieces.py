@@ -16,8 +16,9 @@ import pytest
 from conftest import ROOT
 from large_files import BY_PLACE, FORMATS, MESHES, SHAPES, write_mesh, write_points
 from realmodel.core import InputRefused, MeshFile, OutputFailed, PointFile
-from realmodel.core.base.mapped_arrays import MappedArrays
+from realmodel.core.base.mapped_arrays import ROWS_AT_ONCE, MappedArrays
 from realmodel.core.base.text import (
+    BYTES_AT_ONCE,
     FileBytes,
     content_of,
     encoding_of,
@@ -75,7 +76,12 @@ def test_points_are_the_same_in_a_file(tmp_path, name):
 
 @pytest.mark.parametrize("name", MESHES)
 def test_a_mesh_is_the_same_in_a_file(tmp_path, name):
-    file, vertices, triangles = write_mesh(name, 300, 310, tmp_path)
+    """Larger than a piece: of rows where these are gathered, of bytes where the mesh is read whole."""
+    size = (300, 310) if name in IN_PIECES else (130, 140)
+    file, vertices, triangles = write_mesh(name, *size, tmp_path)
+    assert len(triangles) > ROWS_AT_ONCE * 2 or (
+        name not in IN_PIECES and triangles.nbytes + vertices.nbytes > BYTES_AT_ONCE
+    )
     mesh = read_mesh(file)
     if name in BY_PLACE:
         assert np.array_equal(np.unique(vertices, axis=0), mesh.vertices)

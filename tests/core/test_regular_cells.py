@@ -121,9 +121,10 @@ def test_geotiff_has_a_band_for_each_grid(model, tmp_path):
     with tifffile.TiffFile(tmp_path / "g.tif") as tiff:
         page = tiff.pages[0]
         bands = page.asarray()
-        assert bands.shape == (5, *grids.top.shape)
+        assert bands.shape == (7, *grids.top.shape)
         assert np.array_equal(bands[0], grids.top, equal_nan=True)
         assert np.array_equal(bands[2], grids.thickness[0])
+        assert np.array_equal(bands[6], grids.true_thickness[1])
         assert page.tags[33550].value[:2] == (4.0, 4.0)
         assert page.tags[33922].value[3:5] == grids.north_west
         assert "top of Clay" in page.tags[42112].value
@@ -152,6 +153,8 @@ def test_ascii_grids_are_files_side_by_side(model, tmp_path):
             "g_thickness_of_Sand.asc",
             "g_top_of_Clay.asc",
             "g_top_of_Sand.asc",
+            "g_true_thickness_of_Clay.asc",
+            "g_true_thickness_of_Sand.asc",
         )
     ]
     points, _ = read_point_file(PointFile(tmp_path / "g.asc"))
@@ -172,6 +175,24 @@ def test_a_center_on_an_edge_counts_once():
     model = build(Project("x", [Rock("r", flat)]))
     for size in (0.25, 0.5, 1 / 3, 0.125):  # centers on vertices and diagonals of the triangles
         assert plan_grids(model, size).thickness == pytest.approx(1.0, rel=1e-12)
+
+
+def test_true_thickness_is_perpendicular_to_the_base():
+    """Of tilted beds everywhere, also beside the border, where the foot lies beyond it."""
+
+    def plane(z):
+        return grid_surface(6, lambda x, y: z + 0.75 * x)
+
+    model = build(Project("x", [Rock("r", [Surface(f"S{k}", *plane(k)) for k in range(3)])]))
+    grids = plan_grids(model, 0.2)
+    assert grids.thickness == pytest.approx(1.0, rel=1e-12)
+    assert grids.true_thickness == pytest.approx(0.8, rel=1e-9)
+
+
+def test_true_thickness_is_nowhere_more_than_the_vertical_one(model):
+    grids = plan_grids(model, 3.0)
+    assert (grids.true_thickness <= grids.thickness).all()
+    assert np.array_equal(grids.true_thickness > 0, grids.thickness > 0)
 
 
 def test_what_cannot_be_is_refused(model, tmp_path):

@@ -331,11 +331,12 @@ def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
 
 def assert_same_heights(tiled, whole):
     """To the last bit."""
+    surfaces = (whole.surface(k)[0].tolist() for k in range(len(whole.surface_names)))
+    known = [{(x, y): z for x, y, z in vertices} for vertices in surfaces]
     for tile in tiled.tiles:
         model = tile.model()
-        for k in range(len(whole.surface_names)):
-            known = {tuple(place): z for *place, z in whole.surface(k)[0].tolist()}
-            assert all(known[x, y] == z for x, y, z in model.surface(k)[0].tolist())
+        for k, heights in enumerate(known):
+            assert all(heights[x, y] == z for x, y, z in model.surface(k)[0].tolist())
 
 
 def of_all_kinds():

@@ -200,7 +200,10 @@ def test_the_sources_have_what_compiling_takes(tmp_path):
     unwanted = r".*(?:/tests/|/fuzz/|/benchmarks/|/vendor/|\.so$|\.pyc$).*"
     assert re.findall(unwanted, listed, re.MULTILINE) == []
     environment = Environment(sys.executable, tmp_path)
-    environment.install(archive)
+    compiler = tmp_path / "c++"  # not optimized: in two thirds of the time; build.sh compiles as pip does
+    compiler.write_text('#!/bin/sh\nexec /usr/bin/c++ "$@" -O0\n')
+    compiler.chmod(0o755)
+    environment.install(archive, variables={"CXX": str(compiler)})
     done = environment.run("realmodel", SAMPLE, "--export", "model.npz")
     assert done.returncode == 0, done.stderr
 

@@ -103,8 +103,11 @@ class FillJob(ThreadJob):
     """Fills a shape with strata.
 
     shape: FilledShape. strata: core.Strata. depth: as of FilledShape.closed. has_looks: the rocks get looks,
-    otherwise their colors alone. has_masks: a copy of the object gets a mask of each bed.
+    otherwise their colors alone. has_masks: a copy of the object gets a mask of each bed. warnings: of what
+    was left out, once it is done.
     """
+
+    warnings = ()
 
     def __init__(self, scene, shape, strata, depth, has_looks=True, has_masks=False):
         """Raises InputRefused for a shape that cannot be closed."""
@@ -143,9 +146,11 @@ class FillJob(ThreadJob):
         where = item.users_collection[0] if item.users_collection else scene.collection
         collection = bpy.data.collections.new(f"{item.name} Strata")
         where.children.link(collection)
+        self.warnings = [warning.text for warning in model.warnings]
         rocks = {}
-        digits = len(str(len(model.blocks)))
-        for number, (block, shape) in enumerate(zip(model.blocks, found, strict=True), 1):
+        beds = [pair for pair in zip(model.blocks, found, strict=True) if pair[0].property]  # without gaps
+        digits = len(str(len(beds)))
+        for number, (block, shape) in enumerate(beds, 1):
             if shape is None:
                 continue
             if block.property not in rocks:

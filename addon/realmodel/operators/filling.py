@@ -12,7 +12,7 @@ from ..bl.fill_job import FilledShape, FillJob
 from ..bl.fill_preview import FillPreview
 from ..core import RealModelError, Strata
 from ..core.filling import PALETTES
-from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, STEEPEST
+from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, STEEPEST
 from .background import InBackground
 from .reporting import not_building, object_mode
 
@@ -26,6 +26,8 @@ _PLAIN = {
     "faults": 0,
     "throw": 0.1,
     "unconformity": 0.0,
+    "gap": 0.0,
+    "pegs": 0,
 }
 # What a preset sets, beside _PLAIN
 _PRESETS = {
@@ -40,6 +42,7 @@ _PRESETS = {
         "Faulted",
         {"beds": 14, "dip": math.radians(12), "faults": 3, "throw": 0.12, "palette": "COAL"},
     ),
+    "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
 }
 
 
@@ -130,6 +133,21 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         min=0.0,
         max=0.95,
     )
+    gap: _share(
+        "Gap",
+        "Between beds, and between the two sides of a fault, for a print in parts: as a share of the height",
+        soft=0.05,
+    )
+    pegs: IntProperty(
+        name="Pegs",
+        description="How many square pegs there are at most on each bed. The holes for them in the next one "
+        "are wider by the gap on each side",
+        default=0,
+        min=0,
+        max=MOST_PEGS,
+        soft_max=6,
+    )
+    peg_size: _share("Peg Size", "Width of a peg, as a share of the height of the mesh", 0.1, soft=0.3)
     base_depth: _share(
         "Base Depth",
         "Of an open mesh: depth of the base beneath its lowest point, as a share of its height or of a tenth "
@@ -158,6 +176,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     _preview = None
     _shape = None
+    _filling = None
     _is_asked = False
     _problem = ""
 
@@ -190,6 +209,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
             ("fold_amplitude", "fold_wavelength", "fold_axis"),
             ("faults", "throw", "fault_strike"),
             ("unconformity", "base_depth", "masks"),
+            ("gap", "pegs", "peg_size"),
         )
         for names in groups:
             column = layout.column(align=True)
@@ -216,10 +236,13 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         if shape is None:
             shape = FilledShape.of(context.active_object, context.evaluated_depsgraph_get())
         strata = self._strata(shape.closed(self.base_depth)[0])
-        return FillJob(context.scene, shape, strata, self.base_depth, self.rock_looks, self.masks)
+        self._filling = FillJob(context.scene, shape, strata, self.base_depth, self.rock_looks, self.masks)
+        return self._filling
 
     def tell_done(self, result):
         beds = sum(VOLUME in item for item in result.objects)
+        for warning in self._filling.warnings:
+            self.report({"WARNING"}, warning)
         self.report({"INFO"}, f"{beds} beds: see {result.name}")
 
     def _show(self):
@@ -253,6 +276,9 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
             throw=self.throw * height,
             fault_strike=_degrees(self.fault_strike),
             unconformity=self.unconformity,
+            gap=self.gap * height,
+            pegs=self.pegs,
+            peg_size=self.peg_size * height,
             palette=self.palette.lower(),
             seed=self.seed,
         )

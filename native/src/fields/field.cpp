@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "fields/anisotropy.hpp"
 #include "fields/known_data.hpp"
+#include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
@@ -33,6 +34,14 @@ constexpr double kWrongOrder = 0.5;
 constexpr std::size_t kFirstCenters = 600, kSampledContacts = 160, kSampledDips = 90,
                       kSampledForDistance = 2000;
 constexpr int kMostRounds = 40;
+constexpr std::size_t kSampledMisfits = 128;
+// Data are suspected if the field would miss them by more, as squares, than this times what four
+// fifths of the data are missed by without themselves, and than this share of the most.
+constexpr double kSuspect = 8, kAsMuch = 0.1;
+// What it takes to keep them, in variances of what is left. Exact data have up to 120, wrong ones
+// millions.
+constexpr double kPays = 400;
+constexpr double kApart = 0.1;  // of half of the lattice's diagonal
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
 
@@ -85,19 +94,15 @@ public:
         begin(0.3, 0.7, "field through the data");
     }
 
-    /// Rounds until all data are met.
+    /// Rounds until all data are met, but for those that contradict others.
     void solve() {
         fit();
         refuse_contradictions();
         inequalities_ = known_.inequalities();
         refuse_polarities();
         states_.assign(inequalities_.size(), {});
-        for (int round = 0; round < kMostRounds; ++round) {
-            const bool more_contacts = add_centers();
-            const bool more_bounds = activate();
-            const bool fewer = !more_bounds && !more_contacts && release();
-            if (!more_contacts && !more_bounds && !fewer) break;
-            fit();
+        meet();
+        for (int round = 0; round < kMostRounds && leave_out(); ++round) {
         }
     }
 
@@ -105,7 +110,7 @@ public:
         Field out;
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        out.values = lattice_values(
+        const auto at_nodes = lattice_values(
             lattice,
             [&](std::span<const Vec3> positions, std::span<double> values) {
                 std::vector<Vec3> local(positions.size());
@@ -116,19 +121,36 @@ public:
                     value *= unit;
             },
             execution_);
+        out.values = balanced(at_nodes, lattice, execution_);
         for (const double level : levels())
             out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
         report_missed(out);
+        std::vector<char> kept(known_.data().bounds.size(), 1);
+        for (const std::int64_t bound : out.bounds_missed)
+            kept[static_cast<std::size_t>(bound)] = 0;
+        keep_bounds(lattice, known_.data(), kept, out.levels, out.values);
         return out;
     }
 
 private:
     struct State {
         bool active = false, was_released = false, stays = false;
+        bool left_out = false;  ///< it contradicts other data
     };
+
+    /// Rounds in which contacts and inequalities get into the field, or out of it.
+    void meet() {
+        for (int round = 0; round < kMostRounds; ++round) {
+            const bool more_contacts = add_centers();
+            const bool more_bounds = activate();
+            const bool fewer = !more_bounds && !more_contacts && release();
+            if (!more_contacts && !more_bounds && !fewer) break;
+            fit();
+        }
+    }
 
     void begin(double from, double to, const char* text) const {
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
@@ -348,7 +370,7 @@ private:
     bool activate() {
         std::vector<std::pair<double, std::size_t>> missed;
         for (std::size_t n = 0; n < inequalities_.size(); ++n) {
-            if (states_[n].active) continue;
+            if (states_[n].active || states_[n].left_out) continue;
             const double lack = inequalities_[n].least - spline_->of(inequalities_[n].functional);
             if (lack > kMet) missed.emplace_back(-lack, n);
         }
@@ -375,6 +397,66 @@ private:
             any = true;
         }
         return any;
+    }
+
+    /// Takes out inequalities that contradict other data, if there are any: those that the field
+    /// would miss most without them. It pays if what is left needs so much less bending that each
+    /// of them had taken far more than chance; else they stay.
+    bool leave_out() {
+        const std::vector<std::size_t> suspects = suspected();
+        if (suspects.empty()) return false;
+        const std::vector<State> before = states_;
+        const double energy = spline_->energy();
+        for (State& state : states_)  // what was bent for those may be right again
+            state = {false, false, false, state.left_out};
+        for (const std::size_t n : suspects)
+            states_[n].left_out = true;
+        fit();
+        meet();
+        const double least = kPays * static_cast<double>(suspects.size()) * spline_->scale();
+        if (energy - spline_->energy() > least) return true;
+        states_ = before;
+        fit();
+        return false;
+    }
+
+    /// Active bounds and polarities that the field would miss most if they were left out, of
+    /// several near each other only one, since the others may be right.
+    std::vector<std::size_t> suspected() const {
+        std::vector<std::size_t> rows, numbers;
+        const std::size_t step = std::max<std::size_t>(1, first_active_ / kSampledMisfits);
+        for (std::size_t row = 0; row < first_active_; row += step)
+            rows.push_back(row);
+        const std::size_t sampled = rows.size();
+        std::size_t row = first_active_;
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            if (!states_[n].active) continue;
+            if (inequalities_[n].kind != Kind::kOrder) {
+                rows.push_back(row);
+                numbers.push_back(n);
+            }
+            ++row;
+        }
+        if (numbers.empty()) return {};
+        const std::vector<double> misfits = spline_->misfits_without(rows);
+        std::vector<double> sorted = misfits;
+        const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 4 / 5);
+        std::nth_element(sorted.begin(), usual, sorted.end());
+        const double most = *std::max_element(misfits.begin() + sampled, misfits.end());
+        const double least = std::max(kSuspect * *usual, kAsMuch * most);
+        std::vector<std::pair<double, std::size_t>> found;
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            if (misfits[sampled + k] > least) found.emplace_back(-misfits[sampled + k], numbers[k]);
+        }
+        std::sort(found.begin(), found.end());
+        std::vector<std::size_t> out;
+        for (const auto& [misfit, n] : found) {
+            const auto is_near = [&](std::size_t other) {
+                return length(minus(inequalities_[n].at, inequalities_[other].at)) < kApart;
+            };
+            if (std::ranges::none_of(out, is_near)) out.push_back(n);
+        }
+        return out;
     }
 
     void refuse_contradictions() const {
@@ -457,7 +539,7 @@ private:
     void report_missed(Field& out) const {
         for (const Inequality& inequality : inequalities_) {
             const double lack = inequality.least - spline_->of(inequality.functional);
-            if (lack <= 1e3 * kMet) continue;
+            if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
             auto& missed = inequality.kind == Kind::kPolarity ? out.dips_missed : out.bounds_missed;
             if (missed.empty() || missed.back() != inequality.item)
                 missed.push_back(inequality.item);

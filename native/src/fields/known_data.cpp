@@ -7,14 +7,14 @@
 #include <map>
 #include <string>
 
-#include "fields/lattice_weights.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
 
 namespace {
 
-constexpr double kLeastRise = 0.02;  // along the normal of a dip, of the mean
+// Of the mean: how much f rises at least along the normal of a dip, and from a level to the next.
+constexpr double kLeastRise = 0.02;
 // Of the largest moment of what is known: what a tilt that is known has at least.
 constexpr double kKnownTilt = 1e-10;
 
@@ -29,8 +29,7 @@ Frame::Frame(const Lattice& lattice) : middle{}, unit(0) {
     unit = std::sqrt(unit);
 }
 
-KnownData::KnownData(const Lattice& lattice, const FieldData& data)
-    : lattice_(lattice), data_(data), frame_(lattice) {
+KnownData::KnownData(const Lattice& lattice, const FieldData& data) : data_(data), frame_(lattice) {
     check(lattice);
     for (const Vec3& contact : data.contacts)
         contacts_.push_back(frame_.to_local(contact));
@@ -203,28 +202,35 @@ void KnownData::hold_tilts() {
     }
 }
 
-/// sign (f at a bound - the level of a surface), f as it is on the tetrahedron there.
+/// sign (f at a bound - the level of a surface)
 Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) const {
-    Functional out;
-    for (const auto& [position, weight] : corners_at(lattice_, data_.bounds[n])) {
-        if (weight > 0) out.values.push_back({frame_.to_local(position), sign * weight});
-    }
-    out.values.push_back({contacts_[reference(surface)], -sign, true});
-    return out;
+    return {
+        {{frame_.to_local(data_.bounds[n]), sign}, {contacts_[reference(surface)], -sign, true}},
+        {},
+        0,
+        false};
 }
 
 std::vector<Inequality> KnownData::inequalities() const {
+    using Kind = Inequality::Kind;
     std::vector<Inequality> out;
+    for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
+        const Vec3 &older = contacts_[reference(k)], &younger = contacts_[reference(k + 1)];
+        out.push_back({Functional::difference(younger, older),
+                       kLeastRise * total_gap() / data_.surfaces, Kind::kOrder, k, younger});
+    }
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
-        out.push_back({Functional::slope(frame_.to_local(data_.dips[n]), data_.normals[n]),
-                       kLeastRise, Inequality::Kind::kPolarity, static_cast<std::int64_t>(n)});
+        const Vec3 at = frame_.to_local(data_.dips[n]);
+        out.push_back({Functional::slope(at, data_.normals[n]), kLeastRise, Kind::kPolarity,
+                       static_cast<std::int64_t>(n), at});
     }
     for (std::size_t n = 0; n < data_.bounds.size(); ++n) {
         const auto item = static_cast<std::int64_t>(n);
+        const Vec3 at = frame_.to_local(data_.bounds[n]);
         if (data_.bound_below[n] >= 0)
-            out.push_back({bound(n, data_.bound_below[n], 1), 0, Inequality::Kind::kBound, item});
+            out.push_back({bound(n, data_.bound_below[n], 1), 0, Kind::kBound, item, at});
         if (data_.bound_above[n] >= 0)
-            out.push_back({bound(n, data_.bound_above[n], -1), 0, Inequality::Kind::kBound, item});
+            out.push_back({bound(n, data_.bound_above[n], -1), 0, Kind::kBound, item, at});
     }
     return out;
 }

@@ -22,12 +22,13 @@ struct Frame {
 
 /// f of a functional is at least so much.
 struct Inequality {
-    enum class Kind { kPolarity, kBound };
+    enum class Kind { kOrder, kPolarity, kBound };
 
     Functional functional;
     double least;
     Kind kind;
-    std::int64_t item;  ///< the dip or the bound
+    std::int64_t item;  ///< the older surface, the dip or the bound
+    Vec3 at;            ///< about where
 };
 
 /// The data as functionals, in a frame.
@@ -51,7 +52,7 @@ public:
         return Functional::difference(contacts_[contact],
                                       contacts_[references_[surface_of(contact)]]);
     }
-    /// Polarities and bounds.
+    /// Levels that rise, polarities and bounds.
     std::vector<Inequality> inequalities() const;
     /// About the distance of the first surface from the last.
     double total_gap() const;
@@ -67,7 +68,6 @@ private:
     void hold_tilts();
     Functional bound(std::size_t n, std::int32_t surface, double sign) const;
 
-    const Lattice& lattice_;
     FieldData data_;
     Frame frame_;
     std::vector<Vec3> contacts_;

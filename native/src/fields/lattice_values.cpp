@@ -96,4 +96,37 @@ std::vector<double> lattice_values(
     return values;
 }
 
+std::vector<double> balanced(const std::vector<double>& values, const Lattice& lattice,
+                             const Execution& execution) {
+    const Counts& counts = lattice.counts;
+    // On a tetrahedron the error is half of the sum of w_a w_b d_ab^T H d_ab over its edges d_ab,
+    // with weights w whose products are 1/20 in the mean. Over the six of a cell these are second
+    // differences along x, y, z and the diagonal.
+    std::vector<double> out = values;
+    if (*std::ranges::min_element(counts) < 3) return out;
+    const auto nx = static_cast<std::ptrdiff_t>(counts[0]);
+    const auto ny = static_cast<std::ptrdiff_t>(counts[1]);
+    const std::array steps{std::ptrdiff_t{1}, nx, nx * ny, 1 + nx + nx * ny};
+    parallel_ranges(
+        values.size(), 4096, execution,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                const auto node = static_cast<std::ptrdiff_t>(n);
+                // at the border those of the next node inside
+                const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(node % nx, 1, counts[0] - 2);
+                const std::ptrdiff_t j =
+                    std::clamp<std::ptrdiff_t>(node / nx % ny, 1, counts[1] - 2);
+                const std::ptrdiff_t k =
+                    std::clamp<std::ptrdiff_t>(node / (nx * ny), 1, counts[2] - 2);
+                const double* const at = &values[static_cast<std::size_t>(i + nx * (j + ny * k))];
+                double sum = 0;
+                for (const std::ptrdiff_t step : steps)
+                    sum += at[step] - 2 * at[0] + at[-step];
+                out[n] -= sum / 24;
+            }
+        },
+        0.0);
+    return out;
+}
+
 }  // namespace realmodel::fields

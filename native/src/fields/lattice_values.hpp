@@ -20,4 +20,10 @@ std::vector<double> lattice_values(
     const std::function<void(std::span<const Vec3>, std::span<double>)>& values_at,
     const Execution& execution);
 
+/// Between nodes a linear function lies above one that bends upward, and below one that bends
+/// downward: its level sets lie within folds. Node values from which the mean of this error over
+/// the tetrahedra around them is taken err to neither side.
+std::vector<double> balanced(const std::vector<double>& values, const Lattice& lattice,
+                             const Execution& execution);
+
 }  // namespace realmodel::fields

@@ -11,9 +11,9 @@
 
 namespace realmodel::fields {
 
-/// The corners of the tetrahedron that a point of the lattice lies in, with its weights.
-inline std::array<std::pair<Vec3, double>, 4> corners_at(const Lattice& lattice,
-                                                         const Vec3& point) {
+/// The nodes of the tetrahedron that a point of the lattice lies in, with its weights.
+inline std::array<std::pair<std::size_t, double>, 4> corners_at(const Lattice& lattice,
+                                                                const Vec3& point) {
     std::array<int, 3> cell{};
     Vec3 share{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -24,12 +24,18 @@ inline std::array<std::pair<Vec3, double>, 4> corners_at(const Lattice& lattice,
     std::array<std::size_t, 3> walk{0, 1, 2};
     std::stable_sort(walk.begin(), walk.end(),
                      [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
-    std::array<std::pair<Vec3, double>, 4> out;
+    const auto nx = static_cast<std::size_t>(lattice.counts[0]);
+    const auto ny = static_cast<std::size_t>(lattice.counts[1]);
+    const std::array<std::size_t, 3> strides{1, nx, nx * ny};
+    std::size_t node = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        node += strides[axis] * static_cast<std::size_t>(cell[axis]);
+    std::array<std::pair<std::size_t, double>, 4> out;
     double last = 1;
     for (std::size_t n = 0; n < 4; ++n) {
         const double next = n < 3 ? share[walk[n]] : 0;
-        out[n] = {lattice.position(cell[0], cell[1], cell[2]), last - next};
-        if (n < 3) ++cell[walk[n]];
+        out[n] = {node, last - next};
+        if (n < 3) node += strides[walk[n]];
         last = next;
     }
     return out;

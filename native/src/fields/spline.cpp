@@ -100,10 +100,36 @@ std::optional<double> Spline::log_likelihood() const {
                    coordinates_log_determinant_);
 }
 
-double Spline::scale() const {
+double Spline::energy() const {
     const Eigen::Vector3d tilt(tilt_[0], tilt_[1], tilt_[2]);
-    const double misfit = products_(0, 0) - products_.block<1, 3>(0, 1).dot(tilt);
-    return known_.size() > 3 ? misfit / static_cast<double>(known_.size() - 3) : 0;
+    return products_(0, 0) - products_.block<1, 3>(0, 1).dot(tilt);
+}
+
+double Spline::scale() const {
+    return known_.size() > 3 ? energy() / static_cast<double>(known_.size() - 3) : 0;
+}
+
+/// With the inverse V of the matrix and the weights w these are w_i^2 / V_ii (Dubrule 1983, "Cross
+/// validation of kriging in a unique neighborhood").
+std::vector<double> Spline::misfits_without(std::span<const std::size_t> functionals) const {
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    std::vector<double> out;
+    for (std::size_t first = 0; first < functionals.size(); first += kBlock) {
+        const auto count =
+            static_cast<Eigen::Index>(std::min<std::size_t>(kBlock, functionals.size() - first));
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, count);
+        for (Eigen::Index k = 0; k < count; ++k) {
+            const std::size_t row = functionals[first + static_cast<std::size_t>(k)];
+            columns(static_cast<Eigen::Index>(row), k) = scales_(static_cast<Eigen::Index>(row));
+        }
+        factor_->solve(columns, nullptr);
+        for (Eigen::Index k = 0; k < count; ++k) {
+            const double force = forces_[functionals[first + static_cast<std::size_t>(k)]];
+            const double inverse = columns.col(k).squaredNorm();
+            out.push_back(inverse > 0 ? force * force / inverse : 0);
+        }
+    }
+    return out;
 }
 
 bool Spline::left_out(std::size_t functional) const {

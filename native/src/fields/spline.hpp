@@ -40,6 +40,9 @@ public:
 
     /// How much force a functional takes: 0 where the function would meet it anyhow.
     double force(std::size_t functional) const { return forces_[functional]; }
+    /// How well functionals fit those around them: the square of what each would be missed by if it
+    /// were left out, by its variance per unit of the kernel. In the mean it is scale().
+    std::vector<double> misfits_without(std::span<const std::size_t> functionals) const;
     /// Whether a functional follows from those before it, and was left out.
     bool left_out(std::size_t functional) const;
 
@@ -47,6 +50,8 @@ public:
     Vec3 gradient(const Vec3& at) const;
     /// With the errors of measured values.
     double of(const Functional& functional) const;
+    /// How much the function bends.
+    double energy() const;
     /// The variance of the random function per unit of the kernel, as the data have it.
     double scale() const;
 

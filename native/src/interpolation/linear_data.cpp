@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "interpolation/linear_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -30,6 +31,25 @@ void check_dips(const Dips& dips) {
                              "dip " + std::to_string(i) + " is not a finite number below 1e150", -1,
                              {static_cast<std::int64_t>(i)});
         }
+    }
+}
+
+void check_sheets(const Sheets& sheets, std::size_t points, std::size_t dips) {
+    if (sheets.variances.empty()) return;
+    check_variogram(sheets.thickness);
+    const auto count = static_cast<std::int32_t>(sheets.variances.size());
+    const auto is_sheet = [&](std::int32_t sheet) { return sheet >= 0 && sheet < count; };
+    if (sheets.of_points.size() != points || sheets.of_dips.size() != dips)
+        throw InputError("option", "each point and each dip must be on one of the sheets");
+    if (!is_sheet(sheets.asked) ||
+        !std::all_of(sheets.of_points.begin(), sheets.of_points.end(), is_sheet) ||
+        !std::all_of(sheets.of_dips.begin(), sheets.of_dips.end(), is_sheet))
+        throw InputError("option", "there is no such sheet");
+    double before = 0;
+    for (const double variance : sheets.variances) {
+        if (!(variance >= before) || !usable(variance))
+            throw InputError("option", "variances of sheets must be finite, and ascend from 0");
+        before = variance;
     }
 }
 

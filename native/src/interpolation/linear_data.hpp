@@ -12,6 +12,7 @@
 #include "interpolation/data_points.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "realmodel/interpolation/dips.hpp"
+#include "realmodel/interpolation/sheets.hpp"
 #include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
@@ -40,6 +41,10 @@ double of_two(const Kernel& kernel, const Position& a, std::int32_t on_a, const 
 
 /// @throws InputError kind "not_finite" (items: the dip), "option", "too_large"
 void check_dips(const Dips& dips);
+
+/// @throws InputError kind "option" where sheets do not fit so many points and dips, or kinds of
+/// check_variogram
+void check_sheets(const Sheets& sheets, std::size_t points, std::size_t dips);
 
 /// What is known of a surface: linear functionals of it. They are numbered: first come the heights
 /// of points, then two differences for each dip, along x and along y.

@@ -45,13 +45,17 @@ public:
     std::vector<std::array<HalfEdge, 3>> twins;        ///< none: on the border
     std::vector<std::uint8_t> marks;                   ///< bit i: fixed; bit 3 + i: locked
 
-    std::int32_t from(HalfEdge edge) const { return corners[edge.triangle()][edge.index()]; }
-    std::int32_t to(HalfEdge edge) const { return from(edge.next()); }
-    std::int32_t apex(HalfEdge edge) const { return from(edge.prev()); }
+    [[gnu::always_inline]] std::int32_t from(HalfEdge edge) const {
+        return corners[edge.triangle()][edge.index()];
+    }
+    [[gnu::always_inline]] std::int32_t to(HalfEdge edge) const { return from(edge.next()); }
+    [[gnu::always_inline]] std::int32_t apex(HalfEdge edge) const { return from(edge.prev()); }
     const PlanPoint& origin_point(HalfEdge edge) const { return points[from(edge)]; }
     const PlanPoint& target_point(HalfEdge edge) const { return points[to(edge)]; }
     const PlanPoint& apex_point(HalfEdge edge) const { return points[apex(edge)]; }
-    HalfEdge twin(HalfEdge edge) const { return twins[edge.triangle()][edge.index()]; }
+    [[gnu::always_inline]] HalfEdge twin(HalfEdge edge) const {
+        return twins[edge.triangle()][edge.index()];
+    }
     bool is_border(HalfEdge edge) const { return twin(edge).is_none(); }
     bool is_fixed(HalfEdge edge) const { return (marks[edge.triangle()] >> edge.index() & 1) != 0; }
     bool is_locked(HalfEdge edge) const {

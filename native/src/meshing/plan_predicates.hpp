@@ -21,7 +21,8 @@ int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c
 /// Side of the line from a to b on which p lies: 1 left, -1 right, 0 on it. Exact; the error bound
 /// that spares most calls the exact arithmetic is that of Shewchuk 1997, "Adaptive precision
 /// floating-point arithmetic and fast robust geometric predicates", section 4.
-inline int orient2d(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+[[gnu::always_inline]] inline int orient2d(const PlanPoint& a, const PlanPoint& b,
+                                           const PlanPoint& p) {
     const double left = (a[0] - p[0]) * (b[1] - p[1]), right = (a[1] - p[1]) * (b[0] - p[0]);
     const double det = left - right;
     const double bound =
@@ -33,8 +34,8 @@ inline int orient2d(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) 
 
 /// 1 where p lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
 /// Exact, with the error bound of the same paper.
-inline int in_circle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                     const PlanPoint& p) {
+[[gnu::always_inline]] inline int in_circle(const PlanPoint& a, const PlanPoint& b,
+                                            const PlanPoint& c, const PlanPoint& p) {
     const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1],
                  cx = c[0] - p[0], cy = c[1] - p[1];
     const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by,

@@ -300,6 +300,7 @@ BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutt
 /// How near to points of constraints other vertices and fixed edges are: angles there are improved
 /// down to that, since these points were asked for, and not drawn with an outline.
 double Meshing::room_at_loners(const FlatMesh& flat) const {
+    if (graph_.loners.empty()) return HUGE_VAL;
     std::vector<bool> is_loner(flat.points.size(), false);
     for (const std::int32_t v : graph_.loners)
         is_loner[v] = true;

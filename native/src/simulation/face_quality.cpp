@@ -10,14 +10,16 @@ namespace realmodel::simulation {
 namespace {
 
 /// How far from its center a face is crossed, as checkMesh measures it: 1 is the edge of the face.
+/// 0 where the line alone shows that it is less than kMostSkewness.
 /// @param way  from the center of an element to that of the face
 /// @param line  from there to the other element; at the outside to the plane of the face, upright
 /// @param share  of the length of the line that counts as the size of a smaller face
 double skewness(const ElementFace& face, const Vec3& way, const Vec3& line, double share) {
     const double ratio = dot(way, face.area) / dot(line, face.area);
     const Vec3 off = minus(way, times(ratio, line));  // from where the line crosses the face
+    constexpr double kClear = 0.99 * kMostSkewness;
+    if (dot(off, off) <= kClear * kClear * share * share * dot(line, line)) return 0;
     const double far = length(off);
-    if (far == 0) return 0;
     double reach = share * length(line);
     for (const Vec3& corner : face.corners)
         reach = std::max(reach, std::abs(dot(off, minus(corner, face.center))) / far);

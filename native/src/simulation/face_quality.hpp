@@ -32,7 +32,7 @@ ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>&
                       const std::array<double, 2>& high);
 
 /// How far from its center a face is crossed by the line between the centers of its elements: 1 is
-/// the edge of the face.
+/// the edge of the face. 0 where it is clearly less than kMostSkewness.
 double inner_skewness(const ElementFace& face, const Vec3& own, const Vec3& other);
 /// The same at the outside, where the line is upright on the face.
 double outer_skewness(const ElementFace& face, const Vec3& own);

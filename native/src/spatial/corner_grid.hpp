@@ -65,7 +65,8 @@ private:
     void set_used(Level& level, std::int32_t cell, bool is_used);
     void clear(std::int32_t level, std::int32_t cell);
 
-    static std::int32_t cell_along(double offset, const Level& level, std::int32_t count) {
+    [[gnu::always_inline]] static std::int32_t cell_along(double offset, const Level& level,
+                                                          std::int32_t count) {
         return static_cast<std::int32_t>(
             std::clamp(offset * level.cells_per_unit, 0.0, static_cast<double>(count - 1)));
     }
@@ -99,8 +100,8 @@ private:
 };
 
 /// Takes in the part of the segment ab between the lines y = bottom and y = top.
-inline void widen_by_band(double& low, double& high, const PlanPosition& a, const PlanPosition& b,
-                          double bottom, double top) {
+[[gnu::always_inline]] inline void widen_by_band(double& low, double& high, const PlanPosition& a,
+                                                 const PlanPosition& b, double bottom, double top) {
     if ((a[1] < bottom && b[1] < bottom) || (a[1] > top && b[1] > top)) return;
     const double rise = b[1] - a[1], run = b[0] - a[0];
     for (const double y : {std::clamp(a[1], bottom, top), std::clamp(b[1], bottom, top)}) {

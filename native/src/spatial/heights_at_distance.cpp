@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/spatial/queries.hpp"
+#include "spatial/hilbert_order.hpp"
 #include "spatial/space_triangles.hpp"
 
 namespace realmodel::spatial {
@@ -76,12 +78,21 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
         throw InputError("bad_index", "a height and a distance of each position are needed");
     const BoxTree tree(boxes_of(triangles), execution.progress);
     std::vector<double> found(positions.size(), HUGE_VAL);
-    const auto at = [&](std::size_t i) {
+    // `support`: a triangle that may ask for most, as it did at a position nearby; then the one
+    // that does.
+    const auto at = [&](std::size_t i, std::int32_t& support) {
         if (!std::isfinite(own[i]) || !(away[i] > 0)) return own[i];
         const Vec3 under{positions[i][0], positions[i][1], own[i]};
+        const auto asked = [&](std::int32_t t) {
+            SpaceTriangle moved_there = triangles[index(t)];
+            for (Vec3& corner : moved_there)
+                corner = minus(corner, under);
+            return over_triangle(moved_there, away[i]);
+        };
+        double above = away[i];
+        if (support >= 0) above = std::max(above, asked(support));
         // Above a sheet its distance does not shrink upward. So of a height that is too low the
         // nearest triangle is one that asks for more; the last of them asks for the most.
-        double above = away[i];
         for (;;) {
             double least = away[i], higher = above;
             const Vec3 p{under[0], under[1], under[2] + above};
@@ -90,22 +101,23 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
                 [&](std::int32_t t) {
                     const double distance = triangle_distance(p, triangles[index(t)]);
                     if (!(distance < least)) return;
-                    SpaceTriangle moved_there = triangles[index(t)];
-                    for (Vec3& corner : moved_there)
-                        corner = minus(corner, under);
-                    const double asked = over_triangle(moved_there, away[i]);
-                    if (!(asked > above)) return;
+                    const double by_this = asked(t);
+                    if (!(by_this > above)) return;
                     least = distance;
-                    higher = std::max(higher, asked);
+                    if (!(by_this > higher)) return;
+                    higher = by_this;
+                    support = t;
                 });
             if (!(higher > above)) return own[i] + above;
             above = higher;
         }
     };
+    const std::vector<std::uint32_t> order = along_hilbert_curve(positions);
     parallel_ranges(positions.size(), kPositionsOfChunk, execution,
                     [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                            found[i] = at(i);
+                        std::int32_t support = -1;
+                        for (std::size_t k = begin; k < end; ++k)
+                            found[order[k]] = at(order[k], support);
                     });
     return found;
 }

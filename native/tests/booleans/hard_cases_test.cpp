@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "../sanitized.hpp"
 #include "realmodel/booleans/intersect.hpp"
 #include "refined_meshes.hpp"
 #include "small_meshes.hpp"
@@ -16,7 +17,7 @@ namespace {
 TEST(IntersectHard, FiftyOperationsOneAfterAnother) {
     Mesh solid = sphere({0, 0, 0}, 1, 8);
     double volume = solid.volume();
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < (kSanitized ? 20 : 50); ++i) {
         Mesh tool = i % 3 == 0 ? cube({-0.2, -0.2, -0.2}, 0.4) : sphere({0, 0, 0}, 0.25, 4);
         rotate(tool, 0.7 * i, static_cast<std::size_t>(i) % 3);
         const double angle = 2.4 * i, height = 1 - 2 * (i + 0.5) / 50,
@@ -62,7 +63,7 @@ TEST(IntersectHard, CubesThatTouchInAnEdgeOrACorner) {
 }
 
 TEST(IntersectHard, ACubeTurnedInPlaceManyTimes) {
-    for (int i = 1; i < 40; ++i) {
+    for (int i = 1; i < 40; i += kSanitized ? 3 : 1) {
         const Mesh a = cube({-1, -1, -1}, 2);
         Mesh b = a;
         rotate(b, std::pow(0.4, i), 2);  // nearly in the planes of its top and bottom

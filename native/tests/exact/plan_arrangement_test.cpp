@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "../sanitized.hpp"
 #include "exact/arithmetic.hpp"
 #include "exact/local_arrangement.hpp"
 #include "exact/orient2d.hpp"
@@ -109,7 +110,7 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
               const std::function<double(std::mt19937_64&)>& height) {
     std::mt19937_64 random(seed);
     Tally tally;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < (kSanitized ? rounds / 2 : rounds); ++round) {
         Trial trial;
         fill(
             trial, random, [&] { return plan(random); }, [&] { return height(random); });

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+
+#include "fields/lattice_weights.hpp"
 
 namespace realmodel::fields {
 namespace {
@@ -48,6 +51,49 @@ TEST(LatticeValues, ALargeLatticeTakesAnEighthOfTheEvaluations) {
     evaluated = 0;
     lattice_values(kSmall, count, {1, nullptr});
     EXPECT_EQ(evaluated, kSmall.nodes());
+}
+
+/// The mean over random points of what a function linear on the tetrahedra lies above another.
+TEST(LatticeValues, BalancedOnesErrToNeitherSide) {
+    const auto bowl = [](const Vec3& p) {
+        return p[0] * p[0] + 0.5 * p[1] * p[1] - p[0] * p[2] + 2 * p[2] * p[2] + p[1];
+    };
+    std::vector<double> values;
+    for (int k = 0; k < kSmall.counts[2]; ++k) {
+        for (int j = 0; j < kSmall.counts[1]; ++j) {
+            for (int i = 0; i < kSmall.counts[0]; ++i)
+                values.push_back(bowl(kSmall.position(i, j, k)));
+        }
+    }
+    const auto mean_above = [&](const std::vector<double>& of) {
+        std::mt19937_64 random(1);
+        double sum = 0;
+        constexpr int kPoints = 20000;
+        for (int n = 0; n < kPoints; ++n) {
+            Vec3 p{};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+                p[axis] =
+                    kSmall.origin[axis] + share * kSmall.spacing[axis] * (kSmall.counts[axis] - 1);
+            }
+            for (const auto& [node, weight] : corners_at(kSmall, p))
+                sum += weight * of[node];
+            sum -= bowl(p);
+        }
+        return sum / kPoints;
+    };
+    const double plain = mean_above(values);
+    EXPECT_GT(plain, 0.01);
+    EXPECT_LT(std::abs(mean_above(balanced(values, kSmall, {}))), 0.01 * plain);
+    EXPECT_EQ(balanced(values, kSmall, {1, nullptr}), balanced(values, kSmall, {5, nullptr}));
+}
+
+TEST(LatticeValues, BalancedLinearOnesStay) {
+    const std::vector<double> level(kSmall.nodes(), 3.5);
+    EXPECT_EQ(balanced(level, kSmall, {}), level);
+    const Lattice least{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+    const std::vector<double> few{0, 1, 2, 3, 4, 5, 6, 9};
+    EXPECT_EQ(balanced(few, least, {}), few);
 }
 
 TEST(LatticeValues, TheSameForAnyNumberOfThreads) {

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core import Cancelled, RealModelError
 from ...core.base import work
-from ...core.display.field_shapes import field_levels, field_range, field_section
+from ...core.display.field_shapes import field_levels, field_range, field_section, field_surfaces
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
@@ -63,7 +63,9 @@ def key(scene):
     low, high = scene.realmodel.view.field_limits
     if not high > low:
         return None
-    return ColorKey(f"Field of {shown_series(scene)}", limits=(low, high), colors=_colors())
+    names = json.loads(scene.realmodel.view.field_surfaces or "[]")
+    there = tuple((name, value) for name, value in names if low <= value <= high)
+    return ColorKey(f"Field of {shown_series(scene)}", limits=(low, high), colors=_colors(), names=there)
 
 
 def is_working(scene):
@@ -106,16 +108,17 @@ def _begun(scene, wanted):
             section = field_section(model, name, model.section(*wanted["plane"], threads()), edges)
         values = np.linspace(*limits, 2 * wanted["levels"] + 1)[1::2]  # in the middles of as many bands
         levels = field_levels(model, name, values) if wanted["levels"] else None
-        return wanted, request, limits, section, levels
+        return wanted, request, (limits, field_surfaces(model, name)), section, levels
 
     return work.start(task, threads())
 
 
 def _take(scene, made):
-    wanted, request, limits, section, levels = made
+    wanted, request, (limits, surfaces), section, levels = made
     request.keep()
     view = scene.realmodel.view
-    view.field_limits, view.field_of = limits, json.dumps(wanted)
+    view.field_limits, view.field_surfaces = limits, json.dumps(surfaces)
+    view.field_of = json.dumps(wanted)
     for kind in (SECTION, LEVELS):
         bodies.remove(scene, kind)
     if section is not None:

@@ -60,7 +60,9 @@ def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     low, high = explosion.bounds(scene)
     shown = Shown(low + origin, high + origin, placed, group.units, factor)
     arrays = eye.projection, eye.back, eye.right, eye.up, shown.low, shown.high, shown.placed
-    of_keys = tuple((k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes()) for k in keys)
+    of_keys = tuple(
+        (k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes(), *k.names) for k in keys
+    )
     of_parts = of_keys, *parts, *labels, tuple(margins)
     name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, *of_parts)
     if name not in _drawings:

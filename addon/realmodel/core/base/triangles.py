@@ -47,10 +47,16 @@ def edges_of(triangles: np.ndarray) -> np.ndarray:
     return np.concatenate([triangles[:, pair] for pair in _EDGES])
 
 
+def edge_lengths(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(3 T,) the lengths of the edges that edges_of gives, between vertices in plan or in space."""
+    corners = np.ascontiguousarray(vertices.T)[:, triangles.T]
+    step = corners[:, [1, 2, 0]] - corners
+    return np.sqrt((step * step).sum(axis=0)).ravel()
+
+
 def median_edge(plan: np.ndarray, triangles: np.ndarray) -> float:
     """The median length of the edges of triangles in plan."""
-    begin, end = plan[edges_of(triangles)].transpose(1, 0, 2)
-    return float(np.median(norm(end - begin)))
+    return float(np.median(edge_lengths(plan, triangles)))
 
 
 def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:

@@ -7,14 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.algebra import norm
 from ..base.work import Work, native_module
 from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
+from ..fields.series_field import SeriesField
+from ..results.model_fields import local_compartments
 from ..surfaces.sides import fault_sides
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
 _INWARDS = 1e-5  # of the distance from a corner to the inner point
 _NO_LAYER = -1
+_SAMPLES = 4096  # corners of a layer by which its mean thickness is measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +104,7 @@ def bedding_of(work: Work, model: ModelData, faces: np.ndarray, is_second: np.nd
     is_top[is_top] = ~seen_from_below(model, faces[is_top])
     age = np.array([_age(model, number, layer) for number in range(len(model.blocks))], np.float32)
     found = Bedding(height, thickness, depth, is_top, age[block])
+    found = _with_series(model, found, faces, is_second, cells)
     body = np.where(layer == _NO_LAYER, surface, -1)
     return _with_bodies(model, found, faces, is_second, body[block])
 
@@ -124,6 +129,45 @@ def _with_bodies(model: ModelData, found: Bedding, faces, is_second, body: np.nd
         thickness[own] = np.ptp(levels)
         height[own] = np.clip((model.vertices[corners[own], 2] - levels.min()) / np.ptp(levels), 0.0, 1.0)
     return replace(found, height=height, thickness=thickness)
+
+
+def _with_series(model: ModelData, found: Bedding, faces, is_second, cells) -> Bedding:
+    """Heights and thicknesses of the layers of series by their fields, also where these are vertical or
+    overturned. The thickness of a layer is its mean, so that laminae are level sets of the field. The oldest
+    layer of a series begins at the least value of the field in it."""
+    if not any(entry.fields for entry in model.rock_inputs):
+        return found
+    offsets, corners = model.face_corners(faces, is_second)
+    beneath = np.array([block.surface for block in model.blocks], np.int64)[model.cell_block[cells]]
+    height, thickness, first = found.height.copy(), found.thickness.copy(), 0
+    for entry in model.rock_inputs:
+        for own in entry.fields:
+            compartments = local_compartments(model, entry)[model.cell_compartment[cells]]
+            for number in own.numbers:
+                polygons = np.flatnonzero(beneath == first + number)
+                rows = _runs(offsets, polygons)
+                where = np.repeat(compartments[polygons], np.diff(offsets)[polygons])
+                share, mean = _in_layer(own, number, model.vertices[corners[rows]], where)
+                known = np.isfinite(share)
+                height[rows[known]], thickness[rows[known]] = share[known], mean
+        first += len(entry.rock.surfaces)
+    return replace(found, height=height, thickness=thickness)
+
+
+def _in_layer(own: SeriesField, surface: int, points: np.ndarray, where: np.ndarray):
+    """(N,) the shares of the height of the layer beneath a surface of a series at points (N, 3), NaN where
+    the field is not known, and the mean thickness of the layer."""
+    above = -own.excess(surface, points, where)
+    above[~np.isfinite(above)] = np.nan
+    if np.isnan(above).all():
+        return above, 0.0
+    whole = np.full(len(above), np.nanmax(above))
+    if surface > own.first:
+        whole = above + own.excess(surface - 1, points, where)
+    chosen = np.flatnonzero(np.isfinite(above))[:: max(1, len(above) // _SAMPLES)]
+    steep = norm(own.slopes(points[chosen], where[chosen])).mean()
+    share = np.clip(1.0 - above / np.where(whole > 0, whole, np.nan), 0.0, 1.0)
+    return share, float(np.nanmean(whole) / steep) if steep > 0 else 0.0
 
 
 def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from ..cells.model_data import ModelData
 from ..fields import level_solids, within_lattice
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
-from ..results.model_fields import names_of_compartments
+from ..results.model_fields import local_compartments
 from ..results.section_data import SectionData
 from ..surfaces.rock_input import RockInput
 
@@ -38,10 +38,20 @@ def field_range(model: ModelData, series: str) -> tuple[float, float]:
     offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
     behind = model.face_cells[faces]
     cell = np.where(np.isin(behind[:, 0], cells), behind[:, 0], behind[:, 1])
-    where = _local(model, entry)[model.cell_compartment[np.repeat(cell, np.diff(offsets))]]
+    where = local_compartments(model, entry)[model.cell_compartment[np.repeat(cell, np.diff(offsets))]]
     values = _values(own, model.vertices[corners], where)
     values = values[np.isfinite(values)]
     return (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
+
+
+def field_surfaces(model: ModelData, series: str) -> list[tuple[str, float]]:
+    """The surfaces of a series, oldest first, and the value of its field on each. Raises UsageError where
+    there is no such field."""
+    _, entry, own = _found(model, series)
+    levels = own.fields[0].levels.tolist()
+    return [
+        (entry.rock.surfaces[number].name, level) for number, level in zip(own.numbers, levels, strict=False)
+    ]
 
 
 def field_section(
@@ -58,7 +68,7 @@ def field_section(
     polygon = np.repeat(np.arange(len(found)), np.diff(begins))
     chosen = kept[polygon]
     places = found.vertices[corners[chosen]]
-    where = _local(model, entry)[found.compartment[polygon[chosen]]]
+    where = local_compartments(model, entry)[found.compartment[polygon[chosen]]]
     longest = _FINE * min(field.lattice.spacing[0] for field in own.fields)
     places, where = _halved(places, where, longest)
     of_corners = _values(own, places.reshape(-1, 3), np.repeat(where, 3)).reshape(-1, 3)
@@ -105,15 +115,6 @@ def _blocks_of(model: ModelData, rock: int, own: SeriesField) -> np.ndarray:
     first = sum(len(entry.rock.surfaces) for entry in model.rock_inputs[:rock])
     surfaces = [first + number for number in own.numbers]
     return np.array([n for n, block in enumerate(model.blocks) if block.surface in surfaces], np.int64)
-
-
-def _local(model: ModelData, entry: RockInput) -> np.ndarray:
-    """For each compartment of a model its number in a rock mass; -1 where it is of another."""
-    names = names_of_compartments(model, entry)
-    known = {name: number for number, name in enumerate(names)}
-    if len(names) == 1:
-        return np.zeros(max(len(model.compartment_names), 1), np.int64)
-    return np.array([known.get(name, -1) for name in model.compartment_names], np.int64)
 
 
 def _values(own: SeriesField, points: np.ndarray, where: np.ndarray) -> np.ndarray:

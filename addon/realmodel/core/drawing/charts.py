@@ -134,22 +134,42 @@ def color_bar(
     box: tuple[float, float, float, float],
     limits: tuple[float, float],
     colors: np.ndarray,
-    label="",
+    names: Sequence[tuple[str, float]] = (),
     size=8.0,
 ) -> None:
-    """An upright bar of colors (N, 3), the lowest first, in a box (x, y, width, height), with numbers."""
+    """An upright bar of colors (N, 3), the lowest first, in a box (x, y, width, height), with numbers beside
+    it. names: of values, in place of the numbers."""
     x, y, width, height = box
     step = height / len(colors)
     for number, color in enumerate(np.asarray(colors)[:, :3].tolist()):
         drawing.rectangle((x, y + number * step, width, height - number * step), tuple(color))
     drawing.rectangle(box, stroke=BLACK, line=0.6)
+    marks = bar_marks(limits, height, names, size)
+    levels = [y + height * ((value - limits[0]) / ((limits[1] - limits[0]) or 1.0)) for _, value in marks]
+    for (text, _), at, base in zip(marks, levels, _apart(levels, 1.1 * size), strict=True):
+        drawing.line([(x + width, at), (x + width + _TICK, base)], width=0.6)
+        drawing.text(x + width + _TICK + 2, base - 0.36 * size, text, size)
+
+
+def bar_marks(
+    limits: tuple[float, float], height: float, names: Sequence[tuple[str, float]] = (), size=8.0
+) -> list[tuple[str, float]]:
+    """What stands beside a bar of colors of a height: texts, and the values that they are at, rising."""
+    if len(names):
+        return sorted(names, key=lambda mark: mark[1])
     values = ticks(*limits, max(3, int(height / (2.5 * size))))
-    for value, text in zip(values, tick_texts(values), strict=True):
-        at = y + height * ((value - limits[0]) / ((limits[1] - limits[0]) or 1.0))
-        drawing.line([(x + width, at), (x + width + _TICK, at)], width=0.6)
-        drawing.text(x + width + _TICK + 2, at - 0.36 * size, text, size)
-    if label:
-        drawing.text(x, y + height + 0.6 * size, label, size)
+    return list(zip(tick_texts(values), values.tolist(), strict=True))
+
+
+def _apart(levels: list[float], least: float) -> list[float]:
+    """Rising levels moved as little as lets texts there not overlap: runs of them keep their middle."""
+    runs: list[tuple[float, int]] = []  # the middle of each, and how many there are
+    for level in levels:
+        runs.append((level, 1))
+        while len(runs) > 1 and runs[-1][0] - runs[-2][0] < 0.5 * least * (runs[-1][1] + runs[-2][1]):
+            (high, many), (low, few) = runs.pop(), runs.pop()
+            runs.append(((high * many + low * few) / (many + few), many + few))
+    return [middle + least * (k - 0.5 * (count - 1)) for middle, count in runs for k in range(count)]
 
 
 def scale_bar(

@@ -8,7 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .charts import TITLE, color_bar, legend, legend_size, round_length, scale_bar, tick_texts, ticks
+from .charts import (
+    TITLE,
+    bar_marks,
+    color_bar,
+    legend,
+    legend_size,
+    round_length,
+    scale_bar,
+    tick_texts,
+    ticks,
+)
 from .drawing import BLACK, WHITE, Color, Drawing
 from .glyphs import text_width
 
@@ -27,12 +37,13 @@ _AXIS_NAMES = ("Easting", "Northing", "Elevation")
 @dataclass(frozen=True)
 class ColorKey:
     """The key to colors: names with colors, the first on top; or a range (low, high) with its colors (N, 3),
-    the lowest first."""
+    the lowest first, and names of values in it in place of numbers."""
 
     title: str
     entries: Sequence[tuple[str, Color]] = ()
     limits: tuple[float, float] | None = None
     colors: np.ndarray | None = None
+    names: Sequence[tuple[str, float]] = ()
 
 
 @dataclass(frozen=True)
@@ -127,10 +138,9 @@ def legend_extent(key: ColorKey) -> tuple[float, float]:
     if key.colors is None or key.limits is None:
         width, height = legend_size(key.title, key.entries, SIZE)
     else:
-        low, high = key.limits
-        values = tick_texts(ticks(low, high, max(3, int(_BAR[1] / (2.5 * SIZE)))))
+        marks = bar_marks(key.limits, _BAR[1], key.names, SIZE)
         width, height = (
-            _BAR[0] + 6 + max(text_width(text, SIZE) for text in values),
+            _BAR[0] + 6 + max(text_width(text, SIZE) for text, _ in marks),
             _BAR[1] + (TITLE + 0.5) * SIZE,
         )
         width = max(width, text_width(key.title, SIZE))
@@ -151,7 +161,8 @@ def _legend(drawing: Drawing, key: ColorKey, left: float, below: float) -> float
         legend(drawing, (inner, top), key.title, key.entries, SIZE)
     else:
         drawing.text(inner, top - SIZE, key.title, SIZE)
-        color_bar(drawing, (inner, below + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
+        bar = inner, below + _PAD + 0.4 * SIZE, *_BAR
+        color_bar(drawing, bar, key.limits, key.colors, key.names, SIZE)
     return left + width + _MARGIN
 
 

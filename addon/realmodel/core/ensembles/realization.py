@@ -12,11 +12,13 @@ from ..base.errors import InputRefused
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.assembly import assemble, intersect
 from ..heights.draws import Draw
+from ..heights.sheet_draws import SeriesDraw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
 from ..project.series import refuse_fields
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces
+from ..surfaces.observed.sheet_series import sheets_beside
 from ..surfaces.rock_input import RockInput
 
 _INTERPOLATED, _INTERSECTED = 0.5, 0.98  # of the time
@@ -103,11 +105,20 @@ class Realizer:
     def _drawn(self, entry: RockInput, rock: int, number: int) -> RockInput:
         """An entry without heights, whose surfaces will be drawn."""
         surfaces = entry.rock.surfaces
-        draws, noise = [], None
+        draws: list[Draw] = []
+        noise, of_series = None, None
         for each, correlation in enumerate(self.correlations(entry)):
-            noise = Noise((self.seed, number, rock, each), noise, correlation)
+            own = Noise((self.seed, number, rock, each), noise, correlation)
+            beside = sheets_beside(entry.rock, each)
+            if each in beside[1:]:  # drawn together with the oldest, whose noise is that of all
+                assert of_series is not None
+                own = Noise((self.seed, number, rock, each))
+                of_series.noises.append(own)
+            else:
+                noise, of_series = own, SeriesDraw([own]) if beside else None
             given = None if self.model.structures.is_divided else entry.interpolations[each]
-            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {}), given))
+            known = self._known.setdefault((rock, each), {})
+            draws.append(Draw(self._frame, own, known, given, of_series))
         return replace(
             entry,
             surfaces=[

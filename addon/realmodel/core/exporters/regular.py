@@ -69,19 +69,21 @@ def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size
 
 
 def _grids(model, size) -> tuple:
-    """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and
-    thickness."""
+    """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and thickness,
+    then of each its true thickness."""
     grids = plan_grids(model, size)
     bands = [("elevation", grids.top)]
-    for number, name in enumerate(distinct_names(block.name for block in model.blocks)):
+    names = distinct_names(block.name for block in model.blocks)
+    for number, name in enumerate(names):
         bands.append((f"top of {name}", grids.upper[number]))
         bands.append((f"thickness of {name}", grids.thickness[number]))
+    bands += [(f"true thickness of {name}", grids.true_thickness[n]) for n, name in enumerate(names)]
     return grids, bands
 
 
 def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
-    """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK and
-    NAME_thickness_of_BLOCK."""
+    """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK,
+    NAME_thickness_of_BLOCK and NAME_true_thickness_of_BLOCK."""
     grids, bands = _grids(model, size)
     step(0.5)
     path = Path(path)

@@ -54,6 +54,17 @@ class Beds:
         """(2,) the middle of the box in plan; distances are from there."""
         return 0.5 * (self.low + self.high)[:2]
 
+    @property
+    def axes(self) -> np.ndarray:
+        """(2, 2) the direction across the fold axes, and the one along them."""
+        across = self.fold[0]
+        return np.array([across, [-across[1], across[0]]])
+
+    @property
+    def slant(self) -> float:
+        """How much longer than at right angles to the datum's plane a vertical line through a bed is."""
+        return math.sqrt(1.0 + float(dot(self.slope, self.slope)))
+
     def strips(self, plan: np.ndarray) -> np.ndarray:
         """(N,) the strip between faults in which each place in plan (N, 2) lies."""
         along, positions, _ = self.fault
@@ -98,6 +109,22 @@ def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
         empty,
     )
     return _divided(strata, laid, vertices, thicknesses)
+
+
+def check_gap(beds: Beds, gap: float) -> None:
+    """Raises InputRefused for a gap that leaves nothing of a bed, or of a strip between faults."""
+    slant = beds.slant
+    between = (
+        ("bed", "fewer beds or less variation", np.diff(beds.levels) / slant),
+        ("bed above the unconformity", "fewer beds or less variation", np.diff(beds.covers)),
+        ("strip between faults", "fewer faults", np.diff(beds.fault[1])),
+    )
+    for what, remedy, sizes in between:
+        if gap and gap >= sizes.min(initial=math.inf):
+            raise InputRefused(
+                f"gaps of {gap:g} leave nothing of a {what} of {sizes.min():.3g}",
+                advice=f"choose smaller gaps, {remedy}",
+            )
 
 
 def _divided(strata: Strata, laid: Beds, vertices: np.ndarray, thicknesses: np.ndarray) -> Beds:

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.build_warning import BuildWarning
 from ..base.work import Cancel, Progress, Work, run
 from ..model.build import build
 from ..model.cutting import cut_by_surface
 from ..model.model import Model
 from ..project.project import Project, Rock
 from ..settings.method_options import check_threads
-from .beds import lay_beds
+from .beds import check_gap, lay_beds
 from .palettes import rocks_of_beds
+from .pegs import place_pegs
 from .sheets import sheets_of
 from .solid import closed_mesh, solid_within
 from .strata import Strata
@@ -32,7 +34,8 @@ def fill_with_strata(
 
     vertices (V, 3), triangles (T, 3). Returns a model whose blocks are the beds, oldest first, `Bed 1` and so
     on: closed, with common faces, and together the mesh. Vertices of the mesh stay as they are. Beds that are
-    nowhere in the mesh are blocks without cells.
+    nowhere in the mesh are blocks without cells. With a gap, what is between beds is blocks, too, without a
+    property: `Gap 1` and so on, each with the number of the bed beneath, and `Gap at Faults`.
 
     Raises InputRefused with a place for a mesh that is open otherwise, UsageError, Cancelled, BuildFailed.
 
@@ -51,11 +54,19 @@ def fill_with_strata(
 def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata) -> Model:
     """`fill_with_strata` of a closed mesh, as a job."""
     beds = lay_beds(strata, mesh[0])
+    check_gap(beds, strata.gap)
     solid = solid_within(work, mesh, _SOLID)
     library, rocks = rocks_of_beds(beds.count, strata.palette, strata.seed)
-    surfaces = sheets_of(beds, rocks)
+    pegs = place_pegs(beds, strata, *mesh)
+    surfaces = sheets_of(beds, rocks, strata.gap, pegs)
     project = Project("strata", [Rock("strata", surfaces)], library=library)
     with work.part(_SOLID, _STACK):
         stack = build(project, cells="blocks")
     with work.part(_STACK, 1.0):
-        return cut_by_surface(stack, *solid).inside
+        model = cut_by_surface(stack, *solid).inside
+    lacking = strata.pegs * len(pegs.places) - pegs.count
+    if lacking:
+        model.warnings.append(
+            BuildWarning(f"there is room for only {pegs.count} of the pegs; {lacking} are left out")
+        )
+    return model

@@ -11,6 +11,7 @@ from .palettes import PALETTES
 
 MOST_BEDS = 200
 MOST_FAULTS = 40
+MOST_PEGS = 20  # on a bed
 STEEPEST = 85.0  # degrees: steeper beds would hardly have one height at each position
 
 # (least, greatest) of what is bounded
@@ -27,9 +28,12 @@ _BOUNDS: dict[str, tuple[float, float]] = {
     "throw": (0.0, math.inf),
     "fault_strike": (-360.0, 360.0),
     "unconformity": (0.0, 0.95),
+    "gap": (0.0, math.inf),
+    "pegs": (0, MOST_PEGS),
+    "peg_size": (0.0, math.inf),
     "seed": (0, 2**31 - 1),
 }
-_WHOLE = ("beds", "faults", "seed")
+_WHOLE = ("beds", "faults", "pegs", "seed")
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,10 @@ class Strata:
     with this throw and the azimuth fault_strike.
     unconformity: at which share of the height, from below, an erosion surface cuts tilted, folded and faulted
     beds, which level ones cover; 0: none.
+    gap: between beds, and between the two sides of a fault, for a print in parts: at right angles to the
+    bedding before it is folded. pegs: up to so many on each bed, square and peg_size wide; they reach as far
+    into the bed above, but at most through half of it, and have the play of the gap around them. None is on
+    an unconformity.
     base: the elevation down to which an open mesh is filled; None: as far beneath its lowest point as its
     highest is above. palette: of the rocks. seed: of thicknesses, rocks, and the positions of folds and
     faults.
@@ -64,6 +72,9 @@ class Strata:
     throw: float = 0.0
     fault_strike: float = 0.0
     unconformity: float = 0.0
+    gap: float = 0.0
+    pegs: int = 0
+    peg_size: float = 0.0
     base: float | None = None
     palette: str = "canyon"
     seed: int = 0
@@ -75,6 +86,10 @@ class Strata:
             _number("base", self.base)
         if self.palette not in PALETTES:
             raise UsageError(f"palette must be one of {', '.join(PALETTES)}, not {self.palette!r}")
+        if self.pegs and not (self.peg_size and self.gap):
+            raise UsageError(
+                "peg_size and gap must be above 0 where there are pegs: these have play in their holes"
+            )
         if self.unconformity and self.beds < 2:
             raise UsageError("beds must be 2 or more where there is an unconformity: one below it, one above")
 

@@ -9,8 +9,9 @@ around it, so that a sheet with few contacts follows the others where it has non
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,11 +32,15 @@ MOST_NEIGHBOURS = 64  # of all sheets together, by default
 @dataclass(frozen=True)
 class Companions:
     """The sheets of a series, oldest first, for a Task of one of them. own: its number. points: (P, 3) of
-    each sheet; dips: of each, or None; those of `own` are those of the Task."""
+    each sheet; dips: of each, or None; those of `own` are those of the Task. known: what was fitted to such
+    data before, filled as it comes: it is the same for each sheet. model: the variogram and the model to be
+    taken in the place of those that fit."""
 
     own: int
     points: Sequence[np.ndarray]
     dips: Sequence[Dips | None]
+    known: dict[bytes, dict | None] = field(default_factory=dict)
+    model: tuple[Variogram, SheetModel] | None = None
 
     def data(self, own: np.ndarray, own_dips: Dips | None) -> tuple[list[np.ndarray], list[Dips | None]]:
         """The points and dips of each sheet, with those of the Task."""
@@ -94,6 +99,44 @@ def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     """(P, 3) the points of all sheets around their offsets, the mean of those at one position."""
     every = np.concatenate([each - np.array([0, 0, c]) for each, c in zip(points, offsets, strict=True)])
     return mean_heights(every + 0.0)
+
+
+def likeliest(task, companions: Companions, data: JointData, spacing: float) -> dict | None:
+    """What native fit_sheets finds in the data of all sheets, in their order, for the settings of a Task;
+    None where they are many. spacing: of points and dips."""
+    settings = task.settings
+    along, given = settings["anisotropy"], settings["variogram"]
+    variogram = None if given is None else Variogram.from_settings(given).native(along)
+    drift, anisotropy = settings.get("drift", "constant"), along and (along["ratio"], along["azimuth"])
+    dips, of_dips, count = data.dips, data.of_dips, len(companions.points)
+    arrays = [data.points, data.sheets]
+    if dips is not None:  # one that counts for several sheets says once how they slope
+        first = np.sort(np.unique(dips.positions + 0.0, axis=0, return_index=True)[1])
+        dips, of_dips = dips.some(first), of_dips[first]
+        arrays += [of_dips, dips.positions, dips.gradients]
+    key = hashlib.sha256(repr((variogram, drift, anisotropy, count)).encode())
+    for each in arrays:
+        key.update(np.ascontiguousarray(each))
+    if key.digest() not in companions.known:
+        companions.known[key.digest()] = task.run(
+            native_module().fit_sheets,
+            data.points,
+            (data.sheets, of_dips, count),
+            anisotropy,
+            drift,
+            None if dips is None else (dips.positions, dips.gradients, spacing, 0),
+            variogram,
+        )
+    return companions.known[key.digest()]
+
+
+def likeliest_model(fitted: dict, variogram: Variogram, base: int) -> SheetModel:
+    """The model of what `likeliest` found. base: the sheet above which the others lie."""
+    first = variogram.parts()[0]
+    thickness = Variogram(first.model, first.range, 1.0, anisotropy=first.anisotropy)
+    constants = fitted["constants"]
+    variances = fitted["thickness"] * np.arange(len(constants), dtype=np.float64)
+    return SheetModel(constants - constants[base], variances, thickness)
 
 
 def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:

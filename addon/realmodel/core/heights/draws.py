@@ -9,28 +9,27 @@ points; it is added to the interpolated heights (Chiles and Delfiner 2012, "Geos
 from __future__ import annotations
 
 import hashlib
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..readers.tables.observations import Bounds
-from ..settings.dips import Dips
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights
 from .bounded import Heights, active_bounds, consistent, holds_bounds, runner
-from .from_neighbours import dip_use, structure
+from .companions import Companions
+from .from_neighbours import Structure, dip_use, structure
 from .interpolation import Result, Task, run_method
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
 from .run import with_dips
+from .sheet_draws import SeriesDraw, SheetField, drawn_companions, drawn_dips, nugget_noise
 from .surface_reference import heights_of
 from .true_thickness import lifted, measured
 from .turning_bands import Frame, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
-_NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,8 @@ class _Known:
     """The data of a surface that do not change between realizations: the interpolated heights, the method and
     the options that reproduce them, counts, (P,) bool, the points that they use, and the variogram. For a
     surface parallel to another one these are of its thickness, and where that is perpendicular to the other
-    one, thickness: (N,) the interpolated one at the nodes."""
+    one, thickness: (N,) the interpolated one at the nodes. joint: of a sheet of a series, what all of them
+    have in common."""
 
     result: Interpolation
     method: str
@@ -46,17 +46,20 @@ class _Known:
     variogram: Variogram | None
     counts: np.ndarray
     thickness: np.ndarray | None = None
+    joint: Structure | None = None
 
 
 @dataclass(frozen=True)
 class Draw:
     """A realization of one surface. known: by points and nodes, filled as they come, shared by all
-    realizations of the surface. given: the interpolated heights, where no fault displaces the surface."""
+    realizations of the surface. given: the interpolated heights, where no fault displaces the surface.
+    series: what the sheets of its series share in this realization, where it is in one."""
 
     frame: Frame
     noise: Noise
     known: dict[bytes, _Known]
     given: Interpolation | None = None
+    series: SeriesDraw | None = None
 
     def heights(self, method: str, task: Task) -> Interpolation:
         """As heights.heights, with a random error added, which is 0 at the points. A realization that would
@@ -65,61 +68,78 @@ class Draw:
         if own.variogram is None:
             return own.result
         points, _ = without_mis_ties(task.points[own.counts])
-        field = GaussianField(own.variogram, own.settings.get("anisotropy"), self.frame, self.noise)
-        at_points, at_nodes = self._field(task, field, points[:, :2])
+        field = self._field_of(own, task.companions)
+        at_points, at_nodes = self._at(task, field, points[:, :2])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
         free = replace(task, points=points, settings=plain, surfaces={}, bounds=None)
+        if own.joint is not None and own.joint.sheets is not None and task.companions is not None:
+            model = own.joint.variogram, own.joint.sheets
+            free = replace(free, companions=replace(task.companions, model=model))
+        drawn = self._drawn(free, field, own)
         z = own.result.z
         if task.bounds is not None and len(task.bounds) and holds_bounds(own.method):
-            supports = self._supports(free, task.bounds, field, own, at_points)
+            supports = self._supports(free, drawn, task.bounds, field, own, at_points)
             free = replace(free, points=np.vstack([points, supports]))
             at_points = np.concatenate([at_points, field.at(task.work, supports[:, :2])])
             z = heights(own.method, free).z
-        drawn = np.column_stack([free.points[:, :2], at_points])
-        interpolated = heights(
-            own.method,
-            replace(free, points=drawn, dips=self._drawn_dips(free, field, own), companions=None),
-        )
-        error = at_nodes - interpolated.z
+        at_data = np.column_stack([free.points[:, :2], at_points])
+        error = at_nodes - heights(own.method, replace(drawn, points=at_data)).z
         if own.thickness is not None:
             below = heights_of(task, task.settings["to"], task.nodes, "to")
             return replace(own.result, z=lifted(task, below, own.thickness + error))
         z = z + error
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
 
+    def _field_of(self, own: _Known, companions: Companions | None) -> GaussianField | SheetField:
+        """S: of a sheet of a series together with those of the others."""
+        anisotropy = own.settings.get("anisotropy")
+        if own.joint is None or companions is None:
+            assert own.variogram is not None
+            return GaussianField(own.variogram, anisotropy, self.frame, self.noise)
+        assert self.series is not None
+        return self.series.of(companions.own, self.frame, own.joint, anisotropy)
+
+    def _drawn(self, free: Task, field: GaussianField | SheetField, own: _Known) -> Task:
+        """The task of a surface with the slopes of S where it has dips, and with S of the other sheets; its
+        points are those of the surface still."""
+        known, _ = with_dips(own.method, replace(free, settings=own.settings))
+        if own.joint is not None:
+            baseline = own.joint.dips.baseline
+        else:
+            baseline = dip_use(known, own.variogram if "variogram" in own.settings else None, 0).baseline
+        dips, companions = None, None
+        if known.dips is not None:
+            dips = drawn_dips(free.work, field, known.dips, baseline)
+        if isinstance(field, SheetField):
+            companions = drawn_companions(known, field, baseline)
+        return replace(free, dips=dips, companions=companions)
+
     def _supports(
-        self, free: Task, bounds: Bounds, field: GaussianField, own: _Known, at_points: np.ndarray
+        self,
+        free: Task,
+        drawn: Task,
+        bounds: Bounds,
+        field: GaussianField | SheetField,
+        own: _Known,
+        at_points: np.ndarray,
     ) -> np.ndarray:
         """(A, 3) the bounds that support the realization, as points. at_points: (P,) S at the points."""
-        run, given = runner(own.method, free), consistent(free.points, bounds)
-        dips, count = self._drawn_dips(free, field, own), len(at_points)
+        run, given, count = runner(own.method, free), consistent(free.points, bounds), len(at_points)
+        run_drawn = runner(own.method, drawn)
         at_bounds = field.at(free.work, given.positions)  # a field is drawn anew for each call
         known = dict(zip(map(tuple, given.positions.tolist()), at_bounds.tolist(), strict=True))
 
         def field_at(places: np.ndarray) -> np.ndarray:
             return np.array([known[tuple(place)] for place in places.tolist()])
 
-        def drawn(each: Task) -> Result:
+        def realized(each: Task) -> Result:
             at_data = np.concatenate([at_points, field_at(each.points[count:, :2])])
             data = np.column_stack([each.points[:, :2], at_data])
-            error = field_at(each.nodes) - run(replace(each, points=data, dips=dips, companions=None)).z
+            error = field_at(each.nodes) - run_drawn(replace(drawn, points=data, nodes=each.nodes)).z
             return Result(run(each).z + error)
 
-        return active_bounds(free.work, free.points, given, Heights(free, drawn, False))
-
-    def _drawn_dips(self, task: Task, field: GaussianField, own: _Known) -> Dips | None:
-        """The slopes of S where the surface has dips, over the baseline that its method has for them."""
-        known, _ = with_dips(own.method, replace(task, settings=own.settings))
-        if known.dips is None:
-            return None
-        baseline = dip_use(known, own.variogram if "variogram" in own.settings else None, 0).baseline
-        slopes = []
-        for axis in np.eye(2) * (baseline / 2):
-            ends = (known.dips.positions + axis, known.dips.positions - axis)
-            to, begin = (field.at(task.work, end) for end in ends)
-            slopes.append((to - begin) / baseline)
-        return replace(known.dips, gradients=np.column_stack(slopes))
+        return active_bounds(free.work, free.points, given, Heights(free, realized, False))
 
     def _known(self, method: str, task: Task) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on
@@ -165,22 +185,26 @@ class Draw:
                 settings["neighbours"] = result.neighbours
         if variogram is not None and variogram.sill <= 0:
             variogram = None
-        return _Known(result, method, settings, variogram, counts, thickness)
+        joint = None
+        if variogram is not None and self.series is not None and task.companions is not None:
+            asked = task.settings if "variogram" in settings else checked_options("kriging", {})
+            joint = structure(replace(task, points=plain, settings=asked))
+            variogram = joint.variogram
+        return _Known(result, method, settings, variogram, counts, thickness, joint)
 
-    def _field(self, task: Task, field: GaussianField, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _at(
+        self, task: Task, field: GaussianField | SheetField, points: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and the nodes; at equal positions it is equal."""
         nodes = task.nodes
         at_points, at_nodes = (field.at(task.work, places) for places in (points, nodes))
         if field.variogram.nugget > 0:
-            _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
-            noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
-            noise *= math.sqrt(field.variogram.nugget)
-            of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
+            noise = nugget_noise(self.noise, field.variogram, points, len(nodes))
+            of_points, of_nodes = noise[: len(points)], noise[len(points) :]
             number = {tuple(point): n for n, point in enumerate(points.tolist())}
             for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):
                 point = number.get(tuple(nodes[node].tolist()))
                 if point is not None:
                     of_nodes[node] = of_points[point]
-            at_points += of_points
-            at_nodes += of_nodes
+            at_points, at_nodes = at_points + of_points, at_nodes + of_nodes
         return at_points, at_nodes

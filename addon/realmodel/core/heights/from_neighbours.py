@@ -21,6 +21,8 @@ from .companions import (
     JointData,
     SheetModel,
     first_offsets,
+    likeliest,
+    likeliest_model,
     pooled,
     thickness_model,
     without_thickness,
@@ -115,28 +117,56 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
 
 
 def _joint_structure(task: Task, companions: Companions) -> Structure:
-    """structure of the sheets of a series: of all their points around what they lie apart, which is estimated
-    from all data. Once this is known the variogram is fitted again."""
+    """structure of the sheets of a series: the likeliest one of few points; of many that of all of them
+    around what sheets lie apart, which is estimated from all data. Once this is known the variogram is fitted
+    again."""
     points, dips = companions.data(task.points, task.dips)
+    data = JointData.of(points, dips, np.zeros(len(points)), 0)
     alone = replace(task, companions=None, bounds=None)
-    data = JointData.of(points, dips, np.zeros(len(points)), companions.own)
     alone = replace(alone, dips=None if data.dips is None else data.dips.merged()[0])
     count = len(data.points) + 2 * len(data.of_dips)
+    if companions.model is not None:
+        return _of_model(alone, *companions.model, points, count)
+    spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
+    fitted = likeliest(alone, companions, data, spacing)
+    if fitted is not None:
+        given = task.settings["variogram"]
+        variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
+        variogram = variogram if given is None else Variogram.from_settings(given)
+        model = likeliest_model(fitted, variogram, int(np.argmax([len(each) for each in points])))
+        return _of_model(alone, variogram, model, points, count)
     offsets = first_offsets(task.work, points)
     for _ in range(ROUNDS):
         found = structure(replace(alone, points=pooled(points, offsets)))
         model = thickness_model(task.work, points, found.variogram, offsets, task.settings["anisotropy"])
-        neighbours, use = found.neighbours, found.dips
-        if task.settings["neighbours"] is None:
-            neighbours = 0 if count <= MOST_AT_ONCE else min(neighbours * len(points), MOST_NEIGHBOURS)
-            use = replace(use, neighbours=min(use.neighbours * len(points), neighbours))
+        found = _of_all_sheets(found, task, len(points), count)
         variogram = without_thickness(found.variogram, model)
-        found = replace(found, variogram=variogram, neighbours=neighbours, dips=use, sheets=model)
-        offsets = _offsets(alone, found, points, dips)
+        found = replace(found, variogram=variogram, sheets=model)
+        offsets = mean_offsets(alone, found, points, dips)
     return replace(found, sheets=replace(model, offsets=offsets))
 
 
-def _offsets(
+def _of_model(
+    task: Task, variogram: Variogram, model: SheetModel, points: Sequence[np.ndarray], count: int
+) -> Structure:
+    """The structure of sheets with a variogram and a model. count: of all data."""
+    together = replace(task, points=pooled(points, model.offsets))
+    asked, fitted = task.settings["neighbours"], task.settings["variogram"] is None
+    neighbours = (NEIGHBOURS_OF_FITTED if fitted else DEFAULT_NEIGHBOURS) if asked is None else asked
+    found = Structure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
+    return _of_all_sheets(found, task, len(points), count)
+
+
+def _of_all_sheets(found: Structure, task: Task, sheets: int, count: int) -> Structure:
+    """With as many neighbors as sheets that are kriged together have. count: of all data."""
+    if task.settings["neighbours"] is not None:
+        return found
+    neighbours = 0 if count <= MOST_AT_ONCE else min(found.neighbours * sheets, MOST_NEIGHBOURS)
+    use = replace(found.dips, neighbours=min(found.dips.neighbours * sheets, neighbours))
+    return replace(found, neighbours=neighbours, dips=use)
+
+
+def mean_offsets(
     task: Task, known: Structure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
 ) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: by how much it differs from what the others

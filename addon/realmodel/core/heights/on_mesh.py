@@ -12,7 +12,7 @@ from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import checked_options
 from .companions import Companions, pooled
-from .from_neighbours import structure
+from .from_neighbours import mean_offsets, structure
 from .interpolation import Result, Task
 from .surface_reference import heights_of
 
@@ -32,9 +32,9 @@ def _of_series(task: Task, companions: Companions) -> Result:
     """What sheets have in common goes through the contacts of all of them, each less what its sheet lies
     above the others as kriging estimates it, and has their dips."""
     points, dips = companions.data(task.points, task.dips)
-    kriged = structure(replace(task, settings=checked_options("kriging", {})))
-    assert kriged.sheets is not None
-    offsets = kriged.sheets.offsets
+    asked = replace(task, settings=checked_options("kriging", {}))
+    # those of the likeliest model are of thicknesses far from the data; here they are of those at the data
+    offsets = mean_offsets(replace(asked, companions=None), structure(asked), points, dips)
     known = [each for each in dips if each is not None]
     of_all = Dips.joined(known).merged()[0] if known else None
     alone = replace(task, companions=None)

@@ -102,6 +102,9 @@ def _check_sheets(rock, series: Series, own: list[int], refuse: Refuse) -> None:
             raise refuse(
                 what, "name", f"methods of sheets are {', '.join(SHEET_METHODS[:-1])} and {SHEET_METHODS[-1]}"
             )
+        if number > own[0] and surface.correlation is not None:
+            what = f"'{surface.name}' has a correlation, but sheets are drawn together in ensembles"
+            raise refuse(what, "name", "leave correlation out; the oldest sheet may have one")
 
 
 def _check_dips(series: Series, refuse: Refuse) -> None:

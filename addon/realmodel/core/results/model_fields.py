@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..base.errors import UsageError
 from ..fields import ScalarField
 
@@ -30,3 +32,12 @@ def names_of_compartments(model, entry) -> list[str]:
     if len(model.rock_inputs) > 1:
         names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
     return names
+
+
+def local_compartments(model, entry) -> np.ndarray:
+    """For each compartment of a model its number in a rock mass; -1 where it is of another."""
+    names = names_of_compartments(model, entry)
+    known = {name: number for number, name in enumerate(names)}
+    if len(names) == 1:
+        return np.zeros(max(len(model.compartment_names), 1), np.int64)
+    return np.array([known.get(name, -1) for name in model.compartment_names], np.int64)

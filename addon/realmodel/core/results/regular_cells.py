@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ..base.algebra import ranks_in_runs
 from ..base.errors import UsageError
-from ..base.work import native_module
+from ..base.sheet import Sheet
+from ..base.work import Work, native_module, run
+from ..heights.true_thickness import Base
 
 MOST_CELLS = 200_000_000
 _AUTOMATIC = 100  # cells along the longest side
@@ -156,7 +159,9 @@ class PlanGrids:
     rock,
     NaN where there is none. thickness, upper: (B, ny, nx), of each block its thickness (all its parts over
     the
-    place), 0 where it is not, and the height of its top, NaN where it is not.
+    place), 0 where it is not, and the height of its top, NaN where it is not. true_thickness: (B, ny, nx),
+    how far the top of each block is from its base, which goes on beyond its border with the slopes that it
+    has there; 0 where the block is not.
     """
 
     north_west: tuple[float, float]
@@ -164,6 +169,7 @@ class PlanGrids:
     top: np.ndarray
     thickness: np.ndarray
     upper: np.ndarray
+    true_thickness: np.ndarray
 
 
 def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
@@ -181,6 +187,14 @@ def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
             np.add.at(thickness[block], cell, z * sign)
             np.maximum.at(upper[block], cell, z)
     upper = np.where(np.isfinite(upper), upper * cell_size[2] + origin[2], np.nan)
+    thickness = np.maximum(thickness * cell_size[2], 0.0)
+    column, row = np.meshgrid(np.arange(nx), np.arange(ny))
+    centers = origin[:2] + (np.column_stack([column.ravel(), row.ravel()]) + 0.5) * cell_size[:2]
+    true = np.zeros_like(thickness)
+    for block, of_block in enumerate(zip(upper, thickness, strict=True)):
+        true[block] = run(
+            partial(_true_thickness, model=model, block=block, centers=centers, heights=of_block)
+        )
     top = np.full(ny * nx, np.nan) if not len(upper) else np.fmax.reduce(upper, axis=0)
     north = origin[1] + ny * cell_size[1]
     shape = (ny, nx)
@@ -188,9 +202,29 @@ def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
         (float(origin[0]), float(north)),
         (float(cell_size[0]), float(cell_size[1])),
         top.reshape(shape)[::-1],
-        np.maximum(thickness * cell_size[2], 0.0).reshape(-1, *shape)[:, ::-1],
+        thickness.reshape(-1, *shape)[:, ::-1],
         upper.reshape(-1, *shape)[:, ::-1],
+        true.reshape(-1, *shape)[:, ::-1],
     )
+
+
+def _true_thickness(
+    work: Work, model, block: int, centers: np.ndarray, heights: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """(N,) how far the top of a block is from its base at the centers of cells (N, 2); 0 where it is not.
+    heights: (N,) of its top, and its vertical thickness."""
+    upper, vertical = heights
+    found, there = np.zeros(len(centers)), np.flatnonzero(vertical > 0)
+    triangles = _triangles(model, block)
+    a, b = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
+    base = triangles[a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0]
+    if len(there) and len(base):
+        corners = base.reshape(-1, 3)
+        sheet = Sheet(corners, np.arange(len(corners), dtype=np.int32).reshape(-1, 3))
+        points = np.column_stack([centers[there], upper[there]])
+        under = Base(work, sheet, float(vertical.max()))
+        found[there] = np.minimum(under.thickness(points, points[:, 2] - vertical[there]), vertical[there])
+    return found
 
 
 def _over_centers(triangles: np.ndarray, nx: int, ny: int):

@@ -102,7 +102,7 @@ def _companions(model, number: int):
     """The sheets with which a surface was interpolated, by its number in the model."""
     for rock in model.project.rocks:
         if number < len(rock.surfaces):
-            return companions_of(rock, number)
+            return companions_of(rock, number, {})
         number -= len(rock.surfaces)
     return None
 

@@ -86,7 +86,8 @@ def borehole_table(model, x: float, y: float) -> pandas.DataFrame:
 def map_dataset(model, cell_size: float | Sequence[float] | None = None) -> xarray.Dataset:
     """Maps of the model at the centers of cells in plan, exact there, as a Dataset of xarray: `elevation`
     (y, x) of the highest rock, NaN where there is none; `top` (block, y, x) of each block, NaN where it is
-    not; `thickness` (block, y, x), 0 where it is not, of all its parts over the place together. The
+    not; `thickness` (block, y, x), 0 where it is not, of all its parts over the place together;
+    `true_thickness` (block, y, x), how far its top is from its base there, perpendicular to this. The
     coordinates `x` and `y` are the centers, y from north to south, `block` the number of the block and
     `block_name` its name. All values are float64 in model units, which `attrs["units"]` names.
 
@@ -111,6 +112,7 @@ def map_dataset(model, cell_size: float | Sequence[float] | None = None) -> xarr
             "elevation": variable(plan, grids.top, "elevation of the highest rock"),
             "top": variable(stack, grids.upper, "elevation of the top of the block"),
             "thickness": variable(stack, grids.thickness, "thickness of the block"),
+            "true_thickness": variable(stack, grids.true_thickness, "true thickness of the block"),
         },
         {
             "x": variable(("x",), west + dx * (np.arange(columns) + 0.5), "easting"),

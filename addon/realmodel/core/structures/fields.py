@@ -26,7 +26,6 @@ from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import sides_of
-from .contradicting_bounds import without_contradictions
 from .field_warnings import (
     leave_out,
     warn_of_contacts,
@@ -120,13 +119,11 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             own = data
             warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
         with naming(f"{entry.rock.item}, {series.item}"):
-            field, kept, left_out = without_contradictions(
-                own, lambda given: solve_field(lattice, given.level_set_data(), work)
-            )
-        leave_out(entry, series, own, left_out)
+            field = solve_field(lattice, own.level_set_data(), work)
+        leave_out(entry, series, own, field.bounds_missed)
         points = field.critical_points
         critical.append(points[within(points)])
-        made = _through_data(work, entry, series, kept, field)
+        made = _through_data(work, entry, series, own.without_bounds(field.bounds_missed), field)
         fields |= dict.fromkeys(family.members, made)
     points = np.concatenate(critical)
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
@@ -143,7 +140,6 @@ def _through_data(
         made = with_contacts(work, field, data.contacts, data.surfaces)
         kept = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(kept), bool)
-        kept[field.bounds_missed] = False
         for _ in range(_ROUNDS):
             new = kept & ~pinned & data.is_off(made, _NEAR)
             if not new.any():

@@ -14,7 +14,7 @@ from ..base.algebra import dot, norm, principal_axes, ranks_in_runs
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
-from ..base.triangles import edges_of
+from ..base.triangles import edge_lengths
 from ..base.work import Work
 from ..project.structure_entries import Fault
 from ..settings.rules import RULES
@@ -61,6 +61,12 @@ class _Samples(NamedTuple):
 _Conditions = dict[str, Callable[[np.ndarray], np.ndarray]]
 
 
+def gap_widths(structures: Structures, inputs: list[RockInput]) -> dict[int, float]:
+    """How wide the gaps are that close_gaps closes, for each rock mass (RockInput) that faults displace."""
+    displaced = sorted({rock for each in structures.displaced for rock in each})
+    return {rock: _GAP * edge_length(inputs[rock]) for rock in displaced}
+
+
 def edge_length(entry: RockInput) -> float:
     """The median edge of the planar mesh of a RockInput, but for what contacts make it finer; where it has
     none, of its surfaces, in plan."""
@@ -71,8 +77,7 @@ def edge_length(entry: RockInput) -> float:
     lengths = []
     for vertices, triangles in meshes:
         some = triangles[:: max(1, len(triangles) // _MEASURED)]
-        a, b = vertices[edges_of(some), :2].transpose(1, 0, 2)
-        lengths.append(norm(b - a))
+        lengths.append(edge_lengths(vertices[:, :2], some))
     return float(np.median(np.concatenate(lengths))) if lengths else 0.0
 
 
@@ -81,20 +86,19 @@ def close_gaps(
     structures: Structures,
     inputs: list[RockInput],
     box: np.ndarray,
+    widths: dict[int, float],
     has_sheets: bool = False,
 ) -> tuple[list[Fault], list[BuildWarning]]:
     """The faults of some structures, with arrays, continued where their borders end short of the wall of a
     rock mass (RockInput), of a fault at which they end, or, where the sheets are known, of the youngest
     surface that they displace and of those that cut it; and a warning for each such end.
 
-    box: around all rock, (2, 3). Raises InputRefused for a fault whose border is inside the rock, as far as
-    that is certain.
+    box: around all rock, (2, 3). widths: as of gap_widths. Raises InputRefused for a fault whose border is
+    inside the rock, as far as that is certain.
     """
     faults, warnings = list(structures.faults), []
     number_of = {fault.name: number for number, fault in enumerate(faults)}
     waiting = list(range(len(faults)))
-    displaced = sorted({rock for each in structures.displaced for rock in each})
-    widths = {rock: _GAP * edge_length(inputs[rock]) for rock in displaced}
     while waiting:  # each after those at which it ends
         number = next(n for n in waiting if not any(number_of[each] in waiting for each in faults[n].ends_at))
         waiting.remove(number)
@@ -139,6 +143,7 @@ class _Around:
     ):
         self.work, self.structures, self.entry, self.width = work, structures, entry, width
         self.number, self.last = of
+        self.looked_at: tuple[Fault, _Samples] | None = None  # the last fault, and the places on its border
 
     def closed(
         self, fault: Fault, ends: list[Fault], box, has_sheets: bool
@@ -172,6 +177,8 @@ class _Around:
     ) -> _Samples:
         """Places on the border. A side of it is near the end of the rock if most of what it has inside is. A
         fault that dies out may end near walls and surfaces: it only reaches those at which it ends."""
+        if self.looked_at is not None and self.looked_at[0] is fault:
+            return self.looked_at[1]
         ending = conditions
         if fault.dies_out:
             ending = {other.item: conditions[other.item] for other in ends}
@@ -186,7 +193,9 @@ class _Around:
         near[inside] = ~_in_all(ending, points[inside] + self.width * way[inside])
         of_side, of_near = (np.bincount(side, weight * each) for each in (inside, near))
         near &= (of_near >= _SHARE * of_side)[side]
-        return _Samples(points, edge, weight, way, side, inside, near)
+        samples = _Samples(points, edge, weight, way, side, inside, near)
+        self.looked_at = fault, samples
+        return samples
 
     def _conditions(self, fault: Fault, ends: list[Fault], has_sheets: bool) -> _Conditions:
         found = self._walls() | {other.item: self._side_of(fault, other) for other in ends}
@@ -204,8 +213,10 @@ class _Around:
         def over(points: np.ndarray) -> np.ndarray:
             found = np.ones(len(points), bool)
             for some in (shapes, covers):
-                if some:
-                    found &= np.any([self._heights(each, points) < np.inf for each in some], axis=0)
+                left = np.arange(len(points)) if some else np.empty(0, np.int64)
+                for each in some:
+                    left = left[np.isnan(self._heights(each, points[left]))] if len(left) else left
+                found[left] = False
             return found
 
         return {"the wall": over}

@@ -24,7 +24,7 @@ from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each
 from .fields import make_fields, place_level_sets
-from .gaps import close_gaps, tops_of_faults
+from .gaps import close_gaps, gap_widths, tops_of_faults
 from .observed_places import apply_in_compartments
 from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
 from .parts.refusals import refused_structure
@@ -117,7 +117,8 @@ def make_structures(
         faults = [_facing_up(work, fault) for fault in project.faults]
         structures = structures_of(project, faults, project.bodies)
         box = box_around(inputs, structures)
-        structures = _without_gaps(work, structures, inputs, box)
+        widths = gap_widths(structures, inputs)
+        structures = _without_gaps(work, structures, inputs, box, widths)
         structures = divide(work, structures, box)
     is_closed = False
     for _ in range(_ROUNDS):
@@ -129,7 +130,7 @@ def make_structures(
             _make_all(work, inputs, tops, stage, keep)
         if not is_closed:
             is_closed = True
-            closed = _without_gaps(work, structures, inputs, box, has_sheets=True)
+            closed = _without_gaps(work, structures, inputs, box, widths, has_sheets=True)
             if closed is not structures:
                 structures = divide(work, closed, box)
                 _divide_inputs(work, structures, inputs, keep)
@@ -180,11 +181,16 @@ def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | Non
 
 
 def _without_gaps(
-    work: Work, structures: Structures, inputs: list[RockInput], box, has_sheets: bool = False
+    work: Work,
+    structures: Structures,
+    inputs: list[RockInput],
+    box: np.ndarray,
+    widths: dict[int, float],
+    has_sheets: bool = False,
 ) -> Structures:
     """The structures with their faults continued where close_gaps does so; the same ones where it does not.
     Its warnings are added to the first RockInput."""
-    faults, warnings = close_gaps(work, structures, inputs, box, has_sheets)
+    faults, warnings = close_gaps(work, structures, inputs, box, widths, has_sheets)
     if not warnings:
         return structures
     inputs[0].warnings += warnings

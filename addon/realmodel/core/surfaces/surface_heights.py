@@ -100,7 +100,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result, free = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            companions = companions_of(rock, number)
+            companions = companions_of(rock, number, entry.sheet_fits)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
             task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
             bounds = bounds_beside(surface, companions)

@@ -169,26 +169,6 @@ void check_options(const Variogram& variogram, const KrigingOptions& options) {
     check_neighborhood(options.neighborhood);
 }
 
-/// @throws InputError kind "option" where sheets do not fit the points and dips
-void check_sheets(const Sheets& sheets, std::size_t points, std::size_t dips) {
-    if (sheets.variances.empty()) return;
-    check_variogram(sheets.thickness);
-    const auto count = static_cast<std::int32_t>(sheets.variances.size());
-    const auto is_sheet = [&](std::int32_t sheet) { return sheet >= 0 && sheet < count; };
-    if (sheets.of_points.size() != points || sheets.of_dips.size() != dips)
-        throw InputError("option", "each point and each dip must be on one of the sheets");
-    if (!is_sheet(sheets.asked) ||
-        !std::all_of(sheets.of_points.begin(), sheets.of_points.end(), is_sheet) ||
-        !std::all_of(sheets.of_dips.begin(), sheets.of_dips.end(), is_sheet))
-        throw InputError("option", "there is no such sheet");
-    double before = 0;
-    for (const double variance : sheets.variances) {
-        if (!(variance >= before) || !usable(variance))
-            throw InputError("option", "variances of sheets must be finite, and ascend from 0");
-        before = variance;
-    }
-}
-
 }  // namespace
 
 Kriged krige(std::span<const std::array<double, 3>> points,

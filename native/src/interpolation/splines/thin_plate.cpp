@@ -57,9 +57,11 @@ public:
         base_ = data_.value(numbers_[0], 0);
         matrix_.setZero(n + terms, n + terms);
         right_.setZero(n + terms);
+        const bool has_dips = data_.dip_count() > 0;  // without them all data are points
         for (Eigen::Index i = 0; i < n; ++i) {
             for (Eigen::Index j = 0; j < i; ++j) {
-                matrix_(i, j) = data_.between(numbers_[i], numbers_[j], kernel_);
+                matrix_(i, j) = has_dips ? data_.between(numbers_[i], numbers_[j], kernel_)
+                                         : kernel_(positions_[i], positions_[j]);
                 matrix_(j, i) = matrix_(i, j);
             }
             const bool is_point = data_.is_point(numbers_[i]);
@@ -71,7 +73,8 @@ public:
             }
             right_(i) = data_.value(numbers_[i], base_);
         }
-        weights_ = matrix_.partialPivLu().solve(right_);
+        solver_.compute(matrix_);
+        weights_ = solver_.solve(right_);
     }
 
     double at(const Position& position) const {
@@ -104,6 +107,7 @@ private:
     DriftBasis basis_;
     Eigen::MatrixXd terms_, matrix_;
     Eigen::VectorXd right_, weights_;
+    Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
 };
 
 void check_options(const ThinPlateOptions& options) {
@@ -166,14 +170,17 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
         },
         [&](Scratch& own, std::size_t i) {
             const Position node = distinct.to_local(nodes[i]);
-            tree.find(node, 1, own.near);
+            if (all) {
+                tree.find(node, 1, own.near);
+            } else {
+                own.search.find(node, own.near);
+            }
             const double nearest = distinct.values[own.near[0].point];
             if (own.near[0].squared_distance == 0 && options.smoothing == 0) {
                 z[i] = nearest;
                 return;
             }
             if (!all) {
-                own.search.find(node, own.near);
                 own.numbers.clear();
                 for (const spatial::Neighbor& n : own.near)
                     own.numbers.push_back(n.point);

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#ifndef EIGEN_DONT_PARALLELIZE
+#define EIGEN_DONT_PARALLELIZE
+#endif
+#include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "interpolation/linear_data.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/interpolation/dips.hpp"
+#include "realmodel/interpolation/sheet_fit.hpp"
+#include "realmodel/interpolation/sheets.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 
 namespace realmodel::interpolation {
@@ -16,33 +24,49 @@ namespace realmodel::interpolation {
 /// How likely heights and slopes together are with a variogram: restricted maximum likelihood,
 /// which knows nothing of the drift (Kitanidis 1983, "Statistical estimation of polynomial
 /// generalized covariance functions", Water Resources Research 19; Chiles and Delfiner 2012,
-/// section 2.6.3). Of many dips a fixed, even part counts.
+/// section 2.6.3). Each sheet of several has a constant of its own. Of many dips a fixed, even part
+/// counts.
 class Likelihood {
 public:
     /// Points and both slopes of the dips that are taken together.
     static constexpr std::size_t kMostData = 200;
 
-    /// @param dips  their baseline is the mean spacing of points and dips
-    Likelihood(std::span<const std::array<double, 3>> points, const Dips& dips, Drift drift);
+    /// @param dips    their baseline is the mean spacing of points and dips
+    /// @param sheets  of points and dips; their variances say how many there are
+    Likelihood(std::span<const std::array<double, 3>> points, const Dips& dips, Drift drift,
+               const Sheets& sheets = {});
 
     /// Of points and dips.
     double diagonal() const { return diagonal_; }
     /// Heights and slopes, less the terms of the drift.
     std::size_t free() const { return free_; }
+    bool has_sheets() const { return sheet_count_ > 0; }
 
+    /// What is asked how likely it is.
+    struct Shape {
+        Variogram variogram;   ///< with the sill 1, of which the nugget is a share
+        double thickness = 0;  ///< the variance of each thickness between sheets
+    };
     struct Found {
         double logarithm;
-        double sill;  ///< with which the data are most likely
+        double sill;                    ///< with which the data are most likely
+        std::vector<double> constants;  ///< of each sheet, above the first point; 0 without points
     };
-    /// @param shape  with the sill 1, of which the nugget is a share
     /// @return none where the data are one another's consequences with it, up to rounding
-    std::optional<Found> of(const Variogram& shape) const;
+    std::optional<Found> of(const Shape& shape) const;
 
 private:
+    /// The terms of the drift: a row for each datum. Those of one surface are its frame's; sheets
+    /// have a constant each in the place of the first.
+    Eigen::MatrixXd drift_of(const LinearData& data) const;
+
     DataPoints points_;
     std::vector<Position> dips_, slopes_;
+    std::vector<std::int32_t> of_dips_;
     double spacing_, diagonal_ = 0;
     Drift drift_;
+    std::size_t sheet_count_;
+    std::vector<std::int32_t> column_of_;  // of the constant of each sheet; without points -1
     std::size_t free_ = 0;
 };
 

@@ -42,7 +42,7 @@ TEST(Likelihood, OfTwoPointsByHand) {
     EXPECT_EQ(likelihood.free(), 1U);
     const Variogram shape{VariogramModel::kSpherical, 400, 1, 0, {}, {}};
     const double c = 1 - (1.5 * 0.25 - 0.5 * 0.25 * 0.25 * 0.25);
-    const auto found = likelihood.of(shape);
+    const auto found = likelihood.of({shape});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->sill, 16 / (2 * (1 - c)), 1e-9);
     // -1/2 (log sill + log |C| + log 1' C^-1 1), with |C| = 1 - c^2 and 1' C^-1 1 = 2 / (1 + c)

@@ -48,6 +48,8 @@ def beyond_lips(
         np.where(lip.points, nearest(own, points, reach, execution=run)[0], -1)
         for lip, own in zip(lips, corners, strict=True)
     ]
+    if not any((triangle >= 0).any() for triangle in near):
+        return np.empty((0, 3))
     ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
     found = [np.empty((0, 3))]
     for lip, triangle, its in zip(lips, near, corners, strict=True):
@@ -63,5 +65,6 @@ def beyond_lips(
             away[leaves, 2] = rise[leaves]
         found.append(own + away)
     beyond = np.concatenate(found)
+    points = points[np.isin(points[:, 0], beyond[:, 0])]
     same = welded(np.concatenate([points, beyond])[:, :2])[len(points) :]
     return beyond[same == np.arange(len(points), len(points) + len(beyond))]  # none where another point is

@@ -137,7 +137,8 @@ def touched_masks(count: int, triangles: np.ndarray, masks: np.ndarray) -> np.nd
 
 def _spread(triangles: np.ndarray, marked: np.ndarray) -> np.ndarray:
     """(T,) bool: the marked triangles, and all that hang together with them by edges."""
-    _, edge = np.unique(np.sort(edges_of(triangles), axis=1), axis=0, return_inverse=True)
+    count = int(triangles.max(initial=0)) + 1
+    _, edge = np.unique(edge_numbers(edges_of(triangles), count), return_inverse=True)
     edge = edge.reshape(3, -1)
     while True:
         touched = np.zeros(edge.max() + 1, bool)

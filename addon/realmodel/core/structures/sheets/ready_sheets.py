@@ -7,7 +7,16 @@ import numpy as np
 
 from ...base.errors import InputRefused, place_text
 from ...base.sheet import Sheet
-from ...base.triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
+from ...base.triangles import (
+    edge_lengths,
+    edge_numbers,
+    edges_of,
+    median_edge,
+    meet,
+    open_edges,
+    overlapping_pairs,
+    welded,
+)
 from ...base.work import Work
 from ...heights import Task, heights
 from ...settings.methods import CONTINUATION
@@ -21,6 +30,8 @@ from .points_at_faults import distances
 from .throws import Sheets
 from .tips import Trace, hit_shares, on_fault, shared, split_beyond, trace_of, with_equal_ends
 from .within import Within
+
+_FARTHEST = 0.5774  # of its longest edge (1 / sqrt(3)): so far from all corners a triangle has places
 
 
 class ReadyMesh:
@@ -37,32 +48,44 @@ class ReadyMesh:
         faults = entry.divided().faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
-        self.reach, near = self._near(faults.shapes)
+        self.reach, away, width = self._distances(faults.shapes)
+        is_lip = self._lips(away < self.reach)
         for fault in np.flatnonzero(self.active):
-            self._divide(int(fault), faults.shapes[fault], near[:, fault])
+            may_meet = away[self.triangles, fault].min(axis=1) <= width
+            self._divide(int(fault), faults.shapes[fault], is_lip[:, fault], may_meet)
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
-    def _near(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
-        """How near to a fault a border of the mesh counts as its cutoff line, and (V, F) bool, the vertices
-        on borders that are so near to each fault that displaces it."""
-        near = np.zeros((len(self.vertices), len(shapes)), bool)
+    def _distances(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray, np.ndarray]:
+        """How near to a fault a border of the mesh counts as its cutoff line; (V, F) at least how far each
+        vertex is from each fault that displaces it; (T,) how far a place in a triangle may be from its
+        nearest corner."""
         length = median_edge(self.vertices[:, :2], self.triangles)
         some = [shapes[fault] for fault in np.flatnonzero(self.active)]
-        reach, away = distances(self.vertices, length, some)
-        near[:, self.active] = away < reach
-        is_border = np.zeros(len(self.vertices), bool)
-        is_border[open_edges(self.vertices, self.triangles)] = True
-        return reach, near & is_border[welded(self.vertices), None]
+        away = np.zeros((len(self.vertices), len(shapes)))
+        reach, found = distances(self.vertices, length, some)
+        away[:, self.active] = np.minimum(found, length)
+        width = _FARTHEST * edge_lengths(self.vertices, self.triangles).reshape(3, -1).max(axis=0)
+        return reach, away, width
 
-    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray) -> None:
+    def _lips(self, near: np.ndarray) -> np.ndarray:
+        """(V, F) bool: of the vertices near faults, (V, F) bool, those on a border of the mesh."""
+        around = self.triangles[np.logical_or.reduce(near, axis=1)[self.triangles].any(axis=1)]
+        rows, around = np.unique(around, return_inverse=True)
+        vertices, found = self.vertices[rows], np.zeros_like(near)
+        is_border = np.zeros(len(rows), bool)
+        is_border[open_edges(vertices, around.reshape(-1, 3))] = True
+        found[rows] = near[rows] & is_border[welded(vertices), None]
+        return found
+
+    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray, may_meet: np.ndarray) -> None:
         """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
-        cutoff line, wherever it lies up to rounding."""
+        cutoff line, wherever it lies up to rounding. may_meet: (T,) bool, the triangles that may meet it."""
         side = fault_sides(self.work, self.vertices, shape)
         side[on_fault(self.vertices, shape) | is_lip] = 0
         corners = side[self.triangles.T]
         mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
-        clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)))
+        clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)) & may_meet)
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
         mask[clear[crossed]] = LEFT | RIGHT
         along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault

@@ -17,6 +17,7 @@ import numpy as np
 from ...base.algebra import norm
 from ...base.sheet import Sheet
 from ...base.triangles import (
+    edge_numbers,
     edges_of,
     open_edges,
     segments_hit,
@@ -98,8 +99,8 @@ def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape) -> CrossedEdges:
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault)
     side[on_fault(vertices, fault)] = 0
-    edges = np.sort(edges_of(triangles), axis=1)
-    edges, number = np.unique(edges, axis=0, return_inverse=True)
+    edges, number = np.unique(edge_numbers(edges_of(triangles), len(vertices)), return_inverse=True)
+    edges = np.column_stack(np.divmod(edges, len(vertices)))
     changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
     share = np.full(len(edges), np.nan)
     begin, end = vertices[edges[changing]].transpose(1, 0, 2)
@@ -282,7 +283,8 @@ def _draw_where_passed(met_by: _Meeting, places, some, number: int, inside, draw
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
     drawn.require_equal(number, node[some[passes]])
-    edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
+    edges = np.unique(edge_numbers(edges_of(some[met == _TOUCHES]), len(places.points)))
+    edges = np.column_stack(np.divmod(edges, len(places.points)))
     lie_in = _lie_in(work, fault, places.points[edges], beyond, within)
     drawn.require_equal(number, node[edges[lie_in]])
     touched = np.unique(some[met > 0])

@@ -34,13 +34,15 @@ def with_least_thickness(rock: Rock) -> Rock:
     return replace(rock, surfaces=surfaces)
 
 
-def companions_of(rock: Rock, number: int) -> Companions | None:
-    """The sheets with which a surface is interpolated; None where none of the others has points."""
+def companions_of(rock: Rock, number: int, known: dict[bytes, dict | None]) -> Companions | None:
+    """The sheets with which a surface is interpolated; None where none of the others has points. known: as
+    of Companions."""
     beside = sheets_beside(rock, number)
     points = [np.ascontiguousarray(rock.surfaces[each].point_array()) for each in beside]
     if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
         return None
-    return Companions(beside.index(number), points, [rock.surfaces[each].known_dips() for each in beside])
+    dips = [rock.surfaces[each].known_dips() for each in beside]
+    return Companions(beside.index(number), points, dips, known)
 
 
 def bounds_beside(surface: Surface, companions: Companions | None) -> Bounds | None:
