@@ -22,6 +22,7 @@ from ..surfaces.rock_input import RockInput
 _FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice
 _ROUNDS = 14  # in which triangles of a section are halved at most
 _BORDER_ROUNDS = 2  # in which triangles of level sets that leave the rock are divided
+_BISECTIONS = 30  # until it is known where their edges leave it
 
 
 def series_with_fields(model: ModelData) -> list[str]:
@@ -181,16 +182,39 @@ def _within(work: Work, form: ClosedForm, blocks: np.ndarray, compartments: list
 
 
 def _cut_off(places: np.ndarray, inside) -> np.ndarray:
-    """The triangles of (T, 3, 3) that lie inside; those that partly do are divided in four, some times."""
+    """The parts of triangles (T, 3, 3) that lie inside. Those that partly do are divided in four, some times,
+    and then cut along lines between the places where their edges leave it."""
     kept = []
     for _ in range(_BORDER_ROUNDS):
-        corners, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
-        count = inside(corners)[number.reshape(-1, 3)].sum(axis=1) if len(corners) else np.empty(0)
+        count = _are_inside(places, inside).sum(axis=1)
         kept.append(places[count == 3])
         a, b, c = places[(count > 0) & (count < 3)].transpose(1, 0, 2)
         p, q, r = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
         parts = (a, p, r), (p, b, q), (r, q, c), (p, q, r)
         places = np.concatenate([np.stack(each, axis=1) for each in parts])
-        if not len(places):
-            return np.concatenate(kept)
-    return np.concatenate([*kept, places[inside(places.mean(axis=1))]])
+    is_inside = _are_inside(places, inside)
+    count = is_inside.sum(axis=1)
+    kept.append(places[count == 3])
+    one, two = count == 1, count == 2
+    a, b, c = _turned(places[one], is_inside[one].argmax(axis=1))
+    kept.append(np.stack([a, _border(a, b, inside), _border(a, c, inside)], axis=1))
+    a, b, c = _turned(places[two], (~is_inside[two]).argmax(axis=1))
+    p, q = _border(b, a, inside), _border(c, a, inside)
+    kept += [np.stack([p, b, c], axis=1), np.stack([p, c, q], axis=1)]
+    return np.concatenate(kept)
+
+
+def _are_inside(places: np.ndarray, inside) -> np.ndarray:
+    """(T, 3) bool: which corners of triangles (T, 3, 3) lie inside; each position is asked for once."""
+    corners, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
+    found = inside(corners) if len(corners) else np.zeros(0, bool)
+    return found[number.ravel()].reshape(-1, 3)
+
+
+def _border(within: np.ndarray, beyond: np.ndarray, inside) -> np.ndarray:
+    """(N, 3) where one leaves what is inside on the way from points within (N, 3) to points beyond it."""
+    for _ in range(_BISECTIONS if len(within) else 0):
+        middle = 0.5 * (within + beyond)
+        stays = inside(middle)[:, None]
+        within, beyond = np.where(stays, middle, within), np.where(stays, beyond, middle)
+    return within
