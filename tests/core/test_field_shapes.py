@@ -75,12 +75,11 @@ def test_level_sets_lie_in_the_rock(model):
         assert np.allclose(field.at(middles[here]), values[numbers[here]], rtol=0, atol=near)
 
 
+@pytest.mark.parametrize("model", ["recumbent_fold"], indirect=True)  # with one field in all of the rock
 def test_level_sets_end_at_the_border_of_the_rock(model):
     """At walls, base and ground, as the surfaces of the model do."""
     (name,) = series_with_fields(model)
     (own,) = model.rock_inputs[0].fields
-    if len(own.distinct()) > 1:
-        pytest.skip("each compartment has levels of its own")
     surface, (_, level) = own.numbers[1], field_surfaces(model, name)[1]
     places, _ = field_levels(model, name, np.array([level]))
     faces = np.flatnonzero(model.face_surface == surface)

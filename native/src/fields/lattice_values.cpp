@@ -2,6 +2,7 @@
 #include "fields/lattice_values.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.hpp"
 
@@ -11,6 +12,9 @@ namespace {
 
 constexpr std::size_t kLarge = 200000;  // nodes
 constexpr int kLeastCount = 8;          // along an axis that is halved
+/// Second differences count up to so many times the first ones: beyond this a function is rough,
+/// and the error that is taken from it would make new extremes.
+constexpr double kMostBend = 3;
 
 using Counts = std::array<int, 3>;
 
@@ -119,10 +123,13 @@ std::vector<double> balanced(const std::vector<double>& values, const Lattice& l
                 const std::ptrdiff_t k =
                     std::clamp<std::ptrdiff_t>(node / (nx * ny), 1, counts[2] - 2);
                 const double* const at = &values[static_cast<std::size_t>(i + nx * (j + ny * k))];
-                double sum = 0;
-                for (const std::ptrdiff_t step : steps)
+                double sum = 0, rise = 0;
+                for (const std::ptrdiff_t step : steps) {
                     sum += at[step] - 2 * at[0] + at[-step];
-                out[n] -= sum / 24;
+                    rise = std::max(rise, std::abs(at[step] - at[-step]) / 2);
+                }
+                const double most = kMostBend * rise;
+                out[n] -= std::clamp(sum, -most, most) / 24;
             }
         },
         0.0);

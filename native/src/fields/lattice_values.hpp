@@ -22,7 +22,8 @@ std::vector<double> lattice_values(
 
 /// Between nodes a linear function lies above one that bends upward, and below one that bends
 /// downward: its level sets lie within folds. Node values from which the mean of this error over
-/// the tetrahedra around them is taken err to neither side.
+/// the tetrahedra around them is taken err to neither side. Where a function is rough, less is
+/// taken, so that few extremes are made.
 std::vector<double> balanced(const std::vector<double>& values, const Lattice& lattice,
                              const Execution& execution);
 

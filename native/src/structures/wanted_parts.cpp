@@ -101,8 +101,7 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off && (low < 0 || high < 0 || is_at_body))
-            last = of.structure;
+        if (is_cut_off && (low < 0 || high < 0 || is_at_body)) last = of.structure;
     }
     return found >= 0 ? found : last;
 }

@@ -96,6 +96,18 @@ TEST(LatticeValues, BalancedLinearOnesStay) {
     EXPECT_EQ(balanced(few, least, {}), few);
 }
 
+TEST(LatticeValues, WhatBendsMoreThanItRisesIsBalancedLess) {
+    // one node of a plane that rises by 1 a node is off by 40
+    const Lattice lattice{{0, 0, 0}, {1, 1, 1}, {7, 7, 7}};
+    std::vector<double> values;
+    for (std::size_t n = 0; n < lattice.nodes(); ++n)
+        values.push_back(static_cast<double>(n / 49));
+    const std::size_t middle = 3 * 49 + 3 * 7 + 3;
+    values[middle] -= 40;
+    const auto found = balanced(values, lattice, {});
+    EXPECT_NEAR(found[middle], values[middle] - 3.0 / 24, 1e-12);
+}
+
 TEST(LatticeValues, TheSameForAnyNumberOfThreads) {
     EXPECT_EQ(lattice_values(kOdd, cubic_at, {1, nullptr}),
               lattice_values(kOdd, cubic_at, {5, nullptr}));

@@ -403,7 +403,7 @@ class Judgement:
                 if inner[g] != outer[g] and any(self._displaces(g, block) for block in blocks)
             ]
             own = name - self.surfaces
-            # in a body that was protected in parts, what came later ends where a fault displaced what protects
+            # in a body that was protected in parts, what came later ends at a fault of what protects
             in_body = any(is_inside(p, body.vertices[body.triangles])[0] for body in self.case.bodies)
             is_needed = own in acting or (in_body and blocks[0] != blocks[1])
             if 0 <= own < len(self.case.faults) and not is_needed:
