@@ -236,7 +236,8 @@ void TriangleArrangement::exchange_segments() {
     };
     std::vector<Found> found;
     for (const auto& [one, other] : in_one_plane_) {
-        for (const auto& [of, into] : {std::pair(one, other), std::pair(other, one)}) {
+        for (const auto& pair : {std::pair(one, other), std::pair(other, one)}) {
+            const std::int32_t of = pair.first, into = pair.second;
             const auto& segments = triangles_[index(of)].segments;
             const std::size_t first = found.size();
             tree_of(of).find(box_of(points_, triangles_[index(into)].corners), [&](std::int32_t n) {

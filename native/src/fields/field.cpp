@@ -450,7 +450,8 @@ private:
         }
         std::sort(found.begin(), found.end());
         std::vector<std::size_t> out;
-        for (const auto& [misfit, n] : found) {
+        for (const auto& suspect : found) {
+            const std::size_t n = suspect.second;
             const auto is_near = [&](std::size_t other) {
                 return length(minus(inequalities_[n].at, inequalities_[other].at)) < kApart;
             };
