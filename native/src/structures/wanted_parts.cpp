@@ -95,17 +95,19 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
     const ComplexView& model = overlay_.model();
     const bool differs = low < 0 || high < 0 || model.block(low) != model.block(high);
     const bool is_cut_off = differs && !(ends_itself(low, region) && ends_itself(high, region));
-    const bool is_at_body = is_in_body(below) || is_in_body(above);
+    const bool may_end_here =
+        is_cut_off && (low < 0 || high < 0 || is_in_body(below) || is_in_body(above));
     std::int32_t found = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off && (low < 0 || high < 0 || is_at_body)) last = of.structure;
+        if (may_end_here) last = of.structure;
     }
     return found >= 0 ? found : last;
 }
 
+/// Whether what has these sides of the structures lies in one of the bodies.
 bool WantedParts::is_in_body(const Sides& sides) const {
     for (std::size_t s = 0; s < sides.size(); ++s) {
         if (sides[s] < 0 && sides_.is_body(static_cast<std::int32_t>(s))) return true;

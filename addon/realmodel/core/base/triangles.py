@@ -65,11 +65,16 @@ def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:
     return np.minimum(a, b) * count + np.maximum(a, b)
 
 
+def edges_numbered(numbers: np.ndarray, count: int) -> np.ndarray:
+    """(E, 2) the edges that edge_numbers numbers so, the lesser vertex first."""
+    return np.column_stack(np.divmod(numbers, count))
+
+
 def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(E, 2) edges that an odd number of triangles have; vertices at one position count as one."""
     edges = edges_of(welded(vertices)[triangles])
     numbers, times = np.unique(edge_numbers(edges, len(vertices)), return_counts=True)
-    return np.column_stack(np.divmod(numbers[times % 2 == 1], len(vertices)))
+    return edges_numbered(numbers[times % 2 == 1], len(vertices))
 
 
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:

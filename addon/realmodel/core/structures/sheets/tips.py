@@ -18,6 +18,7 @@ from ...base.algebra import norm
 from ...base.sheet import Sheet
 from ...base.triangles import (
     edge_numbers,
+    edges_numbered,
     edges_of,
     open_edges,
     segments_hit,
@@ -100,7 +101,7 @@ def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape) -> CrossedEdges:
     side = fault_sides(work, vertices, fault)
     side[on_fault(vertices, fault)] = 0
     edges, number = np.unique(edge_numbers(edges_of(triangles), len(vertices)), return_inverse=True)
-    edges = np.column_stack(np.divmod(edges, len(vertices)))
+    edges = edges_numbered(edges, len(vertices))
     changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
     share = np.full(len(edges), np.nan)
     begin, end = vertices[edges[changing]].transpose(1, 0, 2)
@@ -284,7 +285,7 @@ def _draw_where_passed(met_by: _Meeting, places, some, number: int, inside, draw
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
     drawn.require_equal(number, node[some[passes]])
     edges = np.unique(edge_numbers(edges_of(some[met == _TOUCHES]), len(places.points)))
-    edges = np.column_stack(np.divmod(edges, len(places.points)))
+    edges = edges_numbered(edges, len(places.points))
     lie_in = _lie_in(work, fault, places.points[edges], beyond, within)
     drawn.require_equal(number, node[edges[lie_in]])
     touched = np.unique(some[met > 0])
