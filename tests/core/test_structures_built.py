@@ -509,3 +509,17 @@ def test_parts_that_never_settle_are_refused(monkeypatch):
     )
     with pytest.raises(BuildFailed, match="new parts each time"):
         build(project)
+
+
+def test_faults_and_bodies_that_meet_no_rock_are_warned_of():
+    given = [rock(surfaces(lambda x, y: 0 * x, lambda x, y: 0 * x + 2))]
+    faults = [Fault("near", *plane_fault()), Fault("far", *plane_fault(x=55.0))]
+    inside, outside = box_body((3, 3, 0.5), (4, 4, 1)), box_body((33, 3, 0.5), (34, 4, 1))
+    bodies = [Body("dyke", *inside), Body("lost", *outside), Body("lost void", *outside, void=True)]
+    model = build(Project("p", given, faults=faults, bodies=bodies))
+    texts = [str(warning) for warning in model.warnings if warning.kind == "structure"]
+    assert texts == [
+        "fault 'far' meets no rock and displaces nothing; check its coordinates",
+        "body 'lost' lies outside of all rock masses; check its coordinates",
+        "body 'lost void' lies outside of all rock masses; check its coordinates",
+    ]

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.algebra import norm
+from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
@@ -155,6 +156,7 @@ def make_structures(
             "the faults divide space in new parts each time that the surfaces are made in these; "
             "give points of the surfaces in all compartments, or extend the faults"
         )
+    inputs[0].warnings += _warnings_of_idle(structures)
     for entry in inputs:
         entry.warnings += left_out_warnings(entry)
     if joins:
@@ -195,6 +197,18 @@ def _without_gaps(
         return structures
     inputs[0].warnings += warnings
     return replace(structures, faults=faults)
+
+
+def _warnings_of_idle(structures: Structures) -> list[BuildWarning]:
+    """Those of faults that have all of the rock on one side, and of bodies that have it outside."""
+    texts = []
+    for number, (name, sides) in enumerate(zip(structures.names, structures.sides.T, strict=True)):
+        is_below, is_above = (sides < 0).any(), (sides > 0).any()
+        if number < len(structures.faults) and not (is_below and is_above):
+            texts.append(f"fault '{name}' meets no rock and displaces nothing; check its coordinates")
+        elif number >= len(structures.faults) and not is_below:  # inside is below
+            texts.append(f"body '{name}' lies outside of all rock masses; check its coordinates")
+    return [BuildWarning(text, "structure") for text in texts]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:
