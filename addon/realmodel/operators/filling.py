@@ -14,6 +14,7 @@ from ..core import RealModelError, Strata
 from ..core.filling import PALETTES
 from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, STEEPEST
 from .background import InBackground
+from .pictures import by_hand, set_up_first
 from .reporting import not_building, object_mode
 
 _PLAIN = {
@@ -243,7 +244,9 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         beds = sum(VOLUME in item for item in result.objects)
         for warning in self._filling.warnings:
             self.report({"WARNING"}, warning)
-        self.report({"INFO"}, f"{beds} beds: see {result.name}")
+        has_picture = by_hand(self) and set_up_first(bpy.context.scene)
+        renders = "; F12 renders them" if has_picture else ""
+        self.report({"INFO"}, f"{beds} beds: see {result.name}{renders}")
 
     def _show(self):
         """Shows the strata, or says why they cannot be made."""

@@ -483,8 +483,9 @@ class InterpolatedSurface:
         has_data = self.bounds is not None or len(self.surface.tied_points) > 0
         return self.surface.ties and is_free and has_data and bool(dies_out.any())
 
-    def tied(self, sheets: list[Sheet]) -> list[Sheet]:
-        """Its different sheets, tied to the data in their compartments; the same objects where they were."""
+    def tied(self, sheets: list[Sheet]) -> tuple[list[Sheet], list[BuildWarning]]:
+        """Its different sheets, tied to the data in their compartments; the same objects where they were. And
+        warnings about data that they do not honor."""
         structure, mesh = self.entry.divided(), self.entry.planar_mesh()
         active = structure.faults.active(self.number)
         numbers = [sheets.index(structure.sheet(n, self.number)) for n in range(len(structure.sheets))]
@@ -505,10 +506,8 @@ class InterpolatedSurface:
         of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
         data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
-        tied, warnings = tied_sheets(self.work, mesh, z, sided, data)
-        every = list(range(len(structure.compartments)))
+        tied, texts = tied_sheets(self.work, mesh, z, sided, data)
         name, rock = self.surface.name, self.entry.rock.name
-        structure.warnings += [(every, BuildWarning(text, "points", rock, name)) for text in warnings]
         found = []
         for sheet, before, after in zip(sheets, z, tied, strict=True):
             new = (
@@ -518,9 +517,9 @@ class InterpolatedSurface:
             )
             self.made[new] = self.made[sheet]
             if new is not sheet and self.entry.draws is None:
-                self.entry.untied[new] = sheet
+                self.entry.untied[new] = self.entry.untied.get(sheet, sheet)
             found.append(new)
-        return found
+        return found, [BuildWarning(text, "points", rock, name) for text in texts]
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex
