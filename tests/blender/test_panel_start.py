@@ -118,6 +118,25 @@ class Start(PanelCase):
         select()
         self.refused(ops.from_selected, "no mesh object is selected")
 
+    def test_from_selected_interfaces_of_the_model(self):
+        ops.open_sample(sample="two_layers")
+        surfaces = [row.interface for row in self.model.rocks[0].surfaces]
+        heights = [[vertex.co.z for vertex in item.data.vertices] for item in surfaces]
+        ops.section(location=(50.0, 30.0, 0.0), normal=(1.0, 0.0, 0.0))
+        select(bpy.data.objects["Section"], self.model.results[0].object)
+        before = inventory()
+        self.refused(ops.from_selected, "no mesh object is selected")
+        self.assertEqual(inventory(), before)
+        for item in surfaces:
+            item.hide_set(False)
+        select(*surfaces, bpy.data.objects["Section"])
+        ops.from_selected()
+        self.assertEqual([row.object for row in self.model.rocks[0].surfaces], surfaces)
+        self.assertEqual([[vertex.co.z for vertex in item.data.vertices] for item in surfaces], heights)
+        self.assertNotIn("Section", bpy.data.objects)
+        ops.build()
+        self.assertEqual(len(self.volumes()), 1)
+
 
 class Saved(PanelCase):
     """A project file written from the scene gives the same model in batch, byte for byte."""

@@ -12,9 +12,10 @@ from bpy_extras.object_utils import world_to_camera_view
 from made_projects import LIBRARY, other_rock, surface, two_rocks
 from mathutils import Matrix, Vector
 from panel_case import PanelCase, ops
-from realmodel.bl import batch, picture
+from realmodel.bl import batch, built_scene, picture
 from realmodel.bl.display import colors, viewpoints
 from realmodel.core import OutputFailed, Project, Rock, build
+from realmodel.operators.pictures import set_up_first
 
 
 def share_of_hue(image, color, tolerance=0.05):
@@ -207,3 +208,83 @@ class SetUp(PanelCase):
         self.model.view.show_legend = False
         batch.render(self.folder / "none.png", (480, 300), samples=4)
         self.assertEqual((np.ptp(pixels(self.folder / "none.png")[-60:, 8:60], axis=2) > 0.3).mean(), 0.0)
+
+
+class Unasked(PanelCase):
+    """Light and camera of the first build from the panel: only where nobody has cared for them."""
+
+    def begin(self):
+        bpy.ops.wm.read_homefile(use_factory_startup=True)
+        built_scene.write_model(self.scene, build(two_rocks()))
+
+    def test_the_startup_file_gets_light_and_camera(self):
+        self.begin()
+        startup = self.scene.camera
+        before = np.array(startup.matrix_world)
+        self.assertTrue(set_up_first(self.scene))
+        self.assertNotEqual(self.scene.camera, startup)
+        self.assertEqual(np.array(startup.matrix_world).tobytes(), before.tobytes())
+        self.assertTrue(bpy.data.objects["Light"].hide_render and bpy.data.objects["Cube"].hide_render)
+        bpy.context.view_layer.update()
+        self.assertTrue(viewpoints.camera_sees(self.scene))
+
+    def test_what_is_the_users_stays(self):
+        def moved():
+            bpy.data.objects["Camera"].location.x += 0.1
+
+        def lamp():
+            item = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "SUN"))
+            self.scene.collection.objects.link(item)
+
+        def sky():
+            self.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.5
+
+        def picture_as_sky():
+            self.scene.world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+
+        def renderer():
+            self.scene.render.engine = "BLENDER_WORKBENCH"
+
+        def asked():
+            ops.set_up_picture(view="MODEL", sun_azimuth=1.0)
+
+        for change in (moved, lamp, sky, picture_as_sky, renderer, asked):
+            with self.subTest(change.__name__):
+                self.begin()
+                change()
+                before = inventory()
+                self.assertFalse(set_up_first(self.scene))
+                self.assertEqual(inventory(), before)
+                self.assertFalse(bpy.data.objects["Light"].hide_render)
+
+    def test_an_edited_cube_is_no_longer_that_of_the_startup_file(self):
+        self.begin()
+        bpy.data.objects["Cube"].data.vertices[0].co.z = -2.0
+        self.assertTrue(set_up_first(self.scene))
+        self.assertFalse(bpy.data.objects["Cube"].hide_render)
+
+    def test_another_model_is_framed_until_light_or_camera_is_changed(self):
+        def turned():
+            self.scene.camera.rotation_euler.z += 0.1
+
+        def dimmed():
+            lamps = (item for item in self.scene.objects if item.type == "LIGHT")
+            next(lamp for lamp in lamps if picture.KEY in lamp).data.energy = 1.0
+
+        def turning():
+            ops.turntable(frames=4)
+
+        for change in (turned, dimmed, turning):
+            with self.subTest(change.__name__):
+                self.begin()
+                self.assertTrue(set_up_first(self.scene))
+                built_scene.write_model(self.scene, build(Project("other", [other_rock()], LIBRARY)))
+                self.assertTrue(set_up_first(self.scene))
+                change()
+                self.assertFalse(set_up_first(self.scene))
+
+    def test_without_a_model_nothing_is_added(self):
+        bpy.ops.wm.read_homefile(use_factory_startup=True)
+        before = inventory()
+        self.assertFalse(set_up_first(self.scene))
+        self.assertEqual(inventory(), before)

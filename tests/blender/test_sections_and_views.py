@@ -46,6 +46,15 @@ class Sections(Case):
         self.assertLessEqual(set(item.data.materials), shared)
         self.assertEqual(self.contents(), before)
 
+    def test_it_shares_materials_with_blocks_that_are_built_again(self):
+        bpy.ops.realmodel.section(location=(50.0, 40.0, 10.0), normal=(0.0, -2.0, 0.0))
+        used = set(bpy.context.view_layer.objects.active.data.materials)
+        names = {material.name for material in used}
+        bpy.ops.realmodel.clear()
+        bpy.ops.realmodel.build()
+        self.assertLessEqual(used, {m for o in self.blocks().values() for m in o.data.materials})
+        self.assertEqual({material.name for material in used}, names)
+
     def test_at_a_stage(self):
         self.settings.stage = 2
         bpy.ops.realmodel.section(location=(50.0, 40.0, 10.0), normal=(1.0, 0.0, 0.0))

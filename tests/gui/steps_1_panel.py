@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 from driver import hue_differs
 from realmodel.bl import live
+from realmodel.bl.display import viewpoints
 from realmodel.ui import start
 from realmodel.ui.panel import TabPanel
 
@@ -65,6 +66,7 @@ def open_the_example(walk):
     yield lambda: len(model().rocks) == 1
     walk.shot("opened")
     yield lambda: len(model().results) > 0 and idle()
+    assert viewpoints.camera_sees(bpy.context.scene), "F12 would not show the model"
 
 
 def look_at_it(walk):

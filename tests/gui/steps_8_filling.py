@@ -53,7 +53,9 @@ def preview_and_cancel(walk):
 
 
 def fill_and_undo(walk):
-    """Enter makes the beds; Ctrl-Z once takes them all away."""
+    """Enter makes the beds, light and camera; Ctrl-Z once takes them all away."""
+    scene = bpy.context.scene
+    startup = scene.camera.name, scene.world.name, scene.render.engine
     walk.over_viewport()
     invoked(walk, bpy.ops.realmodel.fill_with_strata, preset="FAULTED")
     yield walk.redrawn(4)
@@ -67,10 +69,13 @@ def fill_and_undo(walk):
     beds = bpy.data.collections["Boulder Strata"].objects
     assert len(beds) == 14 and "Strata Preview" not in bpy.data.objects
     assert bpy.data.objects["Boulder"].hide_get()
+    assert bpy.context.scene.camera.name == "RealModel Camera"
     walk.key("Z", ctrl=True)
     yield lambda: "Boulder Strata" not in bpy.data.collections
     assert not bpy.data.objects["Boulder"].hide_get()
-    assert not any(item.name.startswith("Boulder Bed") for item in bpy.data.objects)
+    assert not any(item.name.startswith(("Boulder Bed", "RealModel")) for item in bpy.data.objects)
+    scene = bpy.context.scene
+    assert startup == (scene.camera.name, scene.world.name, scene.render.engine)
     yield walk.redrawn(2)
 
 

@@ -236,7 +236,7 @@ def put(scene, prepared, composed, in_place=False):
 
 def move_helpers(scene, moved):
     """Moves the objects beside a model with it: its section plane and sections, the objects of its data."""
-    items = [item for item in scene.objects if item.get(model_tree.TAG) == "section"]
+    items = model_tree.sections(scene)
     if (plane := scene.realmodel.view.plane) is not None and plane.get(model_tree.TAG) == "view":
         items.append(plane)
     for item in items:
@@ -487,21 +487,22 @@ def _clear(scene):
     planned_holes.update_all(scene)
 
 
-def remove_model(scene):
+def remove_model(scene, kept=()):
     """Removes the whole model from a scene: blocks, the interfaces that were made for it, collections,
-    settings. The user's objects stay, outside of the model's collections."""
-    _remove_model(scene)
+    settings. The user's objects stay, outside of the model's collections. kept: interfaces that are the
+    user's from then on."""
+    _remove_model(scene, kept)
     model_tree.remove_unused_materials()
 
 
-def _remove_model(scene):
+def _remove_model(scene, kept=()):
     _clear(scene)
     group = scene.realmodel
     for _, row in settings.interface_rows(scene):
         item = row.interface
         if item is None:
             continue
-        if row.interface_digest:
+        if row.interface_digest and item not in kept:
             row.interface = row.object = None
             model_tree.remove_objects([item])
         else:

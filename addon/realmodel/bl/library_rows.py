@@ -5,7 +5,7 @@ import bpy
 
 from ..core import Library, Property
 from ..core.results.automatic_library import palette
-from . import materials, settings
+from . import materials, model_tree, settings
 
 _TEXTS = ("rock", "age", "structure", "description")
 NO_LOOK = "NONE"  # the material stays as it is
@@ -145,7 +145,7 @@ def update_materials(scene):
 
 
 def material_of(scene, property_id):
-    """The material of a property: of the scene's blocks, else one that nothing uses, else a new one.
+    """The material of a property: that of the scene's model, else one that nothing uses, else a new one.
     Raises InputRefused for a library that is not valid."""
     known = scene_materials(scene, property_id) or [
         m for m in bpy.data.materials if m.get(materials.KEY) == property_id and not (m.users or m.library)
@@ -157,12 +157,12 @@ def material_of(scene, property_id):
 
 
 def scene_materials(scene, property_id):
-    """The model's materials of a property that its blocks use."""
+    """The materials of a property that the model's blocks and sections use."""
     found = {}
-    for block in scene.realmodel.results:
-        if block.object is None or block.object.type != "MESH":
+    for item in [*(block.object for block in scene.realmodel.results), *model_tree.sections(scene)]:
+        if item is None or item.type != "MESH":
             continue
-        for material in block.object.data.materials:
+        for material in item.data.materials:
             if material is not None and material.get(materials.KEY) == property_id:
                 found[material.name_full] = material
     return list(found.values())

@@ -55,6 +55,11 @@ def model_objects(scene, kind=None):
     return found
 
 
+def sections(scene):
+    """The objects of sections and fences in a scene."""
+    return [item for item in scene.objects if item.get(TAG) == "section"]
+
+
 def remove_objects(objects):
     """Remove objects with their meshes; those of other files stay."""
     for item in objects:

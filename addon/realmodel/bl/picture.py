@@ -21,6 +21,7 @@ from .viewports import towards, view_rotation
 
 KEY = "realmodel_picture"  # on objects and data added here: their purpose
 TURNTABLE = "turntable"  # the empty that is the parent of an animation's camera
+UNASKED = "realmodel_unasked"  # on a camera that nobody has asked for: see first_picture
 
 # Azimuths are clockwise from north (+y).
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
@@ -58,6 +59,7 @@ def set_up(scene, points, size, space=None, legend=(0.0, 0.0), sun=(SUN_AZIMUTH,
     _remove_turntable(scene)
     camera = _own(scene, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
     camera.parent = None
+    camera.pop(UNASKED, None)
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
     if space is None:

@@ -5,6 +5,7 @@ import bpy
 
 from ..bl import build_job, built_scene, live, notices, problems, viewports
 from .background import InBackground, running
+from .pictures import by_hand, set_up_first
 from .reporting import Reporting, a_model, building, not_building
 
 
@@ -32,14 +33,17 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
 
     def tell_done(self, model):
         scene = bpy.data.scenes.get(self._scene)
+        has_picture = False
         if self._is_first and scene is not None:
             viewports.frame(scene, viewports.still_open(self._spaces))
+            has_picture = by_hand(self) and set_up_first(scene)
         present = sum(block.cells > 0 for block in model.blocks)
         for warning in notices.shown(model):
             self.report({"WARNING"}, str(warning))
         seconds = sum(model.timings.values())
         blocks = "1 block" if present == 1 else f"{present} blocks"
-        self.report({"INFO"}, f"Built {blocks} in {seconds:.2f} s")
+        renders = ": F12 renders it" if has_picture else ""
+        self.report({"INFO"}, f"Built {blocks} in {seconds:.2f} s{renders}")
 
 
 class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):

@@ -6,7 +6,7 @@ import math
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from ..bl import animation, overlay, picture
+from ..bl import animation, first_picture, overlay, picture
 from ..bl.display import capture, viewpoints
 from ..bl.viewports import CAMERA_ELEVATION
 from .reporting import Reporting, a_model, a_model_or_beds
@@ -14,6 +14,23 @@ from .reporting import Reporting, a_model, a_model_or_beds
 
 def _size(scene):
     return scene.render.resolution_x, scene.render.resolution_y
+
+
+def by_hand(operator):
+    """Whether an operator was called from the panel or a menu, or again by the panel of the last one, not by
+    a script."""
+    return operator.options.is_invoke or operator.options.is_repeat
+
+
+def set_up_first(scene):
+    """Sets up light and camera for the model or the beds of a scene where nobody has cared for them. Returns
+    whether it did."""
+    is_seen = bpy.context.scene == scene and len(viewpoints.model_points(scene, cut=True)) > 0
+    if not is_seen or not first_picture.is_free(scene):
+        return False
+    bpy.ops.realmodel.set_up_picture(view="MODEL")
+    first_picture.keep(scene)
+    return True
 
 
 class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):

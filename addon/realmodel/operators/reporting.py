@@ -8,7 +8,7 @@ looked at whenever the panel is drawn, so they read nothing but the scene.
 
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..bl import build_job, filled_beds, project_settings, settings, viewports
+from ..bl import build_job, filled_beds, model_tree, project_settings, settings, viewports
 from ..bl.display import cuts
 from ..core import InputRefused, RealModelError
 
@@ -115,9 +115,15 @@ def a_section_plane(context):
     return "there is no section plane; add one first (Section Plane)" if plane is None else None
 
 
-def selected_meshes(context):
-    there = any(settings.is_mesh_object(None, item) for item in context.selected_objects)
-    return None if there else "no mesh object is selected; select the surfaces of your model first"
+def is_sheet(item):
+    """Whether an object can be a surface of a new model: a mesh, and no result of the model that is there."""
+    is_result = item.get(model_tree.TAG) in ("block", "section", "view")
+    return settings.is_mesh_object(None, item) and not is_result
+
+
+def selected_sheets(context):
+    there = any(is_sheet(item) for item in context.selected_objects)
+    return None if there else "no mesh object is selected but results; select surfaces of your model first"
 
 
 def selected_shapes(context):

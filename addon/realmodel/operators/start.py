@@ -31,17 +31,26 @@ from ..core import BuildFailed, Model, load_project
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
 from ..registration import drop_handler
-from .reporting import Reporting, any_surface, chosen_path, file_filter, not_building, selected_meshes
+from .reporting import (
+    Reporting,
+    any_surface,
+    chosen_path,
+    file_filter,
+    is_sheet,
+    not_building,
+    selected_sheets,
+)
 
 _MODEL_ENDING = ".npz"
 
 
-def _begin(scene, name):
-    """An empty model in a scene, in place of the one that is there with its sections."""
-    built_scene.remove_model(scene)
+def _begin(scene, name, kept=()):
+    """An empty model in a scene, in place of the one that is there with its sections. kept: interfaces that
+    stay."""
+    built_scene.remove_model(scene, kept)
     if cuts.plane_of(scene) is not None:
         cuts.remove_plane(scene)
-    model_tree.remove_objects([item for item in scene.objects if item.get(model_tree.TAG) == "section"])
+    model_tree.remove_objects(model_tree.sections(scene))
     group = scene.realmodel
     with settings.filling():
         settings.begin(group)
@@ -231,7 +240,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
     """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
 
     bl_label = "Model from Selected Meshes"
-    needs = (not_building, selected_meshes)
+    needs = (not_building, selected_sheets)
 
     add_base: BoolProperty(
         name="Base",
@@ -249,7 +258,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
         origin = project_settings.model_origin(scene)  # the objects stand where it says
         had_one = ORIGIN_KEY in scene
         heights = np.concatenate([shapes.points(item, depsgraph)[:, 2] for item in chosen]) + origin[2]
-        _begin(scene, "Model")
+        _begin(scene, "Model", chosen)
         if had_one:
             scene[ORIGIN_KEY] = [float(value) for value in origin]
         with settings.filling():
@@ -276,7 +285,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
 
 def _chosen(context):
-    return [item for item in context.selected_objects if settings.is_mesh_object(None, item)]
+    return [item for item in context.selected_objects if is_sheet(item)]
 
 
 def _base_below(heights):

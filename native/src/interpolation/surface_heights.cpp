@@ -18,7 +18,8 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
     positions.reserve(vertices.size());
     for (const auto& [x, y, z] : vertices)
         positions.push_back({x, y});
-    const spatial::MeshLocator locator(positions, triangles);
+    // On the border of a fault, which is asked of each surface, most places lie beside it.
+    const spatial::MeshLocator locator(positions, triangles, spatial::box_around(nodes));
     std::vector<double> z(nodes.size());
     const NodeLoop loop{nodes.size(), 1024, execution};
     loop.over_nodes([] { return 0; },

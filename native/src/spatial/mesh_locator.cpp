@@ -36,21 +36,23 @@ void check_mesh(std::span<const PlanPosition> vertices,
 }  // namespace
 
 MeshLocator::MeshLocator(std::span<const PlanPosition> vertices,
-                         std::span<const Triangle> triangles)
+                         std::span<const Triangle> triangles, const PlanBox& asked)
     : vertices_(vertices), triangles_(triangles) {
     check_mesh(vertices, triangles);
     std::vector<PlanBox> boxes;
-    boxes.reserve(triangles.size());
+    std::vector<std::int32_t> near;
     PlanBox frame = kNoBox;
-    for (const Triangle& triangle : triangles) {
-        boxes.push_back(box_around(corners_of(triangle)));
-        frame = frame.united(boxes.back());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const PlanBox box = box_around(corners_of(triangles[t]));
+        if (!box.meets(asked)) continue;
+        boxes.push_back(box);
+        near.push_back(static_cast<std::int32_t>(t));
+        frame = frame.united(box);
     }
-    tiles_ = PlanTiles(frame, triangles.size());
+    tiles_ = PlanTiles(frame, near.size());
     triangles_at_ = bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
-        for (std::size_t t = 0; t < boxes.size(); ++t) {
-            tiles_.for_each(tiles_.span(boxes[t]),
-                            [&](std::size_t tile) { put(tile, static_cast<std::int32_t>(t)); });
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            tiles_.for_each(tiles_.span(boxes[i]), [&](std::size_t tile) { put(tile, near[i]); });
         }
     });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,10 +25,14 @@ public:
         std::array<double, 3> weights;
     };
 
+    static constexpr PlanBox kEverywhere{-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
     /// The vertices and triangles must outlive this and stay as they are. Triangles may turn either
     /// way; those without area in plan hold no position.
+    /// @param asked  positions outside this box need not be found
     /// @throws InputError kind "not_finite" (items: the vertex), "bad_index" (items: the triangle)
-    MeshLocator(std::span<const PlanPosition> vertices, std::span<const Triangle> triangles);
+    MeshLocator(std::span<const PlanPosition> vertices, std::span<const Triangle> triangles,
+                const PlanBox& asked = kEverywhere);
 
     std::optional<Found> find(const PlanPosition& position) const;
 

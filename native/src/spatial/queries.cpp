@@ -26,6 +26,33 @@ void require_finite(std::span<const PlanPosition> positions, const char* what) {
 
 constexpr std::size_t kPositionsOfChunk = 1024;
 
+/// The plane of a triangle, which shows of most positions that they are too far away. What
+/// triangle_distance gives is never more than rounding nearer than the plane.
+class TrianglePlane {
+public:
+    explicit TrianglePlane(const SpaceTriangle& triangle) : origin_(triangle[0]) {
+        const Vec3 u = minus(triangle[1], origin_), v = minus(triangle[2], origin_);
+        normal_ = cross(u, v);
+        size_ = length(normal_);
+        rounding_ = 1e-14 * length(u) * length(v);
+        for (const Vec3& corner : triangle) {
+            for (const double coordinate : corner)
+                slack_ = std::max(slack_, 1e-14 * size_ * std::abs(coordinate));
+        }
+    }
+
+    bool is_farther(const Vec3& p, double distance) const {
+        const Vec3 apart = minus(p, origin_);
+        return std::abs(dot(apart, normal_)) >
+               distance * size_ + slack_ +
+                   rounding_ * (std::abs(apart[0]) + std::abs(apart[1]) + std::abs(apart[2]));
+    }
+
+private:
+    Vec3 origin_, normal_;
+    double size_, rounding_, slack_ = 0;
+};
+
 }  // namespace
 
 Nearest nearest_points(std::span<const PlanPosition> points,
@@ -55,6 +82,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<const Vec3> positions,
                           double reach, const Execution& execution) {
     const BoxTree tree(boxes_of(triangles), execution.progress);
+    const std::vector<TrianglePlane> planes(triangles.begin(), triangles.end());
     Nearest found{std::vector<std::int32_t>(positions.size(), -1),
                   std::vector<double>(positions.size(), HUGE_VAL)};
     parallel_ranges(
@@ -62,13 +90,11 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<co
             for (std::size_t i = begin; i < end; ++i) {
                 std::int32_t& number = found.number[i];
                 double& least = found.distance[i];
+                const auto bound = [&] { return std::min(least, reach) * kRoundedDistance; };
                 tree.approach(
-                    positions[i],
-                    [&] {
-                        const double bound = std::min(least, reach) * kRoundedDistance;
-                        return bound * bound;
-                    },
+                    positions[i], [&] { return bound() * bound(); },
                     [&](std::int32_t t) {
+                        if (planes[index(t)].is_farther(positions[i], bound())) return;
                         const double away = triangle_distance(positions[i], triangles[index(t)]);
                         if (!(away < reach) || away > least || (away == least && t > number))
                             return;

@@ -36,6 +36,30 @@ TEST(MeshLocator, FindsWhatEveryTriangleSays) {
     EXPECT_NEAR(y, 1, 1e-15);
 }
 
+TEST(MeshLocator, FindsTheSameInABoxThatIsAsked) {
+    std::vector<std::array<double, 2>> vertices;
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    for (int x = 0; x < 12; ++x) {
+        for (int y = 0; y < 12; ++y) {
+            vertices.push_back({x + 0.3 * (y % 2), 1.0 * y});
+            if (x == 0 || y == 0) continue;
+            const std::int32_t at = 12 * x + y;
+            triangles.push_back({at - 13, at - 1, at});
+            triangles.push_back({at, at - 12, at - 13});
+        }
+    }
+    const MeshLocator all(vertices, triangles);
+    const PlanBox asked{3, 4, 5.25, 9};
+    const MeshLocator some(vertices, triangles, asked);
+    for (double x = asked.low_x; x <= asked.high_x; x += 0.25) {
+        for (double y = asked.low_y; y <= asked.high_y; y += 0.25) {
+            ASSERT_TRUE(all.find({x, y}));
+            EXPECT_EQ(some.find({x, y})->triangle, all.find({x, y})->triangle);
+        }
+    }
+    EXPECT_FALSE(MeshLocator(vertices, triangles, kNoBox).find({4, 4}));
+}
+
 TEST(MeshLocator, Refuses) {
     const std::vector<std::array<double, 2>> vertices{{0, 0}, {1, 0}, {0, 1}};
     const std::vector<std::array<std::int32_t, 3>> bad{{0, 1, 3}};

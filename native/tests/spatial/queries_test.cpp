@@ -72,6 +72,35 @@ TEST(NearestTriangles, AreThoseOfAllThatAreWithinReach) {
     }
 }
 
+/// Triangles whose planes show that they are too far away are not looked at: none of those within
+/// reach may be among them, however thin they are and however far from the origin.
+TEST(NearestTriangles, ReachToTheLastBit) {
+    Random random;
+    for (int i = 0; i < 3000; ++i) {
+        const double far = i % 3 == 0 ? 0 : i % 3 == 1 ? 1e3 : 1e7;
+        const double thin = std::pow(10.0, random.number(-9, 0));
+        SpaceTriangle triangle;
+        const Position u = random.position(10), v = random.position(10), from = random.position(1);
+        const double share = random.number(0, 1);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double origin = far + from[k];
+            triangle[0][k] = origin;
+            triangle[1][k] = origin + u[k];
+            triangle[2][k] = origin + share * u[k] + thin * v[k];
+        }
+        Position place = random.position(12);
+        const double a = random.number(-0.1, 1.1), b = random.number(-0.1, 1.1);
+        const double near = std::pow(10.0, random.number(-12, 0));
+        for (std::size_t k = 0; k < 3; ++k)
+            place[k] = triangle[0][k] + a * (triangle[1][k] - triangle[0][k]) +
+                       b * (triangle[2][k] - triangle[0][k]) + near * place[k];
+        const double away = nearest_triangles({&triangle, 1}, {&place, 1}, HUGE_VAL).distance[0];
+        const double reach = std::nextafter(away, HUGE_VAL);
+        EXPECT_EQ(nearest_triangles({&triangle, 1}, {&place, 1}, reach).distance[0], away);
+        EXPECT_EQ(nearest_triangles({&triangle, 1}, {&place, 1}, away).number[0], -1);
+    }
+}
+
 /// A fault reaches far beyond the model: the length of its triangles does not count.
 TEST(NearestTriangles, APlaceOnALongTriangleIsOnIt) {
     const std::vector<SpaceTriangle> needle{

@@ -14,7 +14,7 @@ CORPUS = places.ROOT / "tests" / "data" / "structures"
 
 @dataclass
 class SurfaceCase:
-    """points (P, 3), or vertices (V, 3) with triangles (T, 3). tie: False, or None for the default."""
+    """points (P, 3), or vertices (V, 3) with triangles (T, 3)."""
 
     name: str
     rule: str = "erosional"
@@ -22,7 +22,6 @@ class SurfaceCase:
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
     method: str | None = None
-    tie: bool | None = None
 
 
 @dataclass
@@ -89,7 +88,6 @@ class Case:
                         points=surface.points,
                         method=surface.method,
                         rule=surface.rule,
-                        tie=surface.tie is not False,
                     )
                     for surface in rock.surfaces
                 ],

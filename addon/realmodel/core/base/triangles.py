@@ -49,9 +49,12 @@ def edges_of(triangles: np.ndarray) -> np.ndarray:
 
 def edge_lengths(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(3 T,) the lengths of the edges that edges_of gives, between vertices in plan or in space."""
-    corners = np.ascontiguousarray(vertices.T)[:, triangles.T]
-    step = corners[:, [1, 2, 0]] - corners
-    return np.sqrt((step * step).sum(axis=0)).ravel()
+    squares = np.zeros((3, len(triangles)))
+    for coordinates in vertices.T:
+        corners = np.ascontiguousarray(coordinates)[triangles.T]
+        step = corners[[1, 2, 0]] - corners
+        squares += step * step
+    return np.sqrt(squares).ravel()
 
 
 def median_edge(plan: np.ndarray, triangles: np.ndarray) -> float:

@@ -356,7 +356,7 @@ def _waiting_threads_sleep():
     parallel loops get slower by far. The library reads this once, when it is loaded.
     """
     name = "OMP_WAIT_POLICY"
-    if f"{_PACKAGE}._native" in sys.modules or name in os.environ or "GOMP_SPINCOUNT" in os.environ:
+    if name in os.environ or "GOMP_SPINCOUNT" in os.environ:
         yield
         return
     os.environ[name] = "PASSIVE"
@@ -378,9 +378,11 @@ def refused_as(refusal: Callable[[Any], Exception]) -> Iterator[Native]:
 
 def native_module() -> Native:
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
-    try:
-        with _waiting_threads_sleep():
-            from ... import _native
-    except ImportError as error:
-        raise BuildFailed(missing_native.explanation(error)) from error
-    return cast("Native", _native)
+    loaded = sys.modules.get(f"{_PACKAGE}._native")
+    if loaded is None:
+        try:
+            with _waiting_threads_sleep():
+                from ... import _native as loaded
+        except ImportError as error:
+            raise BuildFailed(missing_native.explanation(error)) from error
+    return cast("Native", loaded)

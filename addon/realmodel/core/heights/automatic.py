@@ -75,8 +75,6 @@ def automatic(task: Task) -> tuple[str, str, Result]:
     trial, reason = choose(task)
     if task.bounds is None:
         return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
-    if task.bounds is None:
-        return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
     task = replace(task, settings=trial.settings)
     return trial.candidate.method, reason, bounded.interpolated(trial.candidate.method, task)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
 from .throws import FEW, OWN, TAKEN, UNKNOWN, Sheets, Shift, Throws
+
+_ROUNDS = 8  # of ties beside faults that die out; one to three are enough where points are few
 
 
 class CompartmentSheets:
@@ -145,23 +147,43 @@ class CompartmentSheets:
         for family in self.every:
             for compartment, sides in family.members.items():
                 structure.sheets[compartment][number] = self.made[family.key][sides]
-        for together in around_tips(structure, number, self.every):
+        self._draw_together(around_tips(structure, number, self.every))
+        if isinstance(self.surface, InterpolatedSurface) and self.surface.ties_at_end:
+            self._tie(self.surface)
+        self.surface.finish(structure.distinct(number))
+
+    def _draw_together(self, families: list[Family]) -> bool:
+        """Makes the sheets of each family equal beyond the tips of its faults; whether one changed."""
+        structure, number = self.entry.divided(), self.number
+        has_changed = False
+        for together in families:
             sheets = {sides: structure.sheet(each, number) for each, sides in together.members.items()}
             drawn = _drawn_together(self.surface, together, sheets)
             for compartment, sides in together.members.items():
-                structure.sheets[compartment][number] = drawn[sides]
-        self._tie()
-        self.surface.finish(structure.distinct(number))
+                before, after = structure.sheet(compartment, number), drawn[sides]
+                structure.sheets[compartment][number] = after
+                has_changed |= after is not before
+                if before in self.entry.untied:
+                    self.entry.untied[after] = self.entry.untied[before]
+        return has_changed
 
-    def _tie(self) -> None:
-        """Ties the sheets to their data together, where they are not tied one by one."""
+    def _tie(self, surface: InterpolatedSurface) -> None:
+        """Ties the sheets to their data together. So they rise or fall, and a fault that is not vertical goes
+        on beyond its tip through other triangles of theirs: they are made equal there, and tied again."""
         structure, number = self.entry.divided(), self.number
-        if not (isinstance(self.surface, InterpolatedSurface) and self.surface.ties_at_end):
-            return
-        before = structure.distinct(number)
-        tied = dict(zip(before, self.surface.tied(before), strict=True))
-        for compartment, sheets in enumerate(structure.sheets):
-            sheets[number] = tied[structure.sheet(compartment, number)]
+        every = (*self.every, *around_tips(structure, number, self.every))
+        around = [replace(family, settled=tuple(family.dying)) for family in every if family.dying]
+        warnings: list[BuildWarning] = []
+        for _ in range(_ROUNDS):
+            before = structure.distinct(number)
+            found, warnings = surface.tied(before)
+            tied = dict(zip(before, found, strict=True))
+            for compartment, sheets in enumerate(structure.sheets):
+                sheets[number] = tied[structure.sheet(compartment, number)]
+            if not self._draw_together(around):
+                break
+        every_compartment = list(range(len(structure.compartments)))
+        structure.warnings += [(every_compartment, warning) for warning in warnings]
 
     def _is_ready(self, others: Iterable[int] | None = None) -> bool:
         """Whether the surfaces that this one needs, or some others, are finished."""

@@ -21,6 +21,7 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
@@ -353,7 +354,7 @@ class InterpolatedSurface:
         surfaces[self.number] = replace(surface, points=points, tie=surface.tie and not self.ties_at_end)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
-        for other in sheets_beside(entry.rock, self.number):
+        for other in self._that_say_more():
             if other != self.number:
                 surfaces[other] = self._with_own_points(family, entry.rock.surfaces[other])
         shapes: list[Sheet | None] = [None] * len(surfaces)
@@ -371,6 +372,13 @@ class InterpolatedSurface:
         )
         give_heights(self.work, one, self.number, trend and self._trend(trend))
         return one
+
+    def _that_say_more(self) -> list[int]:
+        """The surfaces whose data count for it, itself included."""
+        rock = self.entry.rock
+        if self.dips is None and self.bounds is None:
+            return sheets_beside(rock, self.number)
+        return sheets_beside(rock, self.number) or conformable_run(rock, self.number)
 
     def _counts_by_node(self, surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
@@ -475,8 +483,9 @@ class InterpolatedSurface:
         has_data = self.bounds is not None or len(self.surface.tied_points) > 0
         return self.surface.ties and is_free and has_data and bool(dies_out.any())
 
-    def tied(self, sheets: list[Sheet]) -> list[Sheet]:
-        """Its different sheets, tied to the data in their compartments; the same objects where they were."""
+    def tied(self, sheets: list[Sheet]) -> tuple[list[Sheet], list[BuildWarning]]:
+        """Its different sheets, tied to the data in their compartments; the same objects where they were. And
+        warnings about data that they do not honor."""
         structure, mesh = self.entry.divided(), self.entry.planar_mesh()
         active = structure.faults.active(self.number)
         numbers = [sheets.index(structure.sheet(n, self.number)) for n in range(len(structure.sheets))]
@@ -497,10 +506,8 @@ class InterpolatedSurface:
         of_bounds = np.empty(0, int) if self.bounds is None else sheet_of(self.bound_sides)
         data = data_of_sheets(self.points, self.bounds, of_points, of_bounds, len(sheets))
         sided = sides, weights_of_sheets(structure, mesh, z, sides)
-        tied, warnings = tied_sheets(self.work, mesh, z, sided, data)
-        every = list(range(len(structure.compartments)))
+        tied, texts = tied_sheets(self.work, mesh, z, sided, data)
         name, rock = self.surface.name, self.entry.rock.name
-        structure.warnings += [(every, BuildWarning(text, "points", rock, name)) for text in warnings]
         found = []
         for sheet, before, after in zip(sheets, z, tied, strict=True):
             new = (
@@ -510,9 +517,9 @@ class InterpolatedSurface:
             )
             self.made[new] = self.made[sheet]
             if new is not sheet and self.entry.draws is None:
-                self.entry.untied[new] = sheet
+                self.entry.untied[new] = self.entry.untied.get(sheet, sheet)
             found.append(new)
-        return found
+        return found, [BuildWarning(text, "points", rock, name) for text in texts]
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex

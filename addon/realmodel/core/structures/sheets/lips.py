@@ -50,15 +50,18 @@ def beyond_lips(
     ]
     if not any((triangle >= 0).any() for triangle in near):
         return np.empty((0, 3))
-    ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
+    ordinary = np.empty((0, 3))
+    if settings["extrapolate"] == "method":
+        ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
     found = [np.empty((0, 3))]
     for lip, triangle, its in zip(lips, near, corners, strict=True):
-        outward = -lip.side * unit_normals(its)[triangle]
+        own = np.flatnonzero(triangle >= 0)
+        outward = -lip.side * unit_normals(its[triangle[own]])
         level = norm(outward[:, :2])
-        some = (triangle >= 0) & (level > _STEEP)
-        own, outward, level = points[some], outward[some], level[some]
+        some = level > _STEEP
+        own, outward, level = points[own[some]], outward[some], level[some]
         away = np.column_stack([outward[:, :2], np.zeros(len(own))]) * (_AWAY * reach / level**2)[:, None]
-        if settings["extrapolate"] == "method" and len(ordinary):
+        if len(ordinary):
             there, here = (expected_heights(work, ordinary, plan[:, :2]) for plan in (own + away, own))
             rise = there - here
             leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach

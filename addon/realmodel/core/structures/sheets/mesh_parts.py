@@ -4,6 +4,7 @@ as triangles on which each part can be continued."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -130,8 +131,9 @@ def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) ->
 def touched_masks(count: int, triangles: np.ndarray, masks: np.ndarray) -> np.ndarray:
     """(V, F) the sides of each fault on which the triangles at each vertex have a part."""
     touched = np.zeros((count, masks.shape[1]), np.uint8)
-    for corner in range(3):
-        np.bitwise_or.at(touched, triangles[:, corner], masks)
+    for fault, side in itertools.product(range(masks.shape[1]), (LEFT, RIGHT)):
+        own = triangles[(masks[:, fault] & side) > 0]
+        touched[own.ravel(), fault] |= side
     return touched
 
 
