@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -82,7 +83,7 @@ TEST(LevelSetsTest, BallsHaveTheVolumesThatTheyMust) {
         const auto sets = ball.at({1.0, 1.5});
         const LevelSet& own = sets[static_cast<std::size_t>(set)];
         expect_closed(own);
-        const double exact = 4.0 / 3 * M_PI * std::pow(level, 3);
+        const double exact = 4.0 / 3 * std::numbers::pi * std::pow(level, 3);
         EXPECT_NEAR(volume(own), exact, 0.01 * exact);
     }
 }
