@@ -54,14 +54,19 @@ def main():
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--write", type=Path)
     given = parser.parse_args()
-    lines = [*HEADER]
+    page = "" if given.write is None else given.write.read_text(encoding="utf-8")
+    table = TABLE.search(page)
+    if given.write is not None and table is None:
+        parser.error(f"{given.write} has no table with the header\n{HEADER[0]}")
+    rows = {line.split("|")[1].strip(): line for line in table[0].splitlines()[2:]} if table else {}
     for history in HISTORIES:
         if given.history is None or history.name in given.history:
-            lines.append(row(history, given.method, given.seeds))
-            print(lines[-1], flush=True)
-    if given.write is not None:
-        page = given.write.read_text(encoding="utf-8")
-        given.write.write_text(TABLE.sub("\n".join(lines) + "\n", page), encoding="utf-8")
+            rows[history.name] = row(history, given.method, given.seeds)
+            print(rows[history.name], flush=True)
+    if table is not None:
+        lines = [*HEADER, *(rows[history.name] for history in HISTORIES if history.name in rows)]
+        page = page[: table.start()] + "\n".join(lines) + "\n" + page[table.end() :]
+        given.write.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ PANEL_SIZE, PANEL_SCALE = (1900, 2900), 3.0  # where panels are drawn by themsel
 COLORS = 256  # of a picture in its palette
 WIDEST = 1200  # pixels
 LIGHT = "studio.sl"  # of the viewport: brighter than the usual one
+PAPER = (0.9, 0.91, 0.92)  # its background, on which dark layers and letters are seen
 
 
 def main(names):
@@ -78,6 +79,7 @@ def begin(screen, *names):
     preferences.system.use_region_overlap = False
     background = preferences.themes[0].view_3d.space.gradients
     background.background_type = "SINGLE_COLOR"  # a gradient needs many colors of the palette
+    background.high_gradient = PAPER
     realmodel.register()
     TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
     IMAGES.mkdir(parents=True, exist_ok=True)
@@ -322,6 +324,8 @@ def modes(walk):
     yield from example(walk, "castle_hill")
     group = bpy.context.scene.realmodel
     group.view.show_legend = False
+    yield from settled(walk)
+    frame(walk, 0.8)
     pictures = []
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
@@ -331,9 +335,9 @@ def modes(walk):
     group.stage = 5
     yield from settled(walk)
     pictures.append(labeled(middle(walk), "Blocks at Stage 5"))
-    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 1.0
+    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.5
     yield from settled(walk)
-    pictures.append(labeled(middle(walk), "Explode 1"))
+    pictures.append(labeled(middle(walk), "Explode 0.5"))
     group.explode = 0.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
@@ -352,19 +356,26 @@ def modes_of(group):
     return {item.identifier: item.name for item in group.bl_rna.properties["display"].enum_items}
 
 
-def labeled(picture, text):
-    """A picture of the window with a text at its upper left."""
+def labeled(picture, text, labels=()):
+    """A picture of the window with a text at its upper left, and labels: (text, position (x, y), offset)."""
     import numpy as np
-    from gallery_picture import WHITE
+    from gallery_picture import INK, LABEL, WHITE, add_label
     from realmodel.core.drawing.drawing import Drawing
+    from realmodel.core.drawing.glyphs import text_width
     from realmodel.core.drawing.raster import over, rasterize
 
     height, width = picture.shape[:2]
-    drawing = Drawing(width, height)
-    drawing.text(36, height - 76, text, 52.0, WHITE)
+    scale = 28.0 / LABEL
+    drawing = Drawing(width / scale, height / scale)
+    if text:
+        size = 52.0 / scale
+        drawing.rectangle((8, drawing.height - 42, text_width(text, size) + 14, 34), WHITE)
+        drawing.text(15, drawing.height - 32, text, size, INK)
+    for words, place, offset in labels:
+        add_label(drawing, np.array(place) / scale, offset, words)
     pixels = np.ones((height, width, 4), np.float32)
     pixels[:, :, :3] = picture[::-1]
-    over(pixels, rasterize(drawing, 1.0, None), 0, 0)
+    over(pixels, rasterize(drawing, scale, None), 0, 0)
     return pixels[::-1, :, :3]
 
 
@@ -507,20 +518,38 @@ def line(points):
     return item
 
 
+def ghost(items):
+    """The box around objects as thin lines."""
+    import bpy
+    from realmodel.bl import viewports
+
+    bpy.context.view_layer.update()
+    around = viewports.corners(items)
+    low, high = around.min(axis=0), around.max(axis=0)
+    bpy.ops.mesh.primitive_cube_add(location=(low + high) / 2, scale=(high - low) / 2)
+    box = bpy.context.active_object
+    box.display_type = "WIRE"
+    box.select_set(False)
+    return box
+
+
 def section(walk):
-    """A model cut open by a plane, and a fence along a curve, the model around it as a ghost."""
+    """A model cut open by a plane, and a fence along a curve, the box of the model around them."""
     import bpy
     import numpy as np
+    from driver import save_picture
 
     yield from example(walk, "gravel_plain")
     group = bpy.context.scene.realmodel
-    group.view.exaggeration = 5.0
+    group.view.exaggeration = 8.0
+    yield from settled(walk)
+    box = ghost([row.object for row in group.results if row.object])
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
     for item in bpy.context.selected_objects:
         item.select_set(False)
     walk.area.spaces.active.overlay.show_relationship_lines = False
-    frame(walk)
+    fill_view(walk, [box])
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
     bpy.ops.realmodel.section_remove()
     corners = np.concatenate([np.array(row.object.bound_box) for row in group.results if row.object])
@@ -533,10 +562,32 @@ def section(walk):
     curve.hide_set(True)
     for row in group.results:
         if row.object:
-            row.object.display_type = "BOUNDS"
+            row.object.hide_set(True)
     fence.select_set(False)
-    frame(walk)
-    yield from keep(walk, "section_fence", "WINDOW")
+    walk.area.spaces.active.show_region_ui = False
+    yield from settled(walk)
+    fill_view(walk, [box], 0.96)
+    yield from settled(walk)
+    region = walk.region("WINDOW")
+    picture = seen(walk, region)
+    x, y = walk.pixel_of(lake(fence))
+    at = (x - region.x, y - region.y)
+    save_picture(
+        labeled(picture, "", [("The lake: a hole of the region", at, (0, 70))]), IMAGES / "section_fence.png"
+    )
+
+
+def lake(fence):
+    """The middle of the gap in the fence, in the scene."""
+    import json
+
+    import bpy
+    import numpy as np
+
+    region = json.loads((SAMPLES / "gravel_plain" / "region.geojson").read_text(encoding="utf-8"))
+    hole = np.array(region["features"][0]["geometry"]["coordinates"][1])
+    places = np.array([fence.matrix_world @ vertex.co for vertex in fence.data.vertices])
+    return (*(hole.mean(axis=0)[:2] - bpy.context.scene["realmodel_origin"][:2]), places[:, 2].max())
 
 
 def boreholes(walk):
@@ -578,7 +629,7 @@ def mapped(walk):
 
 # -- a graben between two faults
 
-PALETTE = ("#a08c8c", "#d9a35f", "#8fa9b5", "#e3d9ae", "#9db36a", "#d9b8cf")  # by the library's order
+PALETTE = ("#c4aeaa", "#e6b069", "#97c0d6", "#f0e4ab", "#a9cc7a", "#d9b8cf")  # by the library's order
 
 
 def structures(walk):
@@ -593,7 +644,7 @@ def structures(walk):
     for row, color in zip(group.library, PALETTE, strict=False):
         row.color = [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     group.explode_direction, group.explode = "COMPARTMENT", 0.4
-    frame(walk, 0.62)  # of the blocks where they belong
+    frame(walk, 0.66)  # of the blocks where they belong
     yield from settled(walk)
     yield from keep(walk, "structures", "WINDOW")
 

@@ -58,6 +58,7 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     out["values"] = to_array(std::move(made.values));
     out["levels"] = to_array(std::move(made.levels));
     out["anisotropy"] = AnisotropyTuple(made.anisotropy.axes, made.anisotropy.ratios);
+    out["order"] = made.order;
     out["centers"] = made.centers;
     out["misfit"] = made.misfit;
     out["dips_missed"] = to_array(std::move(made.dips_missed));
@@ -95,7 +96,7 @@ lattice: (origin, spacing, counts). contacts: how many surfaces there are, posit
 each (N,), 0 the oldest. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
 (B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
 at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
-one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, centers, misfit, dips_missed,
+one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, order, centers, misfit, dips_missed,
 bounds_missed. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),

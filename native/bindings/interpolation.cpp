@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, fit_sheets, idw, idw_left_out, spline, mean_spacing,
-// nearest_distance, line_sums.
+// krige, krige_left_out, fit_variogram, fit_alike, fit_sheets, idw, idw_left_out, spline,
+// mean_spacing, nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -246,6 +246,33 @@ py::dict fit_variogram(const Array<double>& points,
     return out;
 }
 
+/// Points and dips of a surface.
+using SurfaceTuple = std::tuple<Array<double>, std::optional<DipsTuple>>;
+
+py::list fit_alike(const std::vector<SurfaceTuple>& surfaces,
+                   const std::optional<std::pair<double, double>>& anisotropy,
+                   const std::string& drift, WatchedExecution* execution) {
+    std::vector<interpolation::SurfaceData> data;
+    for (const auto& [points, dips] : surfaces)
+        data.push_back({rows<3>(points, "points"), dips_of(dips)});
+    interpolation::FitOptions options;
+    options.drift = drift_of(drift);
+    options.finds_anisotropy = !anisotropy;
+    const interpolation::Anisotropy along = anisotropy_of(anisotropy);
+    std::vector<interpolation::FittedVariogram> fitted;
+    {
+        const py::gil_scoped_release unlocked;
+        fitted = interpolation::fit_alike(data, along, options, run(execution));
+    }
+    py::list out;
+    for (interpolation::FittedVariogram& each : fitted) {
+        py::dict own = variogram_dict(each.variogram);
+        add_experimental(own, std::move(each.experimental));
+        out.append(own);
+    }
+    return out;
+}
+
 /// The sheet of each point and of each dip, and how many there are.
 using SheetNumbersTuple = std::tuple<Array<std::int32_t>, Array<std::int32_t>, std::size_t>;
 
@@ -274,6 +301,7 @@ std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbe
     py::dict out = variogram_dict(fitted->variogram);
     add_experimental(out, std::move(fitted->experimental));
     out["thickness"] = fitted->thickness;
+    out["points"] = fitted->points;
     out["constants"] = to_array(std::move(fitted->constants));
     return out;
 }
@@ -399,19 +427,34 @@ Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth
 krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
 Cancelled.)");
+    module.def("fits_by_likelihood", &interpolation::fits_by_likelihood, arg("points"),
+               arg("has_dips"), arg("has_bounds"),
+               "Whether fit_variogram finds the variogram of so many points by likelihood.");
+    module.def(
+        "fit_alike", &fit_alike, arg("surfaces"), arg("anisotropy") = py::make_tuple(1.0, 0.0),
+        arg("drift") = "constant", arg("execution") = py::none(),
+        R"(Fits variograms of one shape to surfaces of which heights vary alike, by likelihood.
+
+surfaces    (points (P, 3) float64, dips) of each, as fit_variogram
+anisotropy, drift  as fit_variogram
+
+Returns a list of dicts as of fit_variogram, one for each surface; empty where there is none, or the
+data are too few.
+Raises InputError as fit_variogram; Cancelled.)");
     module.def(
         "fit_sheets", &fit_sheets, arg("points"), arg("sheets"),
         arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
         arg("dips") = py::none(), arg("variogram") = py::none(), arg("execution") = py::none(),
-        R"(Fits what sheets have in common to their points (P, 3) float64, at most 150, and dips.
+        R"(Fits what sheets have in common to their points (P, 3) float64, or an even part of them, and dips.
 
 sheets      (sheet of each point (P,), of each dip (D,) int32, their number)
 anisotropy, drift, dips  as fit_variogram
 variogram   one that is not to be changed, as krige takes it; None: the likeliest
 
-Returns a dict: the variogram of the field that they share, as fit_variogram; thickness, the variance of each thickness between two of them in units of its sill; and
-constants (S,) float64, what each lies above the first point. None where the data are too few or too
-many.
+Returns a dict: the variogram of the field that they share, as fit_variogram; thickness, the
+variance of each thickness between two of them in units of its sill; constants (S,) float64, what
+each lies above the first point; and points, how many of them counted. None where the data are too
+few.
 Raises InputError as fit_variogram; Cancelled.)");
 }
 

@@ -56,7 +56,7 @@ def measure(history: History, seed: int = 1) -> Measured:
 
 
 def _dips(history: History, draw: np.random.Generator) -> list[Dips | None]:
-    """Where a block on either side of a surface crops out, or anywhere if none does, its slope there."""
+    """Where a block on either side of a surface crops out, its slope there."""
     plan = draw.uniform(0, LENGTH, (4000, 2))
     ground = history.block_at(np.column_stack([plan, history.heights(plan)[-1] - 0.01]))
     found: list[Dips | None] = []

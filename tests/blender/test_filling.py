@@ -67,6 +67,7 @@ class Filling(PanelCase):
             ("CANYON", 24),
             ("ISLAND", 9),
             ("FOLDED", 16),
+            ("OVERTURNED", 16),
             ("FAULTED", 14),
             ("PRINT", 4),
         ):

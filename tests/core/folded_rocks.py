@@ -39,6 +39,7 @@ def given_field(monkeypatch, f, levels):
             values=own(lattice.positions()),
             levels=levels,
             anisotropy=Anisotropy(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (1.0, 1.0, 1.0)),
+            order=3,
             centers=len(data.contacts),
             misfit=0.0,
             dips_missed=none,

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces by the method auto that are conformable: a series is proposed."""
+"""Conformable surfaces: their heights vary alike; of those by the method auto a series is proposed."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from realmodel.core import Project, Surface, build
+from realmodel.core import Dips, Fault, Project, Surface, build
 from test_series_of_sheets import height, rock_of, surfaces_of
 
 
@@ -56,3 +56,62 @@ def test_what_is_not_proposed():
     assert proposed(automatic([15, 7], 4)) == [], "too few contacts show nothing"
     assert proposed(automatic([301, 60], 2)) == [], "so many show it themselves"
     assert proposed(surfaces_of([15, 15, 15], 4)) == [], "they are a series"
+
+
+def fold(plan):
+    """Folds whose axes run north and plunge."""
+    return 60 * np.sin(plan[:, 0] / 90) + 15 * np.sin(plan[:, 1] / 200)
+
+
+def folds(rules, methods=("kriging",) * 3):
+    """Of the oldest surface few contacts are known, and one dip."""
+    surfaces = []
+    for number, (rule, method) in enumerate(zip(rules, methods, strict=True)):
+        draw = np.random.default_rng(number)
+        contacts, plan = (draw.uniform(0, 1000, (count, 2)) for count in ((9, 1) if not number else (14, 14)))
+        points = np.column_stack([contacts, fold(contacts) + 50 * number])
+        slopes = np.column_stack([60 / 90 * np.cos(plan[:, 0] / 90), 15 / 200 * np.cos(plan[:, 1] / 200)])
+        dips = Dips(plan, slopes)
+        surfaces.append(Surface(f"S{number}", points=points, dips=dips, rule=rule, method=method))
+    return surfaces
+
+
+def of_oldest(model):
+    """Its error, and its variogram."""
+    vertices, _ = model.surface(0)
+    return np.std(vertices[:, 2] - fold(vertices[:, :2])), model.interpolations[0].variogram
+
+
+def test_conformable_surfaces_share_how_their_heights_vary():
+    """So those with few data are as smooth, and in the same direction, as the others."""
+    rules = ("erosional", "conformable", "conformable")
+    error, found = of_oldest(build(Project("p", [rock_of(folds(rules))])))
+    alone, _ = of_oldest(build(Project("p", [rock_of(folds(["erosional"] * 3))])))
+    assert error < 0.7 * alone
+    assert found.anisotropy["ratio"] > 3
+    assert min(found.anisotropy["azimuth"], 180 - found.anisotropy["azimuth"]) < 5
+
+
+def test_what_is_not_conformable_says_nothing():
+    """Nor does a surface of a method without a variogram."""
+    alone = of_oldest(build(Project("p", [rock_of(folds(["erosional"] * 3))])))[1]
+    for rules, methods in (
+        (("base", "conformable", "conformable"), ("kriging",) * 3),
+        (("erosional", "erosional", "conformable"), ("kriging",) * 3),
+        (("erosional", "conformable", "conformable"), ("kriging", "spline", "spline")),
+    ):
+        assert of_oldest(build(Project("p", [rock_of(folds(rules, methods))])))[1] == alone
+
+
+def test_in_each_compartment_its_own_data_count():
+    """A throw between them does not change how heights vary."""
+    surfaces = folds(("erosional", "conformable", "conformable"))
+    for surface in surfaces:
+        surface.points[surface.points[:, 1] > 500, 2] += 400
+    trace = np.array([[-100.0, 500], [1100, 500]])
+    model = build(
+        Project("p", [rock_of(surfaces)], faults=[Fault("F", trace=trace, dip=90, dip_direction=0)])
+    )
+    found = model.interpolations[0].variogram
+    assert found.sill < 100**2
+    assert model.interpolations[1].variogram.range == found.range

@@ -159,6 +159,16 @@ def test_collars_with_directions(write):
     assert alone.warnings == []
 
 
+def test_a_column_that_is_called_inclination_holds_dips(write):
+    """As the refusal of its angles advises."""
+    collars = "hole,x,y,z,azimuth,Incl (from horizontal)\nB1,0,0,0,270,-30\n"
+    picks = "hole,surface,depth\nB1,clay,10\n"
+    with pytest.raises(InputRefused, match='dip = "incl"'):
+        read(write, None, collars, picks)
+    met = read(write, None, collars, picks, columns={"dip": "incl"})
+    np.testing.assert_allclose(met.points["clay"], [[-10 * math.cos(math.pi / 6), 0, -5]], **NEAR)
+
+
 def test_depths_in_feet(write):
     met = read(
         write,

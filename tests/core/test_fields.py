@@ -310,3 +310,28 @@ def test_folds_of_known_truth(name):
     found = np.searchsorted(field.levels, field.at(places))
     assert (found == block[block >= 0]).mean() > 0.993
     assert not len(field.critical_points)
+
+
+def test_between_rough_surfaces_the_field_does_not_turn_back():
+    rng = np.random.default_rng(8)
+    waves = [(rng.uniform(0, 2 * np.pi, 3), length) for length in (900, 500, 300, 180, 110) for _ in range(2)]
+
+    def relief(points):
+        heights = [
+            0.035 * length * np.sin(2 * np.pi / length * (points[:, :2] @ [np.cos(a), np.sin(a)]) + phase)
+            for (a, phase, _), length in waves
+        ]
+        return np.sum(heights, axis=0)
+
+    plan = rng.uniform(15.0, 985.0, (700, 2))
+    surfaces = rng.integers(0, 2, 700).astype(np.int32)
+    base, top = 250.0 + relief(plan), 550.0 + 0.3 * relief(plan + 5000.0)
+    contacts = np.column_stack([plan, np.where(surfaces == 0, base, top)])
+    field = _solve(LevelSetData(NAMES[:2], contacts, surfaces))
+    assert field.order == 2
+    between = np.column_stack([plan, 0.5 * (base + top)])
+    share = (field.at(between) - field.levels[0]) / np.diff(field.levels)
+    assert np.abs(share - 0.5).max() < 0.15
+    assert len(field.critical_points) <= 4
+    smooth = _solve(_data(overturned))
+    assert smooth.order == 3

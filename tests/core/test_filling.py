@@ -25,6 +25,16 @@ CASES = {
     "level": Strata(beds=5),
     "steep": Strata(beds=9, dip=85, dip_direction=200, faults=2, throw=0.6, fault_strike=70),
     "folded": FOLDED,
+    "overturned": replace(FOLDED, fold_amplitude=0.5, axial_dip=30, fault_strike=130),
+    "recumbent": Strata(
+        beds=7,
+        dip=20,
+        dip_direction=90,
+        fold_amplitude=0.6,
+        fold_wavelength=3,
+        axial_dip=10,
+        unconformity=0.7,
+    ),
     "parallel": Strata(beds=6, dip=30, fold_amplitude=0.2, fold_wavelength=1.5, faults=2, throw=0.5, seed=3),
     "unconformity": Strata(beds=9, dip=40, dip_direction=10, faults=2, throw=0.5, unconformity=0.6, seed=2),
 }
@@ -149,6 +159,44 @@ def test_folds_have_their_amplitude_and_wavelength():
     assert along[:100] == pytest.approx(along[0])
 
 
+def test_overturned_folds():
+    """Older rock lies above younger, and the axial planes dip as they should."""
+    strata = Strata(beds=9, variation=0, fold_amplitude=1.0, fold_wavelength=4.0, axial_dip=45, fold_axis=0)
+    corners = box((0, 0, 0), (12, 3, 6))
+    beds = lay_beds(strata, corners[0])
+    heights = np.linspace(0, 6, 3001)
+
+    def above(x, y):
+        return beds.numbers(np.column_stack([np.full(3001, x), np.full(3001, y), heights]))
+
+    assert any((np.diff(above(x, 1.0)) < 0).any() for x in np.linspace(1, 11, 21))
+    axial = np.column_stack([heights + 1.0, np.full(3001, 1.0), heights])  # a line in such a plane
+    assert (np.diff(beds.numbers(axial)) >= 0).all()
+    assert (above(3.0, 0.5) == above(3.0, 2.5)).all()
+    model = fill_with_strata(*corners, strata)
+    assert model.validate().passed
+    assert model.volume == pytest.approx(216, rel=1e-12)
+    inner = np.random.default_rng(1).uniform((0, 0, 0), (12, 3, 6), (80, 3))
+    assert (blocks_of(model, inner) == beds.numbers(inner)).all()
+
+
+def test_beds_keep_their_dip_and_thickness_where_their_folds_lean():
+    plain = Strata(beds=7, thickness=0.5, variation=0, dip=40, dip_direction=70)
+    leaning = replace(plain, fold_amplitude=1e-9, fold_wavelength=9, axial_dip=35, fold_axis=100)
+    corners = np.array([(-9.0, -9, -9), (9, 9, 9)])
+    points = np.random.default_rng(2).uniform(-1, 1, (400, 3))
+    one, other = (lay_beds(strata, corners).numbers(points) for strata in (plain, leaning))
+    assert np.abs(one - other).max() <= 1 and len(set(one.tolist())) > 3
+    step = np.array(
+        [math.sin(math.radians(40)) * math.sin(math.radians(70)), 0.0, math.cos(math.radians(40))]
+    )
+    step[1] = math.sin(math.radians(40)) * math.cos(math.radians(70))  # at right angles to the beds
+    through = lay_beds(leaning, corners).numbers(np.linspace(-1.2, 1.2, 2401)[:, None] * step)
+    assert np.unique(through, return_counts=True)[1][1:-1] == pytest.approx(500, abs=2)
+    with pytest.raises(InputRefused, match=r"as steep as the axial planes .*; choose a smaller dip"):
+        lay_beds(replace(leaning, dip=60, dip_direction=10), corners)
+
+
 def test_level_beds_cover_an_unconformity():
     corners = box((0, 0, 0), (10, 10, 10))
     strata = Strata(beds=10, dip=30, unconformity=0.7, variation=0)
@@ -178,7 +226,8 @@ def test_gaps_and_pegs():
 @pytest.mark.parametrize("name", CASES)
 def test_gaps_part_all_beds(name):
     """In folds, along faults and over an unconformity."""
-    strata = replace(CASES[name], gap=0.01, pegs=3, peg_size=0.12)
+    pegs = 0 if CASES[name].has_leaning_folds else 3
+    strata = replace(CASES[name], gap=0.01, pegs=pegs, peg_size=0.12)
     vertices, triangles = ball()
     model = fill_with_strata(vertices, triangles, strata)
     assert model.validate().passed
@@ -277,6 +326,15 @@ def test_refusals_name_the_place_and_what_to_do():
         ({"thickness": "thin"}, "thickness must be a number"),
         ({"palette": "rainbow"}, "palette must be one of"),
         ({"beds": 1, "unconformity": 0.5}, "beds must be 2 or more"),
+        ({"axial_dip": 5}, "axial_dip must be from 10 to 90"),
+        (
+            {"fold_amplitude": 1, "fold_wavelength": 1, "axial_dip": 40, "faults": 1, "fold_axis": 10},
+            "fault_strike must be at right angles to fold_axis where axial_dip is below 90, such as 100",
+        ),
+        (
+            {"fold_amplitude": 1, "fold_wavelength": 1, "axial_dip": 40, "pegs": 1, "peg_size": 1, "gap": 1},
+            "pegs must be 0 where axial_dip is below 90",
+        ),
         ({"fold_wavelength": -1}, "fold_wavelength must be at least 0"),
     ],
 )

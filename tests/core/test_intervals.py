@@ -107,6 +107,7 @@ def rows(observations):
         ("hole,from,to,block", {}, ","),
         ("BHID;FROM;TO;LITHOLOGY", {}, ";"),
         ("Well\tDepth_From (m)\tDepth_To (m)\tUnit", {}, "\t"),
+        ("Hole-ID;Depth From (m);Depth To (m);Lith Code", {}, ";"),
         ("who,a,b,c", {"columns": {"hole": "who", "from": "a", "to": "b", "block": 4}}, ","),
     ],
 )

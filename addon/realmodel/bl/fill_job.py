@@ -125,9 +125,9 @@ class FillJob(ThreadJob):
 
     def _work(self, job):
         with job.part(0.0, _SHARE), named(self._shape.name):
-            model = fill_within(job, self._mesh, self._strata)
+            model, places = fill_within(job, self._mesh, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
-            local = self._shape.to_local(model.vertices)
+            local = self._shape.to_local(places)
             found = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
             found = [
                 None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in found

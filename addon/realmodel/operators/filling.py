@@ -12,7 +12,7 @@ from ..bl.fill_job import FilledShape, FillJob
 from ..bl.fill_preview import FillPreview
 from ..core import RealModelError, Strata
 from ..core.filling import PALETTES
-from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, STEEPEST
+from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT
 from .background import InBackground
 from .pictures import by_hand, set_up_first
 from .reporting import not_building, object_mode
@@ -24,6 +24,7 @@ _PLAIN = {
     "dip": 0.0,
     "fold_amplitude": 0.0,
     "fold_wavelength": 0.5,
+    "axial_dip": math.radians(UPRIGHT),
     "faults": 0,
     "throw": 0.1,
     "unconformity": 0.0,
@@ -38,6 +39,17 @@ _PRESETS = {
     "FOLDED": (
         "Folded",
         {"beds": 16, "dip": math.radians(10), "fold_amplitude": 0.15, "palette": "DESERT"},
+    ),
+    "OVERTURNED": (
+        "Overturned",
+        {
+            "beds": 16,
+            "dip": math.radians(4),
+            "fold_amplitude": 0.25,
+            "fold_wavelength": 0.7,
+            "axial_dip": math.radians(30),
+            "palette": "CLIFF",
+        },
     ),
     "FAULTED": (
         "Faulted",
@@ -123,6 +135,15 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     fold_amplitude: _share("Fold Amplitude", "As a share of the height of the mesh; 0: no folds", soft=0.5)
     fold_wavelength: _share("Fold Wavelength", "As a share of the width of the mesh; 0: no folds", 0.5)
     fold_axis: _azimuth("Fold Axis", "Direction of the fold axes", 30.0)
+    axial_dip: FloatProperty(
+        name="Axial Dip",
+        description="Dip of the axial planes of folds: 90 upright, 10 recumbent. Folds lean to the right of "
+        "their axis; the fault strike is at right angles to it then",
+        subtype="ANGLE",
+        default=math.radians(UPRIGHT),
+        min=math.radians(RECUMBENT),
+        max=math.radians(UPRIGHT),
+    )
     faults: IntProperty(name="Faults", description="How many", default=0, min=0, max=MOST_FAULTS, soft_max=10)
     throw: _share("Throw", "Of each fault, as a share of the height of the mesh", 0.1, soft=0.5)
     fault_strike: _azimuth("Fault Strike", "Direction of the faults, which are vertical", 20.0)
@@ -207,7 +228,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         groups = (
             ("preset", "palette", "rock_looks", "seed"),
             ("beds", "thickness", "variation", "dip", "dip_direction"),
-            ("fold_amplitude", "fold_wavelength", "fold_axis"),
+            ("fold_amplitude", "fold_wavelength", "fold_axis", "axial_dip"),
             ("faults", "throw", "fault_strike"),
             ("unconformity", "base_depth", "masks"),
             ("gap", "pegs", "peg_size"),
@@ -275,6 +296,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
             fold_amplitude=self.fold_amplitude * height,
             fold_wavelength=self.fold_wavelength * width,
             fold_axis=_degrees(self.fold_axis),
+            axial_dip=min(max(round(math.degrees(self.axial_dip), 4), RECUMBENT), UPRIGHT),
             faults=self.faults,
             throw=self.throw * height,
             fault_strike=_degrees(self.fault_strike),

@@ -36,7 +36,7 @@ public:
     Candidate best(std::span<const Likely> of) const {
         std::vector<double> found(of.size(), kNever);
         parallel_chunks(of.size(), execution_, [&](std::size_t n) {
-            const Spline spline(known_, map_of(of[n].anisotropy), of[n].errors, {1, nullptr});
+            const Spline spline(known_, of[n].smoothness(), {1, nullptr});
             found[n] = spline.log_likelihood().value_or(kNever);
         });
         const auto at = std::max_element(found.begin(), found.end()) - found.begin();

@@ -17,6 +17,7 @@
 #include "fields/lattice_values.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/fields/critical_points.hpp"
 
 namespace realmodel::fields {
 
@@ -42,6 +43,10 @@ constexpr double kSuspect = 8, kAsMuch = 0.1;
 // millions.
 constexpr double kPays = 400;
 constexpr double kApart = 0.1;  // of half of the lattice's diagonal
+// What a critical point of the field through the sample costs, as a logarithm of likelihood, and on
+// how many nodes they are counted.
+constexpr double kPerCriticalPoint = 20;
+constexpr std::size_t kMostCounted = 50000;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
 
@@ -52,6 +57,19 @@ Cube cube_of(const KnownData& known, std::size_t contact, double size) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         cube[axis] = static_cast<std::int64_t>(std::floor(known.contacts()[contact][axis] / size));
     return cube;
+}
+
+/// The box of a lattice with nodes farther apart, at most about `most` of them.
+Lattice coarsened(const Lattice& lattice, std::size_t most) {
+    Lattice out = lattice;
+    for (int step = 2; out.nodes() > most; ++step) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int steps = lattice.counts[axis] - 1;
+            out.counts[axis] = std::max(steps / step, 1) + 1;
+            out.spacing[axis] = lattice.spacing[axis] * steps / (out.counts[axis] - 1);
+        }
+    }
+    return out;
 }
 
 /// At most about `most` of some contacts: of each surface one in each of equal cubes.
@@ -73,8 +91,11 @@ std::vector<std::size_t> thinned(const KnownData& known, std::size_t most) {
 /// The field while more of the data get into it.
 class Solution {
 public:
-    Solution(const KnownData& known, const FieldOptions& options, const Execution& execution)
-        : known_(known),
+    Solution(const Lattice& lattice, const KnownData& known, const FieldOptions& options,
+             const Execution& execution)
+        : lattice_(lattice),
+          half_spacing_(0.5 * std::ranges::min(lattice.spacing) / known.frame().unit),
+          known_(known),
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
@@ -99,6 +120,8 @@ public:
         fit();
         refuse_contradictions();
         inequalities_ = known_.inequalities();
+        for (Inequality& inequality : inequalities_)
+            inequality.functional = for_order(likely_, inequality.functional);
         refuse_polarities();
         states_.assign(inequalities_.size(), {});
         meet();
@@ -106,32 +129,25 @@ public:
         }
     }
 
-    Field field(const Lattice& lattice) {
+    Field field() {
         Field out;
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        const auto at_nodes = lattice_values(
-            lattice,
-            [&](std::span<const Vec3> positions, std::span<double> values) {
-                std::vector<Vec3> local(positions.size());
-                std::transform(positions.begin(), positions.end(), local.begin(),
-                               [&](const Vec3& at) { return known_.frame().to_local(at); });
-                spline_->values_at(local, values);
-                for (double& value : values)
-                    value *= unit;
-            },
-            execution_);
-        out.values = balanced(at_nodes, lattice, execution_);
+        std::vector<double> at_nodes = values_of(*spline_, lattice_);
+        for (double& value : at_nodes)
+            value *= unit;
+        out.values = balanced(at_nodes, lattice_, execution_);
         for (const double level : levels())
             out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
+        out.order = likely_.order;
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
         report_missed(out);
         std::vector<char> kept(known_.data().bounds.size(), 1);
         for (const std::int64_t bound : out.bounds_missed)
             kept[static_cast<std::size_t>(bound)] = 0;
-        keep_bounds(lattice, known_.data(), kept, out.levels, out.values);
+        keep_bounds(lattice_, known_.data(), kept, out.levels, out.values);
         return out;
     }
 
@@ -194,8 +210,13 @@ private:
         return out;
     }
 
-    /// The fixed functionals, of many dips only some, and the sample.
-    std::vector<Functional> sampled(std::span<const double> gaps) const {
+    /// A functional as splines of the order take it.
+    Functional for_order(const Likely& likely, const Functional& functional) const {
+        return likely.order == 2 ? functional.by_differences(half_spacing_) : functional;
+    }
+
+    /// The fixed functionals, of many dips only some.
+    std::vector<Functional> with_some_dips(std::span<const double> gaps) const {
         std::vector<Functional> fixed = known_.fixed(gaps);
         const std::size_t dips = known_.data().dips.size();
         const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
@@ -203,6 +224,14 @@ private:
         for (std::size_t n = 0; n < fixed.size(); ++n) {
             if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
         }
+        return out;
+    }
+
+    /// These, and the sample.
+    std::vector<Functional> sampled(std::span<const double> gaps, const Likely& likely) const {
+        std::vector<Functional> out = with_some_dips(gaps);
+        for (Functional& functional : out)
+            functional = for_order(likely, functional);
         for (const std::size_t n : sample_)
             out.push_back(known_.on_surface(n));
         return out;
@@ -213,11 +242,12 @@ private:
     /// together.
     void find_likely() {
         const auto look = [&] {
-            likely_ = most_likely(sampled(gaps_), known_.data().normals, execution_);
+            likely_ = most_likely(sampled(gaps_, {}), known_.data().normals, execution_);
+            choose_order();
         };
         look();
         if (known_.data().surfaces < 3) return;
-        const Spline spline(sampled(gaps_), map_of(likely_.anisotropy), likely_.errors, execution_);
+        const Spline spline(sampled(gaps_, likely_), likely_.smoothness(), execution_);
         double low = 1e300, high = 0;
         const std::vector<double> apart = distances();
         for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
@@ -232,17 +262,53 @@ private:
         look();
     }
 
+    /// Between rough surfaces the function whose third derivatives are least overshoots, and has
+    /// critical points. That whose second ones are least bends at contacts instead. It is taken
+    /// where it has so many fewer of them that the data may be less likely.
+    void choose_order() {
+        const Likely rough{kIsotropic, {}, 2};
+        if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
+    }
+
+    double log_probability(const Likely& likely) const {
+        std::vector<Functional> known;
+        for (const Functional& functional : with_some_dips(gaps_))
+            known.push_back(functional.by_differences(half_spacing_));
+        for (const std::size_t n : thinned(known_, kFirstCenters)) {
+            if (n != known_.reference(known_.surface_of(n))) known.push_back(known_.on_surface(n));
+        }
+        const Spline spline(known, likely.smoothness(), execution_);
+        const std::optional<double> likelihood = spline.log_likelihood();
+        if (!likelihood) return -HUGE_VAL;
+        const Lattice coarse = coarsened(lattice_, kMostCounted);
+        const auto points = critical_points(coarse, values_of(spline, coarse), execution_);
+        return *likelihood - kPerCriticalPoint * static_cast<double>(points.size());
+    }
+
+    /// At the nodes of a lattice, in the frame.
+    std::vector<double> values_of(const Spline& spline, const Lattice& lattice) const {
+        return lattice_values(
+            lattice,
+            [&](std::span<const Vec3> positions, std::span<double> values) {
+                std::vector<Vec3> local(positions.size());
+                std::transform(positions.begin(), positions.end(), local.begin(),
+                               [&](const Vec3& at) { return known_.frame().to_local(at); });
+                spline.values_at(local, values);
+            },
+            execution_);
+    }
+
     /// Differences of levels with which the field is as steep between all surfaces.
     /// @param apart  how far each surface is from the next
     void find_gaps(const std::vector<double>& apart, const Likely& likely) {
         const std::int32_t last = known_.data().surfaces - 1;
         gaps_ = apart;
-        Spline spline(sampled(gaps_), map_of(likely.anisotropy), likely.errors, execution_);
+        Spline spline(sampled(gaps_, likely), likely.smoothness(), execution_);
         for (int round = 0; round < kGapRounds; ++round) {
             const std::vector<double> steep = steepness(spline);
             for (std::int32_t k = 0; k < last; ++k)
                 gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
-            spline.set_right(sampled(gaps_));
+            spline.set_right(sampled(gaps_, likely));
         }
     }
 
@@ -287,7 +353,9 @@ private:
     }
 
     void fit() {
-        std::vector<Functional> all = known_.fixed(gaps_);
+        std::vector<Functional> all;
+        for (const Functional& functional : known_.fixed(gaps_))
+            all.push_back(for_order(likely_, functional));
         first_contact_ = all.size();
         for (std::size_t n = 0; n < is_center_.size(); ++n) {
             if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
@@ -299,7 +367,7 @@ private:
             all.push_back(inequalities_[n].functional);
             all.back().right = inequalities_[n].least;
         }
-        spline_.emplace(all, map_of(likely_.anisotropy), likely_.errors, execution_);
+        spline_.emplace(all, likely_.smoothness(), execution_);
     }
 
     /// How far contacts are from their surfaces, nearly.
@@ -477,7 +545,8 @@ private:
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
-        const Spline spline(sampled({}), map_of(kIsotropic), {1e-6, 1e-3}, execution_);
+        const Likely rough{kIsotropic, {1e-6, 1e-3}};
+        const Spline spline(sampled({}, rough), rough.smoothness(), execution_);
         const double mean_gap = known_.total_gap() / last;
         for (std::int32_t k = 0; k < last; ++k) {
             if (level_in(spline, k + 1) - level_in(spline, k) >= -kWrongOrder * mean_gap) continue;
@@ -547,6 +616,8 @@ private:
         }
     }
 
+    Lattice lattice_;
+    double half_spacing_;  // in the frame: over which dips are measured where the order is 2
     const KnownData& known_;
     FieldOptions options_;
     Execution execution_;
@@ -566,9 +637,9 @@ private:
 Field solve_field(const Lattice& lattice, const FieldData& data, const FieldOptions& options,
                   const Execution& execution) {
     const KnownData known(lattice, data);
-    Solution solution(known, options, execution);
+    Solution solution(lattice, known, options, execution);
     solution.solve();
-    return solution.field(lattice);
+    return solution.field();
 }
 
 }  // namespace realmodel::fields

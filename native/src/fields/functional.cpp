@@ -5,11 +5,12 @@ namespace realmodel::fields {
 
 namespace {
 
-double between(const ValueAtom& a, const ValueAtom& b, double error) {
+double between(const ValueAtom& a, const ValueAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double squared = dot(d, d);
-    if (!(squared > 0)) return a.measured && b.measured ? error * a.weight * b.weight : 0;
-    return a.weight * b.weight * squared * std::sqrt(squared);
+    if (!(squared > 0)) return a.measured && b.measured ? kernel.error * a.weight * b.weight : 0;
+    const double r = std::sqrt(squared);
+    return a.weight * b.weight * (kernel.order == 2 ? -r : squared * r);
 }
 
 double between(const ValueAtom& a, const SlopeAtom& b) {
@@ -44,11 +45,24 @@ Vec3 Functional::of_coordinates() const {
     return sum;
 }
 
-double Functional::with(const Functional& other, double error) const {
+Functional Functional::by_differences(double step) const {
+    Functional out = *this;
+    out.slopes.clear();
+    for (const SlopeAtom& atom : slopes) {
+        const double size = length(atom.along);
+        const Vec3 ahead = times(step / size, atom.along);
+        const double weight = size / (2 * step);
+        out.values.push_back({plus(atom.at, ahead), weight});
+        out.values.push_back({minus(atom.at, ahead), -weight});
+    }
+    return out;
+}
+
+double Functional::with(const Functional& other, const Kernel& kernel) const {
     double sum = 0;
     for (const ValueAtom& a : values) {
         for (const ValueAtom& b : other.values)
-            sum += between(a, b, error);
+            sum += between(a, b, kernel);
         for (const SlopeAtom& b : other.slopes)
             sum += between(a, b);
     }

@@ -21,6 +21,13 @@ struct ValueAtom {
     bool measured = false;  ///< of the value as it was measured here, with its error
 };
 
+/// Of functions of which derivatives of one order are least, integrated over all of space, with the
+/// variance of measured values: -r for the second derivatives, r^3 for the third.
+struct Kernel {
+    int order = 3;  ///< 2 or 3
+    double error = 0;
+};
+
 /// The derivative along a vector, which says its weight by its length.
 struct SlopeAtom {
     Vec3 at, along;
@@ -43,12 +50,15 @@ struct Functional {
     }
 
     Functional mapped_by(const Map3& map) const;
+    /// With differences of values, `step` to both sides, in the place of derivatives: what the
+    /// kernel -r needs, whose functions have none at a point.
+    Functional by_differences(double step) const;
 
     /// Of the three coordinates.
     Vec3 of_coordinates() const;
 
-    /// Of the kernel r^3, in both of its arguments. @param error  variance of measured values
-    double with(const Functional& other, double error) const;
+    /// Of the kernel, in both of its arguments.
+    double with(const Functional& other, const Kernel& kernel) const;
 };
 
 }  // namespace realmodel::fields

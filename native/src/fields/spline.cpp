@@ -19,12 +19,12 @@ constexpr Eigen::Index kBlock = 64;
 
 }  // namespace
 
-Spline::Spline(std::span<const Functional> known, const Map3& map, const Errors& errors,
+Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
                const Execution& execution)
-    : map_(map), errors_(errors) {
+    : smoothness_(smoothness) {
     known_.reserve(known.size());
     for (const Functional& f : known)
-        known_.push_back(f.mapped_by(map));
+        known_.push_back(f.mapped_by(smoothness.map));
     factor(execution);
     solve(execution);
     collect_centers();
@@ -44,9 +44,10 @@ void Spline::factor(const Execution& execution) {
         const Vec3 of = known_[i].of_coordinates();
         terms.row(i) << of[0], of[1], of[2];
     }
+    const Kernel kernel{smoothness_.order, smoothness_.errors.value};
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
-        const double error = i == j && known_[i].measured_slope ? errors_.slope : 0;
-        return known_[i].with(known_[j], errors_.value) + error +
+        const double error = i == j && known_[i].measured_slope ? smoothness_.errors.slope : 0;
+        return known_[i].with(known_[j], kernel) + error +
                kProducts * (terms(i, 0) * terms(j, 0) + terms(i, 1) * terms(j, 1) +
                             terms(i, 2) * terms(j, 2));
     };
@@ -160,12 +161,12 @@ void Spline::collect_centers() {
 }
 
 double Spline::value(const Vec3& at) const {
-    const Vec3 p = mapped(map_, at);
+    const Vec3 p = mapped(smoothness_.map, at);
     double sum = dot(tilt_, p);
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        const double squared = dot(d, d);
-        sum += atom.weight * squared * std::sqrt(squared);
+        const double squared = dot(d, d), r = std::sqrt(squared);
+        sum += atom.weight * (smoothness_.order == 2 ? -r : squared * r);
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
@@ -180,7 +181,7 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<double> values
         const std::size_t count = std::min<std::size_t>(kBlock, positions.size() - first);
         Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
         for (std::size_t n = 0; n < count; ++n) {
-            const Vec3 p = mapped(map_, positions[first + n]);
+            const Vec3 p = mapped(smoothness_.map, positions[first + n]);
             x(n) = p[0];
             y(n) = p[1];
             z(n) = p[2];
@@ -189,7 +190,10 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<double> values
         for (const ValueAtom& atom : value_centers_) {
             const Lanes squared =
                 (x - atom.at[0]).square() + (y - atom.at[1]).square() + (z - atom.at[2]).square();
-            sum += atom.weight * squared * squared.sqrt();
+            if (smoothness_.order == 2)
+                sum -= atom.weight * squared.sqrt();
+            else
+                sum += atom.weight * squared * squared.sqrt();
         }
         for (const SlopeAtom& atom : slope_centers_) {
             const Lanes dx = x - atom.at[0], dy = y - atom.at[1], dz = z - atom.at[2];
@@ -201,11 +205,12 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<double> values
 }
 
 Vec3 Spline::gradient(const Vec3& at) const {
-    const Vec3 p = mapped(map_, at);
+    const Vec3 p = mapped(smoothness_.map, at);
     Vec3 sum = tilt_;
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        sum = moved(sum, 3 * atom.weight * length(d), d);
+        const double r = length(d);
+        if (r > 0) sum = moved(sum, atom.weight * (smoothness_.order == 2 ? -1 / r : 3 * r), d);
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
@@ -215,14 +220,14 @@ Vec3 Spline::gradient(const Vec3& at) const {
     }
     Vec3 out{};  // by the transposed map
     for (std::size_t row = 0; row < 3; ++row)
-        out = moved(out, sum[row], map_[row]);
+        out = moved(out, sum[row], smoothness_.map[row]);
     return out;
 }
 
 /// By how much what was measured differs from the function.
 double Spline::error_at(const Vec3& at) const {
-    const auto found = measured_.find(mapped(map_, at));
-    return found == measured_.end() ? 0 : errors_.value * found->second;
+    const auto found = measured_.find(mapped(smoothness_.map, at));
+    return found == measured_.end() ? 0 : smoothness_.errors.value * found->second;
 }
 
 double Spline::of(const Functional& functional) const {

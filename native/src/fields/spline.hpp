@@ -18,16 +18,22 @@ struct Errors {
     double value = 0, slope = 0;
 };
 
-/// The function in space that meets functionals and whose third derivatives are least, integrated
-/// over all of space: sum w_i L_i r^3 + b . x (Duchon 1977; with derivatives as data: Wahba 1990,
-/// "Spline models for observational data", sections 1.3 and 2.4). Space is mapped first, which
-/// makes it smoother along some directions. Where
-/// data have errors it passes near them, as likely as the errors are.
+/// What kind of function a spline is.
+struct Smoothness {
+    Map3 map{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< of space: it bends less along some directions
+    Errors errors{};
+    int order = 3;  ///< of the derivatives that are least: 2 (no slopes are known), or 3
+};
+
+/// The function in space that meets functionals and whose second or third derivatives are least,
+/// integrated over all of space: sum w_i L_i K + b . x with the kernel K (Duchon 1977; with
+/// derivatives as data: Wahba 1990, "Spline models for observational data", sections 1.3 and 2.4).
+/// Space is mapped first. Where data have errors it passes near them, as likely as the errors are.
 class Spline {
 public:
     /// What is known, in the coordinates before the map; the least coordinates that
     /// determine a tilt are among it.
-    Spline(std::span<const Functional> known, const Map3& map, const Errors& errors,
+    Spline(std::span<const Functional> known, const Smoothness& smoothness,
            const Execution& execution);
 
     /// The same data with other right sides.
@@ -64,8 +70,7 @@ private:
     void collect_centers();
     double error_at(const Vec3& at) const;
 
-    Map3 map_;
-    Errors errors_;
+    Smoothness smoothness_;
     std::vector<Functional> known_;  // mapped
     Eigen::VectorXd scales_;         // of the rows, so that the diagonal is 1
     std::optional<interpolation::TiledCholesky> factor_;

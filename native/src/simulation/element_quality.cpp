@@ -278,8 +278,7 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
 /// is not one itself
 void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
                                  Skewed& found) const {
-    const std::vector<ElementBody> bodies = this->bodies(),
-                                   of_parts = whole.empty() ? bodies : parts.bodies();
+    const std::vector<ElementBody> of_parts = parts.bodies();
     const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
     parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
         const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
@@ -299,23 +298,23 @@ void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const st
         }
         if (is_outer && !is_side) return;  // too tall rather than too thin
         const std::size_t next = is_outer ? e : whole_of(other.element);
-        const bool is_own = e == next || bodies[e].volume < bodies[next].volume;
+        const bool is_own =
+            e == next || body(own.triangle, e).volume < body(other.triangle, next).volume;
         const std::size_t t = is_own ? own.triangle : other.triangle, smaller = is_own ? e : next;
         if (columns_.elements(t) == 1) return;
-        const bool upper = is_side || e == next ? joins_upward(t, smaller, bodies) : is_own;
+        const bool upper = is_side || e == next ? joins_upward(t, smaller) : is_own;
         give_up(t, smaller, upper, found.removals);
     });
 }
 
 /// Whether an element that has to get thicker joins the next above it, not that below: one of its
 /// own block rather than of another, the smaller one rather than the larger one.
-bool ElementQuality::joins_upward(std::size_t t, std::size_t e,
-                                  const std::vector<ElementBody>& bodies) const {
+bool ElementQuality::joins_upward(std::size_t t, std::size_t e) const {
     if (e == columns_.offset[t]) return true;
     if (e + 1 == columns_.offset[t] + columns_.elements(t)) return false;
     const bool below = columns_.blocks[e - 1] == columns_.blocks[e],
                above = columns_.blocks[e + 1] == columns_.blocks[e];
-    return below == above ? bodies[e + 1].volume < bodies[e - 1].volume : above;
+    return below == above ? body(t, e + 1).volume < body(t, e - 1).volume : above;
 }
 
 std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t> is_asked) const {
@@ -424,9 +423,12 @@ ElementBody ElementQuality::body(std::size_t t, std::size_t element) const {
     // integrals over a triangle of two linear functions: 1/12 of their products at different
     // corners, 1/6 at the same
     ElementBody made{};
+    std::array<double, 3> share;
+    for (std::size_t j = 0; j < 3; ++j)
+        share[j] = rise[j] / (4 * total);
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
-            const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
+            const double weight = (i == j ? 2 : 1) * share[j];
             made.center[0] += weight * from[i][0];
             made.center[1] += weight * from[i][1];
             made.center[2] += weight * (from[i][2] + rise[i] / 2);

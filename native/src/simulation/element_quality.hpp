@@ -71,7 +71,7 @@ private:
     ElementBody body(std::size_t t, std::size_t element) const;
     std::vector<ElementBody> bodies() const;
     bool gives_upward(std::size_t t, std::size_t element) const;
-    bool joins_upward(std::size_t t, std::size_t e, const std::vector<ElementBody>& bodies) const;
+    bool joins_upward(std::size_t t, std::size_t e) const;
     void give_up(std::size_t t, std::size_t element, bool upper, Removals& found) const;
     /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
     template <class Visit>

@@ -35,6 +35,16 @@ std::vector<Functional> known_of(double (*value)(const Vec3&), Vec3 (*slope)(con
     return known;
 }
 
+/// For splines of second derivatives.
+std::vector<Functional> by_differences(std::vector<Functional> known) {
+    for (Functional& functional : known)
+        functional = functional.by_differences(0.02);
+    return known;
+}
+Smoothness rough(const Map3& map) {
+    return {map, {}, 2};
+}
+
 double wave(const Vec3& p) {
     return p[2] + 0.2 * std::sin(3 * p[0]);
 }
@@ -51,16 +61,20 @@ Vec3 plane_slope(const Vec3&) {
 TEST(Spline, MeetsValuesAndSlopes) {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     for (const Map3& map : {kIdentity, kStretched}) {
-        const Spline spline(known, map, {}, {});
+        const Spline spline(known, {map}, {});
         for (const Functional& f : known)
             EXPECT_NEAR(spline.of(f), f.right, 1e-9);
         EXPECT_TRUE(spline.log_likelihood().has_value());
+        const std::vector<Functional> differences = by_differences(known);
+        const Spline second(differences, rough(map), {});
+        for (const Functional& f : differences)
+            EXPECT_NEAR(second.of(f), f.right, 1e-9);
     }
 }
 
 TEST(Spline, APlaneComesOutAsItIs) {
     const std::vector<Functional> known = known_of(plane, plane_slope);
-    const Spline spline(known, kStretched, {}, {});
+    const Spline spline(known, {kStretched}, {});
     for (std::size_t n = 0; n < known.size(); ++n)
         EXPECT_NEAR(spline.force(n), 0, 1e-9);
     const Vec3 gradient = spline.gradient({5, -3, 2});
@@ -69,34 +83,62 @@ TEST(Spline, APlaneComesOutAsItIs) {
     EXPECT_NEAR(gradient[2], 0.5, 1e-8);
 }
 
+std::vector<Spline> of_both_orders() {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    std::vector<Spline> out;
+    out.emplace_back(known, Smoothness{kStretched}, Execution{});
+    out.emplace_back(by_differences(known), rough(kStretched), Execution{});
+    return out;
+}
+
 TEST(Spline, GradientsAreThoseOfTheValues) {
-    const Spline spline(known_of(wave, wave_slope), kStretched, {}, {});
-    const Vec3 at{0.31, -0.22, 0.47};
-    const Vec3 gradient = spline.gradient(at);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        Vec3 step{};
-        step[axis] = 1e-5;
-        const double difference = spline.value(plus(at, step)) - spline.value(minus(at, step));
-        EXPECT_NEAR(gradient[axis], difference / 2e-5, 1e-6);
+    for (const Spline& spline : of_both_orders()) {
+        const Vec3 at{0.31, -0.22, 0.47};
+        const Vec3 gradient = spline.gradient(at);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            Vec3 step{};
+            step[axis] = 1e-5;
+            const double difference = spline.value(plus(at, step)) - spline.value(minus(at, step));
+            EXPECT_NEAR(gradient[axis], difference / 2e-5, 1e-6);
+        }
     }
 }
 
 TEST(Spline, ManyValuesAtOnceAreThoseOfEach) {
-    const Spline spline(known_of(wave, wave_slope), kStretched, {}, {});
-    std::vector<Vec3> at;
-    for (int n = 0; n < 150; ++n)
-        at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
-    std::vector<double> values(at.size());
-    spline.values_at(at, values);
-    for (std::size_t n = 0; n < at.size(); ++n)
-        EXPECT_NEAR(values[n], spline.value(at[n]), 1e-12);
+    for (const Spline& spline : of_both_orders()) {
+        std::vector<Vec3> at;
+        for (int n = 0; n < 150; ++n)
+            at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
+        std::vector<double> values(at.size());
+        spline.values_at(at, values);
+        for (std::size_t n = 0; n < at.size(); ++n)
+            EXPECT_NEAR(values[n], spline.value(at[n]), 1e-12);
+    }
+}
+
+TEST(Spline, BetweenAStepASecondOrderOvershootsLess) {
+    std::vector<Functional> known;
+    for (int n = -10; n <= 10; ++n) {
+        if (n == 0) continue;
+        known.push_back(Functional::difference({0.1 * n, 0, 0}, {0, 0, 0}));
+        known.back().right = n < 0 ? -1 : 1;
+    }
+    known.push_back(Functional::slope({0, 0, 0}, {0, 1, 0}));
+    known.push_back(Functional::slope({0, 0, 0}, {0, 0, 1}));
+    const auto overshoot = [](const Spline& spline) {
+        return spline.value({0.15, 0, 0}) - spline.value({0.1, 0, 0});
+    };
+    const double third = overshoot(Spline(known, {}, {}));
+    const double second = overshoot(Spline(by_differences(known), rough(kIdentity), {}));
+    EXPECT_GT(third, 0.05);
+    EXPECT_LT(second, 0.5 * third);
 }
 
 TEST(Spline, WhatFollowsFromOthersIsLeftOut) {
     std::vector<Functional> known = known_of(wave, wave_slope);
     const std::size_t count = known.size();
     known.push_back(known[1]);
-    const Spline spline(known, kIdentity, {}, {});
+    const Spline spline(known, {kIdentity}, {});
     EXPECT_TRUE(spline.left_out(count));
     EXPECT_FALSE(spline.left_out(1));
     EXPECT_NEAR(spline.of(known[1]), known[1].right, 1e-9);
@@ -104,14 +146,14 @@ TEST(Spline, WhatFollowsFromOthersIsLeftOut) {
 }
 
 /// The likelihood of contrasts without moments, from the kernel alone.
-double likelihood_by_contrasts(const std::vector<Functional>& known, const Map3& map) {
+double likelihood_by_contrasts(const std::vector<Functional>& known, const Map3& map, int order) {
     const auto n = static_cast<Eigen::Index>(known.size());
     Eigen::MatrixXd kernel(n, n), terms(n, 3);
     Eigen::VectorXd right(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const Functional a = known[i].mapped_by(map);
         for (Eigen::Index j = 0; j < n; ++j)
-            kernel(i, j) = a.with(known[j].mapped_by(map), 0);
+            kernel(i, j) = a.with(known[j].mapped_by(map), {order, 0});
         const Vec3 of = a.of_coordinates();
         terms.row(i) << of[0], of[1], of[2];
         right(i) = a.right;
@@ -133,9 +175,13 @@ double likelihood_by_contrasts(const std::vector<Functional>& known, const Map3&
 TEST(Spline, TheLikelihoodIsThatOfContrasts) {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     for (const Map3& map : {kIdentity, kStretched}) {
-        const double expected = likelihood_by_contrasts(known, map);
-        EXPECT_NEAR(*Spline(known, map, {}, {}).log_likelihood(), expected,
+        const double expected = likelihood_by_contrasts(known, map, 3);
+        EXPECT_NEAR(*Spline(known, {map}, {}).log_likelihood(), expected,
                     1e-6 * std::abs(expected));
+        const std::vector<Functional> differences = by_differences(known);
+        const double second = likelihood_by_contrasts(differences, map, 2);
+        EXPECT_NEAR(*Spline(differences, rough(map), {}).log_likelihood(), second,
+                    1e-6 * std::abs(second));
     }
 }
 

@@ -53,11 +53,13 @@ class Anisotropy:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedField(ScalarField):
-    """A field with what its solution says: the anisotropy; how many contacts carry the field; the largest
-    distance of a contact from its surface, nearly; rows of the dips and bounds that contradict other data
-    and do not hold; and where the field has critical points inside, (C, 3)."""
+    """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
+    2 where surfaces are rough; how many contacts carry the field; the largest distance of a contact from its
+    surface, nearly; rows of the dips and bounds that contradict other data and do not hold; and where the
+    field has critical points inside, (C, 3)."""
 
     anisotropy: Anisotropy
+    order: int
     centers: int
     misfit: float
     dips_missed: np.ndarray
@@ -102,6 +104,7 @@ def solve_field(
         values=found["values"],
         levels=found["levels"],
         anisotropy=Anisotropy(tuple(map(tuple, axes)), tuple(ratios)),
+        order=found["order"],
         centers=found["centers"],
         misfit=found["misfit"],
         dips_missed=found["dips_missed"],

@@ -5,12 +5,15 @@ All tilted beds have the shape of one datum: a plane, with folds along straight 
 faults. So the bed of a point follows from its height above the datum alone. Folds are polylines across their
 axis, of _NODES to a wavelength: the datum has no curves, and the sheets of `sheets.py` are exactly what the
 formulas here say.
+
+Folds whose axial planes are not vertical are laid upright: in a space that is sheared along level planes, so
+that these planes, volumes and heights stay as they are. `Beds.upright` leads there, `Beds.leaned` back.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +24,7 @@ from .strata import Strata
 
 _NODES = 32  # of a fold's polyline to a wavelength
 _MOST_NODES = 2048
+_PARALLEL = 0.05  # below it, beds are too nearly parallel to axial planes; 0: they are, and have no datum
 _UNEVEN = 1.2  # beds are at most exp(1.2) times as thick as the mean before that is made even
 
 
@@ -28,13 +32,16 @@ _UNEVEN = 1.2  # beds are at most exp(1.2) times as thick as the mean before tha
 class Beds:
     """Beds through a box, the oldest number 0.
 
-    low, high: (3,) corners of the box. slope: (2,) of the datum's plane, which is at 0 in the middle of the
-    box. fold: a direction in plan (2,), and of the polyline the distances along it (N,) and the heights (N,).
-    fault: a direction in plan (2,), the distances of the faults along it (F,) and the shifts of the strips
-    between them (F + 1,). levels: (L,) heights above the datum between the tilted beds. floor: the elevation
-    of the unconformity, infinite where there is none. covers: (U,) elevations between the beds above it.
+    lean: (2,) how far axial planes move in plan from one height to the next. All that follows is in the
+    upright space. low, high: (3,) corners of the box. slope: (2,) of the datum's plane, which is at 0 in the
+    middle of the box. fold: a direction in plan (2,), and of the polyline the distances along it (N,) and the
+    heights (N,). fault: a direction in plan (2,), the distances of the faults along it (F,) and the shifts of
+    the strips between them (F + 1,). levels: (L,) heights above the datum between the tilted beds. floor: the
+    elevation of the unconformity, infinite where there is none. covers: (U,) elevations between the beds
+    above it.
     """
 
+    lean: np.ndarray
     low: np.ndarray
     high: np.ndarray
     slope: np.ndarray
@@ -62,8 +69,17 @@ class Beds:
 
     @property
     def slant(self) -> float:
-        """How much longer than at right angles to the datum's plane a vertical line through a bed is."""
-        return math.sqrt(1.0 + float(dot(self.slope, self.slope)))
+        """How much longer than at right angles to the datum's plane a line through a bed is that is vertical
+        in the upright space."""
+        return _slant(self.slope, self.lean)
+
+    def upright(self, points: np.ndarray) -> np.ndarray:
+        """(N, 3) the points (N, 3) in the space in which folds stand upright."""
+        return _sheared(points, -self.lean)
+
+    def leaned(self, points: np.ndarray) -> np.ndarray:
+        """(N, 3) points (N, 3) of the upright space where they belong."""
+        return _sheared(points, self.lean)
 
     def strips(self, plan: np.ndarray) -> np.ndarray:
         """(N,) the strip between faults in which each place in plan (N, 2) lies."""
@@ -78,7 +94,7 @@ class Beds:
 
     def numbers(self, points: np.ndarray) -> np.ndarray:
         """(N,) int32: the bed that each of the points (N, 3) lies in."""
-        plan, z = points[:, :2], points[:, 2]
+        plan, z = self.upright(points)[:, :2], points[:, 2]
         found = np.searchsorted(self.levels, z - self.datum(plan, self.strips(plan)))
         if math.isfinite(self.floor):
             above = len(self.levels) + 1 + np.searchsorted(self.covers, z)
@@ -87,22 +103,25 @@ class Beds:
 
 
 def lay_beds(strata: Strata, vertices: np.ndarray) -> Beds:
-    """Lays beds through the box of vertices (V, 3). Raises InputRefused where folds are too narrow for it."""
+    """Lays beds through the box of vertices (V, 3). Raises InputRefused where folds are too narrow for it, or
+    lean as the beds dip."""
     random = np.random.default_rng(strata.seed)
+    lean = _lean(strata)
+    vertices = _sheared(vertices, -lean)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     corners = np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
     corners -= 0.5 * (low + high)[:2]
     thicknesses = exp(strata.variation * _UNEVEN * (2.0 * random.random(strata.beds) - 1.0))
     phase, fault_random = random.random(), random.random((2, strata.faults))
-    slant = cos(math.radians(strata.dip))
-    steepness = -sin(math.radians(strata.dip)) / slant
+    slope = _upright_slope(strata, lean)
     empty = np.empty(0)
     has_cover = strata.unconformity > 0
     laid = Beds(
+        lean,
         low,
         high,
-        steepness * _towards(strata.dip_direction),
-        _fold(strata, corners, phase, slant),
+        slope,
+        _fold(strata, corners, phase, _slant(slope, lean)),
         _faults(strata, corners, fault_random),
         empty,
         float(low[2] + strata.unconformity * (high[2] - low[2])) if has_cover else math.inf,
@@ -135,17 +154,16 @@ def _divided(strata: Strata, laid: Beds, vertices: np.ndarray, thicknesses: np.n
     if math.isfinite(laid.floor):
         upper = min(max(round(strata.beds * (1.0 - strata.unconformity)), 1), strata.beds - 1)
     tilted, level = thicknesses[: strata.beds - upper], thicknesses[strata.beds - upper :]
-    slant = cos(math.radians(strata.dip))
     begin, extent = float(above.min()), float(np.ptp(above))
     if strata.thickness:
-        total = strata.thickness * len(tilted) / slant
+        total = strata.thickness * len(tilted) * laid.slant
         begin, extent = begin + 0.5 * (extent - total), total
     levels = begin + extent * _shares(tilted)
     covers = np.empty(0)
     if upper:
         extent = strata.thickness * upper if strata.thickness else float(laid.high[2]) - laid.floor
         covers = laid.floor + extent * _shares(level)
-    return Beds(laid.low, laid.high, laid.slope, laid.fold, laid.fault, levels, laid.floor, covers)
+    return replace(laid, levels=levels, covers=covers)
 
 
 def _shares(thicknesses: np.ndarray) -> np.ndarray:
@@ -163,6 +181,38 @@ def _towards(azimuth: float) -> np.ndarray:
     return np.array([east, north])
 
 
+def _lean(strata: Strata) -> np.ndarray:
+    if not strata.has_leaning_folds:
+        return np.zeros(2)
+    dip = math.radians(strata.axial_dip)
+    return cos(dip) / sin(dip) * _towards(strata.fold_axis + 90.0)
+
+
+def _sheared(points: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """(N, 3) points (N, 3) moved in plan by a vector (2,) times their height: the same ones where it is 0."""
+    if not by.any():
+        return points
+    return np.column_stack([points[:, :2] + points[:, 2:] * by, points[:, 2]])
+
+
+def _upright_slope(strata: Strata, lean: np.ndarray) -> np.ndarray:
+    """(2,) the slope of the datum's plane in the upright space."""
+    dip = math.radians(strata.dip)
+    slope = -sin(dip) / cos(dip) * _towards(strata.dip_direction)
+    left = 1.0 - float(dot(slope, lean))
+    if left < _PARALLEL:
+        raise InputRefused(
+            f"beds that dip {strata.dip:g} degrees towards {strata.dip_direction:g} are as steep as the "
+            f"axial planes of their folds, which dip {strata.axial_dip:g}",
+            advice="choose a smaller dip, a greater axial dip, or another direction",
+        )
+    return slope / left
+
+
+def _slant(slope: np.ndarray, lean: np.ndarray) -> float:
+    return math.sqrt((1.0 + float(dot(slope, lean))) ** 2 + float(dot(slope, slope)))
+
+
 def _fold(strata: Strata, corners: np.ndarray, phase: float, slant: float):
     across = _towards(strata.fold_axis + 90.0)
     if not strata.is_folded:
@@ -178,13 +228,14 @@ def _fold(strata: Strata, corners: np.ndarray, phase: float, slant: float):
             advice=f"choose a wavelength of {np.ptp(reach) * _NODES / (_MOST_NODES - 4):.3g} or more",
         )
     nodes = np.arange(first, last + 1)
-    heights = strata.fold_amplitude / slant * sin((nodes % _NODES) * (2.0 * math.pi / _NODES))
+    heights = strata.fold_amplitude * slant * sin((nodes % _NODES) * (2.0 * math.pi / _NODES))
     return across, (nodes + offset) * step, heights
 
 
 def _faults(strata: Strata, corners: np.ndarray, random: np.ndarray):
     """Faults at about equal distances, each down to one side or the other."""
-    across = _towards(strata.fault_strike + 90.0)
+    # exactly along the axes of folds that lean, so that walls stay vertical
+    across = _towards(strata.fold_axis if strata.has_leaning_folds else strata.fault_strike + 90.0)
     reach = dot(corners, across)
     share = (np.arange(strata.faults) + 0.5 + 0.6 * (random[0] - 0.5)) / max(strata.faults, 1)
     steps = np.where(random[1] < 0.5, -strata.throw, strata.throw)

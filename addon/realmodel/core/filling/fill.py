@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
 from ..base.build_warning import BuildWarning
+from ..base.triangles import welded
 from ..base.work import Cancel, Progress, Work, run
 from ..model.build import build
 from ..model.cutting import cut_by_surface
 from ..model.model import Model
 from ..project.project import Project, Rock
 from ..settings.method_options import check_threads
-from .beds import check_gap, lay_beds
+from .beds import Beds, check_gap, lay_beds
 from .palettes import rocks_of_beds
 from .pegs import place_pegs
 from .sheets import sheets_of
@@ -48,12 +52,18 @@ def fill_with_strata(
     """
     threads = check_threads(threads)
     mesh = closed_mesh(vertices, triangles, strata.base)
-    return run(lambda work: fill_within(work, mesh, strata), progress, cancel, threads=threads)
+    model, places = run(lambda work: fill_within(work, mesh, strata), progress, cancel, threads=threads)
+    surfaces = replace(model.surfaces, vertices=lay_beds(strata, mesh[0]).leaned(model.surface_vertices))
+    return replace(model, complex=replace(model.complex, vertices=places), surfaces=surfaces)
 
 
-def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata) -> Model:
-    """`fill_with_strata` of a closed mesh, as a job."""
-    beds = lay_beds(strata, mesh[0])
+def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata) -> tuple[Model, np.ndarray]:
+    """`fill_with_strata` of a closed mesh, as a job. Returns the model in the space in which folds stand
+    upright (`Beds`), where its surfaces have one height at each position, and where its vertices (V, 3)
+    belong."""
+    given, triangles = mesh
+    beds = lay_beds(strata, given)
+    mesh = beds.upright(given), triangles
     check_gap(beds, strata.gap)
     solid = solid_within(work, mesh, _SOLID)
     library, rocks = rocks_of_beds(beds.count, strata.palette, strata.seed)
@@ -69,4 +79,22 @@ def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata)
         model.warnings.append(
             BuildWarning(f"there is room for only {pegs.count} of the pegs; {lacking} are left out")
         )
-    return model
+    return model, _where_they_belong(beds, model.vertices, given)
+
+
+def _where_they_belong(beds: Beds, vertices: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """(V, 3) vertices (V, 3) of the upright space, those of the given mesh without any change. Where rounding
+    makes two equal, the later one takes a neighboring double, as everywhere in a model."""
+    if not beds.lean.any():
+        return vertices
+    places = beds.leaned(vertices)
+    same = welded(np.concatenate([beds.upright(given), vertices]))[len(given) :]
+    own = same < len(given)
+    places[own] = given[same[own]]
+    order = np.argsort(~own, kind="stable")
+    while True:
+        ranks = welded(places[order])
+        equal = order[ranks != np.arange(len(order))]
+        if not len(equal):
+            return places
+        places[equal, 0] = np.nextafter(places[equal, 0], math.inf)

@@ -13,6 +13,7 @@ MOST_BEDS = 200
 MOST_FAULTS = 40
 MOST_PEGS = 20  # on a bed
 STEEPEST = 85.0  # degrees: steeper beds would hardly have one height at each position
+UPRIGHT, RECUMBENT = 90.0, 10.0  # degrees: the greatest and the least dip of axial planes
 
 # (least, greatest) of what is bounded
 _BOUNDS: dict[str, tuple[float, float]] = {
@@ -24,6 +25,7 @@ _BOUNDS: dict[str, tuple[float, float]] = {
     "fold_amplitude": (0.0, math.inf),
     "fold_wavelength": (0.0, math.inf),
     "fold_axis": (-360.0, 360.0),
+    "axial_dip": (RECUMBENT, UPRIGHT),
     "faults": (0, MOST_FAULTS),
     "throw": (0.0, math.inf),
     "fault_strike": (-360.0, 360.0),
@@ -33,6 +35,7 @@ _BOUNDS: dict[str, tuple[float, float]] = {
     "peg_size": (0.0, math.inf),
     "seed": (0, 2**31 - 1),
 }
+_RIGHT_ANGLE = 1e-3  # degrees: how far a fault may be from it
 _WHOLE = ("beds", "faults", "pegs", "seed")
 
 
@@ -45,14 +48,17 @@ class Strata:
     thick that they fill the solid. Otherwise they lie in its middle, and the lowest and the highest bed take
     the rest. variation: how much beds differ, from 0, not at all, to 1.
     dip: up to 85, towards the azimuth dip_direction. fold_amplitude: at right angles to the bedding, of folds
-    with this fold_wavelength and the azimuth fold_axis; one of both 0: none. faults: how many, vertical ones
-    with this throw and the azimuth fault_strike.
+    with this fold_wavelength and the azimuth fold_axis; one of both 0: none. axial_dip: of the axial planes
+    of folds, from 90, upright, to 10, recumbent. They dip to the left of the azimuth fold_axis, so folds lean
+    to its right, and their limbs are overturned where the folds are steep enough.
+    faults: how many, vertical ones with this throw and the azimuth fault_strike; where folds lean, it is at
+    right angles to fold_axis.
     unconformity: at which share of the height, from below, an erosion surface cuts tilted, folded and faulted
     beds, which level ones cover; 0: none.
     gap: between beds, and between the two sides of a fault, for a print in parts: at right angles to the
     bedding before it is folded. pegs: up to so many on each bed, square and peg_size wide; they reach as far
     into the bed above, but at most through half of it, and have the play of the gap around them. None is on
-    an unconformity.
+    an unconformity, and there are none where folds lean.
     base: the elevation down to which an open mesh is filled; None: as far beneath its lowest point as its
     highest is above. palette: of the rocks. seed: of thicknesses, rocks, and the positions of folds and
     faults.
@@ -68,6 +74,7 @@ class Strata:
     fold_amplitude: float = 0.0
     fold_wavelength: float = 0.0
     fold_axis: float = 0.0
+    axial_dip: float = UPRIGHT
     faults: int = 0
     throw: float = 0.0
     fault_strike: float = 0.0
@@ -90,6 +97,8 @@ class Strata:
             raise UsageError(
                 "peg_size and gap must be above 0 where there are pegs: these have play in their holes"
             )
+        if self.has_leaning_folds:
+            self._check_lean()
         if self.unconformity and self.beds < 2:
             raise UsageError("beds must be 2 or more where there is an unconformity: one below it, one above")
 
@@ -97,6 +106,22 @@ class Strata:
     def is_folded(self) -> bool:
         """Whether there are folds: both their numbers are above 0."""
         return self.fold_amplitude > 0 and self.fold_wavelength > 0
+
+    @property
+    def has_leaning_folds(self) -> bool:
+        """Whether there are folds whose axial planes are not vertical."""
+        return self.is_folded and self.axial_dip < UPRIGHT
+
+    def _check_lean(self) -> None:
+        """What is vertical in the space in which folds stand upright would lean with them."""
+        if self.pegs:
+            raise UsageError("pegs must be 0 where axial_dip is below 90: they would lean as the folds do")
+        off = (self.fault_strike - self.fold_axis) % 180.0 - 90.0
+        if self.faults and abs(off) > _RIGHT_ANGLE:
+            raise UsageError(
+                f"fault_strike must be at right angles to fold_axis where axial_dip is below 90, such as "
+                f"{(self.fold_axis + 90.0) % 180.0:g}: other faults would lean as the folds do"
+            )
 
 
 def _check(name: str, value) -> None:

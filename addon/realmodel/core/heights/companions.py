@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that are kriged together: the sheets of a series, which share their structure.
+"""Surfaces that say something of one another: those of which heights vary alike, and among these the sheets
+of a series, which are kriged together.
 
 The height of a sheet is a field that all of them share plus the thicknesses between it and the oldest one
 (a linear model of coregionalization: Chiles and Delfiner 2012, "Geostatistics", section 5.6.4). What sheets
@@ -10,8 +11,9 @@ around it, so that a sheet with few contacts follows the others where it has non
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,34 +22,49 @@ from ..settings.dips import Dips
 from ..settings.variogram import Variogram
 from .mis_ties import mean_heights, without_mis_ties
 
-_LEAST, _MOST = 1e-3, 0.5  # of the sill of heights: the variance of one thickness
-_FEW = 8  # thicknesses at shared positions: fewer show no variance
-_SHOWN = 25  # as many show how they vary with distance
-ROUNDS = 2  # of fitting, and estimating what sheets lie apart
-_NEAR = (8, 0, 0.0)  # the neighbourhood by which this is estimated at first
+Fit = TypeVar("Fit")
+
+_LEAST = 1e-3  # of the sill of heights: the variance of a thickness of which data show nothing
+_NEAR = (8, 0, 0.0)  # the neighbourhood by which what sheets lie apart is estimated where they show no more
 MOST_AT_ONCE = 300  # data that all count at each node
 MOST_NEIGHBOURS = 64  # of all sheets together, by default
 
 
 @dataclass(frozen=True)
-class Companions:
-    """The sheets of a series, oldest first, for a Task of one of them. own: its number. points: (P, 3) of
-    each sheet; dips: of each, or None; those of `own` are those of the Task. known: what was fitted to such
-    data before, filled as it comes: it is the same for each sheet. model: the variogram and the model to be
-    taken in the place of those that fit."""
+class Alike:
+    """Surfaces of which heights vary alike, oldest first, for a Task of one of them. own: its number. points:
+    (P, 3) of each; dips: of each, or None; those of `own` are those of the Task. known: what was fitted to
+    such data before, filled as it comes: it is the same for each surface."""
 
     own: int
     points: Sequence[np.ndarray]
     dips: Sequence[Dips | None]
-    known: dict[bytes, dict | None] = field(default_factory=dict)
-    model: tuple[Variogram, SheetModel] | None = None
+    known: dict[bytes, Any] = field(default_factory=dict)
 
     def data(self, own: np.ndarray, own_dips: Dips | None) -> tuple[list[np.ndarray], list[Dips | None]]:
-        """The points and dips of each sheet, with those of the Task."""
+        """The points and dips of each surface, with those of the Task."""
         points = [without_mis_ties(each)[0] if len(each) else each for each in self.points]
         dips = [None if each is None or not len(each) else each.merged()[0] for each in self.dips]
         points[self.own], dips[self.own] = own, own_dips
         return points, dips
+
+    def fitted(self, of: tuple, arrays: Sequence[np.ndarray], fit: Callable[[], Fit]) -> Fit:
+        """What `fit` finds in arrays, by settings `of`; found once."""
+        key = hashlib.sha256(repr(of).encode())
+        for each in arrays:
+            key.update(repr(each.shape).encode())
+            key.update(np.ascontiguousarray(each))
+        if key.digest() not in self.known:
+            self.known[key.digest()] = fit()
+        return self.known[key.digest()]
+
+
+@dataclass(frozen=True)
+class Companions(Alike):
+    """The sheets of a series, for a Task of one of them. model: the variogram and the model to be taken in
+    the place of those that fit."""
+
+    model: tuple[Variogram, SheetModel] | None = None
 
 
 @dataclass(frozen=True)
@@ -103,7 +120,7 @@ def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
 
 def likeliest(task, companions: Companions, data: JointData, spacing: float) -> dict | None:
     """What native fit_sheets finds in the data of all sheets, in their order, for the settings of a Task;
-    None where they are many. spacing: of points and dips."""
+    None where they are too few. spacing: of points and dips."""
     settings = task.settings
     along, given = settings["anisotropy"], settings["variogram"]
     variogram = None if given is None else Variogram.from_settings(given).native(along)
@@ -114,29 +131,33 @@ def likeliest(task, companions: Companions, data: JointData, spacing: float) -> 
         first = np.sort(np.unique(dips.positions + 0.0, axis=0, return_index=True)[1])
         dips, of_dips = dips.some(first), of_dips[first]
         arrays += [of_dips, dips.positions, dips.gradients]
-    key = hashlib.sha256(repr((variogram, drift, anisotropy, count)).encode())
-    for each in arrays:
-        key.update(np.ascontiguousarray(each))
-    if key.digest() not in companions.known:
-        companions.known[key.digest()] = task.run(
-            native_module().fit_sheets,
-            data.points,
-            (data.sheets, of_dips, count),
-            anisotropy,
-            drift,
-            None if dips is None else (dips.positions, dips.gradients, spacing, 0),
-            variogram,
+
+    def fit() -> dict | None:
+        given_dips = None if dips is None else (dips.positions, dips.gradients, spacing, 0)
+        sheets = (data.sheets, of_dips, count)
+        return task.run(
+            native_module().fit_sheets, data.points, sheets, anisotropy, drift, given_dips, variogram
         )
-    return companions.known[key.digest()]
+
+    return companions.fitted((variogram, drift, anisotropy, count), arrays, fit)
 
 
 def likeliest_model(fitted: dict, variogram: Variogram, base: int) -> SheetModel:
     """The model of what `likeliest` found. base: the sheet above which the others lie."""
+    constants = fitted["constants"]
+    return _model(constants - constants[base], fitted["thickness"], variogram)
+
+
+def _model(offsets: np.ndarray, share: float, variogram: Variogram) -> SheetModel:
+    """Thicknesses vary as the variogram does. share: the variance of each, of the sill."""
     first = variogram.parts()[0]
     thickness = Variogram(first.model, first.range, 1.0, anisotropy=first.anisotropy)
-    constants = fitted["constants"]
-    variances = fitted["thickness"] * np.arange(len(constants), dtype=np.float64)
-    return SheetModel(constants - constants[base], variances, thickness)
+    return SheetModel(offsets, share * np.arange(len(offsets), dtype=np.float64), thickness)
+
+
+def plain_model(offsets: np.ndarray, variogram: Variogram) -> SheetModel:
+    """The model of sheets whose data are too few, or too plain, to show one. offsets: as of SheetModel."""
+    return _model(offsets, _LEAST, variogram)
 
 
 def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:
@@ -155,59 +176,3 @@ def first_offsets(work: Work, points: Sequence[np.ndarray]) -> np.ndarray:
         z = work.native(native_module().idw, others, plan, neighborhood=_NEAR)
         offsets[number] = np.median(points[number][:, 2] - z)
     return np.nan_to_num(offsets)
-
-
-def thickness_model(
-    work: Work,
-    points: Sequence[np.ndarray],
-    variogram: Variogram,
-    offsets: np.ndarray,
-    anisotropy: dict | None,
-) -> SheetModel:
-    """The sheets' model with these offsets. Thicknesses vary as they do where two
-    sheets were met at one position; where there are few such positions, as what remains of heights where the
-    other sheets' are known."""
-    met = [_met(points[k - 1], points[k]) for k in range(1, len(points))]
-    away = [each[:, 2] - each[:, 2].mean() for each in met if len(each) > 1]
-    away = [each / np.sqrt(1 - 1 / len(each)) for each in away]
-    structured = max(variogram.sill - variogram.nugget, 1e-3 * variogram.sill)
-    own = Variogram(variogram.parts()[0].model, variogram.range, 1.0)
-    if sum(map(len, away)) >= _FEW:
-        variance = float(np.mean(np.concatenate(away) ** 2))
-        largest = max(met, key=len)
-        if len(largest) >= _SHOWN:
-            fitted = Variogram.from_fit(work.native(native_module().fit_variogram, largest), False)
-            own = replace(own, model=fitted.parts()[0].model, range=fitted.range)
-    else:
-        variance = _remaining(work, points, offsets, variogram.native(anisotropy))
-    share = float(np.clip(variance / variogram.sill, _LEAST, _MOST * structured / variogram.sill))
-    variances = share * np.arange(len(points), dtype=np.float64)
-    return SheetModel(offsets, variances, own)
-
-
-def without_thickness(variogram: Variogram, model: SheetModel) -> Variogram:
-    """The variogram of what sheets share, of one that was fitted to the points of all: what their thicknesses
-    explain there is no nugget."""
-    explained = min(variogram.nugget, float(model.variances.mean()) * variogram.sill)
-    return replace(variogram, nugget=variogram.nugget - explained, sill=variogram.sill - explained)
-
-
-def _met(older: np.ndarray, younger: np.ndarray) -> np.ndarray:
-    """(M, 3) the thickness at each position where two sheets have a point."""
-    known = {tuple(place): z for *place, z in older.tolist()}
-    found = [(x, y, z - known[x, y]) for x, y, z in younger.tolist() if (x, y) in known]
-    return np.array(found).reshape(-1, 3)
-
-
-def _remaining(work: Work, points, offsets: np.ndarray, variogram: dict) -> float:
-    """The mean square of what heights of a sheet differ from those kriged from its neighbors, less the part
-    that these do not know."""
-    found = []
-    for number in range(1, len(points)):
-        if not (len(points[number]) and len(points[number - 1])):
-            continue
-        others = pooled([points[number - 1]], offsets[[number - 1]])
-        plan = np.ascontiguousarray(points[number][:, :2])
-        z, variance, _ = work.native(native_module().krige, others, plan, variogram)
-        found.append((points[number][:, 2] - offsets[number] - z) ** 2 - variance)
-    return float(np.median(np.concatenate(found))) if found else 0.0

@@ -16,16 +16,14 @@ from ..settings.variogram import Variogram, fit_warnings
 from .companions import (
     MOST_AT_ONCE,
     MOST_NEIGHBOURS,
-    ROUNDS,
     Companions,
     JointData,
     SheetModel,
     first_offsets,
     likeliest,
     likeliest_model,
+    plain_model,
     pooled,
-    thickness_model,
-    without_thickness,
 )
 from .interpolation import Result, Task
 
@@ -100,7 +98,11 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
         return Structure(variogram, neighbours, dip_use(task, variogram, neighbours))
     anisotropy = settings["anisotropy"]
     along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
-    fitted = task.run(
+    has_bounds = task.bounds is not None and len(task.bounds) > 0
+    fitted = None
+    if native_module().fits_by_likelihood(len(task.points), task.dips is not None, has_bounds):
+        fitted = _fitted_alike(task, along)
+    fitted = fitted or task.run(
         native_module().fit_variogram,
         task.points,
         anisotropy=along,
@@ -108,7 +110,7 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
         are_apart=are_apart,
         dips=None if task.dips is None else DipUse(_spacing(task.points, task.dips), 0).native(task.dips),
-        has_bounds=task.bounds is not None and len(task.bounds) > 0,
+        has_bounds=has_bounds,
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
     variogram = Variogram.from_fit(fitted, anisotropy is None)
@@ -116,10 +118,29 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
 
 
+def _fitted_alike(task: Task, along: tuple[float, float] | None) -> dict | None:
+    """What native fit_alike finds for the surface of a task in the data of all that vary alike; None where
+    there are no others, or these show nothing."""
+    if task.alike is None:
+        return None
+    points, dips = task.alike.data(task.points, task.dips)
+    drift = task.settings.get("drift", "constant")
+    surfaces = [
+        (own, None if slopes is None else (slopes.positions, slopes.gradients, _spacing(own, slopes), 0))
+        for own, slopes in zip(points, dips, strict=True)
+    ]
+    arrays = [*points, *(each for _, of_dips in surfaces if of_dips is not None for each in of_dips[:2])]
+    found = task.alike.fitted(
+        (along, drift, [of_dips is not None for _, of_dips in surfaces]),
+        arrays,
+        lambda: task.run(native_module().fit_alike, surfaces, along, drift),
+    )
+    return found[task.alike.own] if found else None
+
+
 def _joint_structure(task: Task, companions: Companions) -> Structure:
-    """structure of the sheets of a series: the likeliest one of few points; of many that of all of them
-    around what sheets lie apart, which is estimated from all data. Once this is known the variogram is fitted
-    again."""
+    """structure of the sheets of a series: the likeliest one. Where a part of many points has shown it, what
+    sheets lie apart is estimated from all data."""
     points, dips = companions.data(task.points, task.dips)
     data = JointData.of(points, dips, np.zeros(len(points)), 0)
     alone = replace(task, companions=None, bounds=None)
@@ -134,16 +155,13 @@ def _joint_structure(task: Task, companions: Companions) -> Structure:
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
         variogram = variogram if given is None else Variogram.from_settings(given)
         model = likeliest_model(fitted, variogram, int(np.argmax([len(each) for each in points])))
-        return _of_model(alone, variogram, model, points, count)
+        found = _of_model(alone, variogram, model, points, count)
+        if fitted["points"] == len(data.points):
+            return found
+        return replace(found, sheets=replace(model, offsets=mean_offsets(alone, found, points, dips)))
     offsets = first_offsets(task.work, points)
-    for _ in range(ROUNDS):
-        found = structure(replace(alone, points=pooled(points, offsets)))
-        model = thickness_model(task.work, points, found.variogram, offsets, task.settings["anisotropy"])
-        found = _of_all_sheets(found, task, len(points), count)
-        variogram = without_thickness(found.variogram, model)
-        found = replace(found, variogram=variogram, sheets=model)
-        offsets = mean_offsets(alone, found, points, dips)
-    return replace(found, sheets=replace(model, offsets=offsets))
+    variogram = structure(replace(alone, points=pooled(points, offsets))).variogram
+    return _of_model(alone, variogram, plain_model(offsets, variogram), points, count)
 
 
 def _of_model(

@@ -17,7 +17,7 @@ from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
-from .companions import Companions
+from .companions import Alike, Companions
 
 
 @dataclass(frozen=True, repr=False)
@@ -47,7 +47,8 @@ class Task:
     method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be estimated from
     the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3)). dips:
     of the surface, no two at one position, or None. bounds: heights that it lies above or below, or None.
-    companions: the sheets of its series, with which it is interpolated together, or None. true_thickness: the
+    companions: the sheets of its series, with which it is interpolated together, or None. alike: the surfaces
+    whose heights vary as its own do, which count for its variogram, or None. true_thickness: the
     thickness above the surface that it is parallel to is measured perpendicular to that. ties: it is tied to
     its points afterwards."""
 
@@ -61,6 +62,7 @@ class Task:
     dips: Dips | None = None
     bounds: Bounds | None = None
     companions: Companions | None = None
+    alike: Alike | None = None
     true_thickness: bool = False
     ties: bool = False
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from ..heights.cross_validation import CrossValidation, distinct_points, validat
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
 from ..settings.variogram import RANGE_BEYOND, Variogram
+from ..surfaces.observed.conformable import alike_of
 from ..surfaces.observed.sheet_series import companions_of
 
 DEFAULT_FOLDS = 10
@@ -90,7 +92,8 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
         triangles if on_mesh else None,
         dips=surface.known_dips(),
         bounds=surface.bounds,
-        companions=_companions(model, number),
+        companions=_of_rock(model, number, companions_of),
+        alike=_of_rock(model, number, alike_of),
     )
     try:
         return validate(method, task, DEFAULT_FOLDS), ""
@@ -98,11 +101,11 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
         return None, str(error)
 
 
-def _companions(model, number: int):
-    """The sheets with which a surface was interpolated, by its number in the model."""
+def _of_rock(model, number: int, find: Callable):
+    """What companions_of or alike_of finds for a surface, by its number in the model."""
     for rock in model.project.rocks:
         if number < len(rock.surfaces):
-            return companions_of(rock, number, {})
+            return find(rock, number, {})
         number -= len(rock.surfaces)
     return None
 

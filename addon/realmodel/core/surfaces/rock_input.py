@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -37,8 +38,8 @@ class RockInput:
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
     level sets; such a surface is a level set, in each compartment of its field. untied: of sheets that were
-    tied to their data what they were before, until the warnings about doubtful heights are made. sheet_fits:
-    what was fitted to the data of series of sheets, as of Companions.
+    tied to their data what they were before, until the warnings about doubtful heights are made. joint_fits:
+    what was fitted to the data of several surfaces, as of Alike.
     """
 
     rock: Rock
@@ -57,7 +58,7 @@ class RockInput:
     has_faults: bool = False
     fields: list[SeriesField] = field(default_factory=list)
     untied: dict[Sheet, Sheet] = field(default_factory=dict, metadata=NOT_STORED)
-    sheet_fits: dict[bytes, dict | None] = field(default_factory=dict, metadata=NOT_STORED)
+    joint_fits: dict[bytes, Any] = field(default_factory=dict, metadata=NOT_STORED)
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""

@@ -22,6 +22,7 @@ from ..heights.ties import corrected, tie_data
 from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
+from .observed.conformable import alike_of
 from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
@@ -100,9 +101,10 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             result, free = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            companions = companions_of(rock, number, entry.sheet_fits)
+            companions = companions_of(rock, number, entry.joint_fits)
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
             task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
+            task = replace(task, alike=alike_of(rock, number, entry.joint_fits))
             bounds = bounds_beside(surface, companions)
             task = replace(task, bounds=bounds, true_thickness=surface.true_thickness)
             result, free = _tied(task, give(method, task), surface)

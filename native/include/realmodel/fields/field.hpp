@@ -43,6 +43,7 @@ struct Field {
     std::vector<double> values;  ///< of the lattice's nodes
     std::vector<double> levels;  ///< of the surfaces, rising
     Anisotropy anisotropy;
+    int order = 3;             ///< of the derivatives that are least: 2 where surfaces are rough
     std::int64_t centers = 0;  ///< contacts that carry the field
     double misfit = 0;         ///< the largest distance of a contact from its surface, nearly
     std::vector<std::int64_t> dips_missed;    ///< dips against which f falls
@@ -50,7 +51,8 @@ struct Field {
 };
 
 /// The smoothest field that honors the data: its third derivatives, integrated over all of space,
-/// are least (Duchon 1977; Lajaunie, Courrioux and Manuel 1997 with other covariances). On each
+/// are least, or its second ones, where surfaces are so rough that it would else have critical
+/// points (Duchon 1977; Lajaunie, Courrioux and Manuel 1997 with other covariances). On each
 /// surface it has one value, which is free; along a dip's plane it does not change, and how fast it
 /// rises across it is free, too: only the mean over all dips is given. Bounds, rising levels and
 /// polarities are inequalities, met by active sets (Nocedal and Wright 2006, section 16.5).

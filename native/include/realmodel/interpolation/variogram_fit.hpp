@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -60,9 +61,8 @@ struct FittedVariogram {
 /// and by two standard errors, and the rest is fitted again under it.
 ///
 /// Few contacts of a surface that dips and bounds describe as well show too little by their pairs,
-/// and by those that are left out: with bounds the variogram of fewer than 30 points, with dips of
-/// fewer than 150, is the one with which points and dips are most likely (restricted maximum
-/// likelihood).
+/// and by those that are left out: where fits_by_likelihood, the variogram is the one with which
+/// points and dips are most likely (restricted maximum likelihood).
 ///
 /// With a drift all this is done with the residuals of the polynomial that fits best, or that fits
 /// a fixed part of more than 20,000 points best.
@@ -77,5 +77,27 @@ struct FittedVariogram {
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
                               const Anisotropy& anisotropy, const FitOptions& options = {},
                               const Execution& execution = {});
+
+/// Whether the variogram of so many points is found by likelihood: with bounds of fewer than 30
+/// points, with dips of fewer than 150.
+constexpr bool fits_by_likelihood(std::size_t points, bool has_dips, bool has_bounds) {
+    return points < (has_dips ? 150U : has_bounds ? 30U : 0U);
+}
+
+/// What is known of one surface. Its dips' baseline is the mean spacing of its points and dips.
+struct SurfaceData {
+    std::span<const std::array<double, 3>> points;
+    Dips dips{};
+};
+
+/// Variograms of surfaces of which heights vary alike, as conformable ones do, but which are not
+/// estimated together: their model, range, anisotropy and share of nugget are those with which the
+/// data of all are most likely, each surface taken by itself; the sill is each surface's own, where
+/// its data show one. Of many points of a surface an even part counts.
+/// @return none where there are none, or the data are too few
+/// @throws InputError as fit_variogram; Cancelled
+std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
+                                       const Anisotropy& anisotropy, const FitOptions& options = {},
+                                       const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

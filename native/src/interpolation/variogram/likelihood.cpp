@@ -4,14 +4,16 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstddef>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/linear_data.hpp"
 #include "realmodel/base/elementary.hpp"
-#include "realmodel/base/progress.hpp"
+#include "spatial/hilbert_order.hpp"
 
 namespace realmodel::interpolation {
 
@@ -20,17 +22,72 @@ namespace {
 // Of a datum, given others, of the sill: with less they decide it. Under a Gaussian model, which is
 // much smoother than the others, draws of heights are sums of large numbers then that cancel.
 constexpr double kLeastVariance = 1e-9, kLeastOfGaussian = 1e-5;
-constexpr double kShortest = 0.1, kLongest = 20;  // ranges, of the extent of the data
-constexpr int kRanges = 18;
 constexpr double kLeastTerm = 1e-4;  // of a term of the drift that others do not explain
-constexpr double kRatios[] = {2, 4, 8};
-constexpr double kAzimuthStep = 15;
-constexpr double kMostAnisotropic = 20;
-constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};                      // of the sill
-constexpr double kThicknesses[] = {1e-5, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};  // of the sill
-constexpr double kOfAnisotropy = 2, kOfNugget = 2;  // gains of the logarithm, at least
-constexpr std::size_t kFewestFree = 8;              // data that show an anisotropy or a nugget
-constexpr double kLittle = 1e-3;                    // gains that end the refinement
+
+/// Of many points on sheets a fixed part: of each sheet as many, but for those that have fewer, at
+/// positions that are spread evenly and are the same where several sheets have points at one.
+/// @param sheets  that each is on; empty: there is one
+std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> points,
+                                      std::span<const std::int32_t> sheets, std::size_t most) {
+    std::vector<std::int32_t> part(points.size());
+    std::iota(part.begin(), part.end(), 0);
+    std::vector<Position> plan(points.size());
+    std::transform(points.begin(), points.end(), plan.begin(), [](const auto& point) {
+        return Position{point[0], point[1]};
+    });
+    // Whole numbers with their bits reversed: the first ones are spread evenly, however many.
+    std::vector<std::uint32_t> turn(points.size());
+    std::uint32_t rank = 0;
+    const Position* before = nullptr;
+    for (const std::uint32_t i : spatial::along_hilbert_curve(plan)) {
+        if (before != nullptr && *before != plan[i]) ++rank;
+        before = &plan[i];
+        for (unsigned bit = 0; bit < 32; ++bit)
+            turn[i] |= (rank >> bit & 1U) << (31 - bit);
+    }
+    const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
+    std::sort(part.begin(), part.end(), [&](std::int32_t a, std::int32_t b) {
+        return std::tuple(sheet(a), turn[a], a) < std::tuple(sheet(b), turn[b], b);
+    });
+    std::vector<std::size_t> sizes;  // of the sheets with points, in the order of these
+    for (std::size_t k = 0; k < part.size(); ++k) {
+        if (k == 0 || sheet(part[k]) != sheet(part[k - 1])) sizes.push_back(0);
+        ++sizes.back();
+    }
+    std::vector<std::size_t> ascending = sizes;
+    std::sort(ascending.begin(), ascending.end());
+    std::size_t left = most, quota = 0;
+    for (std::size_t k = 0; k < ascending.size(); ++k) {
+        quota = std::max<std::size_t>(left / (ascending.size() - k), 1);
+        left -= std::min(left, std::min(quota, ascending[k]));
+    }
+    std::vector<std::int32_t> kept;
+    auto first = part.begin();
+    for (const std::size_t size : sizes) {
+        kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(std::min(size, quota)));
+        first += static_cast<std::ptrdiff_t>(size);
+    }
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
+template <class Value>
+std::vector<Value> some_of(std::span<const Value> all, std::span<const std::int32_t> numbers) {
+    std::vector<Value> found;
+    for (const std::int32_t number : numbers)
+        found.push_back(all[number]);
+    return found;
+}
+
+/// A part of points on sheets, as Likelihood takes them.
+DataPoints some_points(std::span<const std::array<double, 3>> points,
+                       std::span<const std::int32_t> sheets) {
+    DataPoints all = prepare_points(points, sheets);
+    if (points.size() <= Likelihood::kMostPoints) return all;
+    const std::vector<std::int32_t> part = spread_part(points, sheets, Likelihood::kMostPoints);
+    return prepare_points(some_of(points, part),
+                          sheets.empty() ? std::vector<std::int32_t>{} : some_of(sheets, part));
+}
 
 /// Whether all variances of data, given those before them, are as large as `least`.
 bool is_stable(const Eigen::LLT<Eigen::MatrixXd>& factor, double least) {
@@ -77,7 +134,8 @@ private:
 
 Likelihood::Likelihood(std::span<const std::array<double, 3>> points, const Dips& dips, Drift drift,
                        const Sheets& sheets)
-    : points_(prepare_points(points, sheets.of_points)),
+    : points_(some_points(points, sheets.of_points)),
+      base_(points[0][2]),
       spacing_(dips.baseline),
       drift_(drift),
       sheet_count_(sheets.variances.size()),
@@ -132,6 +190,16 @@ Eigen::MatrixXd Likelihood::drift_of(const LinearData& data) const {
     return drift;
 }
 
+double Likelihood::Found::logarithm() const {
+    return density - 0.5 * static_cast<double>(free) * elementary::log(sill());
+}
+
+void Likelihood::Found::add(const Found& other) {
+    density += other.density;
+    squares += other.squares;
+    free += other.free;
+}
+
 std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
     const Variogram& field = shape.variogram;
     Sheets sheets{
@@ -156,7 +224,7 @@ std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
         for (std::int32_t j = 0; j < i; ++j)
             matrix(i, j) = data.between(i, j, covariance);
         matrix(i, i) = 1;
-        values(i) = data.value(i, points_.values[0]);
+        values(i) = data.value(i, base_);
     }
     const Eigen::LLT<Eigen::MatrixXd> lower(matrix);
     const bool is_gaussian = field.model == VariogramModel::kGaussian;
@@ -175,229 +243,10 @@ std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    const auto degrees = static_cast<double>(free_);
-    const double sill = values.squaredNorm() / degrees;
-    if (!(sill > 0) || !std::isfinite(sill)) return std::nullopt;
-    Found found{sum - 0.5 * degrees * elementary::log(sill), sill, {}};
+    Found found{sum, values.squaredNorm(), free_, {}};
+    if (!std::isfinite(found.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
         found.constants.push_back(column < 0 ? 0 : coefficients(column));
-    return found;
-}
-
-namespace {
-
-class LikelihoodSearch {
-public:
-    using Shape = Likelihood::Shape;
-
-    LikelihoodSearch(const Likelihood& likelihood, Progress* progress)
-        : likelihood_(likelihood),
-          progress_(progress),
-          thickness_(likelihood.has_sheets() ? kThicknesses[2] : 0) {}
-
-    /// Whether a shape is more likely than the best by more than so much; then it is the best.
-    bool attempt(const Shape& shape, double gain = 0) {
-        if (progress_ != nullptr) progress_->check();
-        const std::optional<Likelihood::Found> found = likelihood_.of(shape);
-        if (!found || (best_ && !(found->logarithm > best_->logarithm + gain))) return false;
-        best_ = found;
-        shape_ = shape;
-        return true;
-    }
-
-    void ranges_of(std::span<const VariogramModel> models, const Anisotropy& anisotropy) {
-        for (const VariogramModel model : models) {
-            for (int k = 0; k < kRanges; ++k)
-                attempt({{model, range(k), 1, 0, anisotropy, {}}, thickness_});
-        }
-    }
-
-    /// Of sheets the variance of their thicknesses, beside the best shape.
-    void thicknesses() {
-        if (!likelihood_.has_sheets()) return;
-        const Variogram plain = shape_.variogram;
-        for (const double thickness : kThicknesses)
-            attempt({plain, thickness});
-        thickness_ = shape_.thickness;
-    }
-
-    void anisotropies(std::span<const VariogramModel> models) {
-        LikelihoodSearch with(likelihood_, progress_);
-        with.thickness_ = thickness_;
-        for (const double ratio : kRatios) {
-            for (double azimuth = 0; azimuth < 180; azimuth += kAzimuthStep) {
-                for (int k = 0; k < kRanges; k += 2) {
-                    const VariogramModel model = shape_.variogram.model;
-                    with.attempt({{model, range(k), 1, 0, {ratio, azimuth}, {}}, thickness_});
-                }
-            }
-        }
-        if (!with.best_) return;
-        with.ranges_of(models, with.shape_.variogram.anisotropy);
-        with.refine(true);
-        if (with.best_->logarithm > best_->logarithm + kOfAnisotropy) *this = with;
-    }
-
-    void nuggets() {
-        const Shape plain = shape_;
-        const double needed = best_->logarithm + kOfNugget;
-        for (const double nugget : kNuggets) {
-            Shape shape = plain;
-            shape.variogram.nugget = nugget;
-            attempt(shape, std::max(needed - best_->logarithm, 0.0));
-        }
-    }
-
-    /// By steps that get shorter.
-    void refine(bool turns) {
-        double step = 0.35;
-        for (int round = 0; round < 24 && step > 0.02; ++round) {
-            const double before = best_->logarithm;
-            for (const double up : {1.0, -1.0}) {
-                Shape shape = shape_;
-                shape.variogram.range = std::clamp(
-                    shape.variogram.range * elementary::exp(up * step),
-                    kShortest * likelihood_.diagonal() / 4, kLongest * likelihood_.diagonal());
-                attempt(shape);
-                if (likelihood_.has_sheets()) {
-                    shape = shape_;
-                    shape.thickness = std::clamp(shape.thickness * elementary::exp(4 * up * step),
-                                                 kThicknesses[0], *(std::end(kThicknesses) - 1));
-                    attempt(shape);
-                }
-                if (!turns) continue;
-                shape = shape_;
-                Anisotropy& anisotropy = shape.variogram.anisotropy;
-                anisotropy.ratio = std::clamp(anisotropy.ratio * elementary::exp(up * step), 1.0,
-                                              kMostAnisotropic);
-                attempt(shape);
-                shape = shape_;
-                anisotropy.azimuth += up * step * kAzimuthStep;
-                if (anisotropy.azimuth < 0) anisotropy.azimuth += 180;
-                if (anisotropy.azimuth >= 180) anisotropy.azimuth -= 180;
-                attempt(shape);
-            }
-            if (best_->logarithm - before < kLittle) step /= 2;
-        }
-    }
-
-    void thicknesses_of(const Variogram& given) {
-        Variogram shape = given;
-        shape.sill = 1;
-        shape.nugget /= given.sill;
-        for (NestedStructure& part : shape.further)
-            part.sill /= given.sill;
-        for (const double thickness : kThicknesses)
-            attempt({shape, thickness});
-    }
-
-    bool has_found() const { return best_.has_value(); }
-
-    Variogram variogram() const {
-        Variogram out = shape_.variogram;
-        out.sill = best_->sill;
-        out.nugget = shape_.variogram.nugget * best_->sill;
-        return out;
-    }
-
-    FittedSheets sheets() const { return {variogram(), shape_.thickness, best_->constants, {}}; }
-
-    /// Of sheets whose variogram is given.
-    FittedSheets sheets_of(const Variogram& given) const {
-        return {given, shape_.thickness * best_->sill / given.sill, best_->constants, {}};
-    }
-
-    /// All steps, for a surface or for sheets.
-    void run(std::span<const VariogramModel> models, const Anisotropy& given,
-             bool finds_anisotropy) {
-        ranges_of(models, given);
-        if (!has_found()) return;
-        thicknesses();
-        refine(false);
-        thickness_ = shape_.thickness;
-        const bool is_rich = likelihood_.free() >= kFewestFree;
-        if (is_rich && finds_anisotropy) anisotropies(models);
-        if (is_rich) nuggets();
-    }
-
-private:
-    double range(int k) const {
-        return likelihood_.diagonal() * kShortest *
-               elementary::pow(kLongest / kShortest, static_cast<double>(k) / (kRanges - 1));
-    }
-
-    Likelihood likelihood_;
-    Progress* progress_;
-    std::optional<Likelihood::Found> best_;
-    Shape shape_;
-    double thickness_ = 0;  // of sheets, from which a search begins
-};
-
-constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
-                             VariogramModel::kMatern52, VariogramModel::kMatern32};
-
-std::span<const VariogramModel> models_for(const FitOptions& options) {
-    if (options.dips.positions.empty()) return kAllVariogramModels;
-    return kSmooth;
-}
-
-/// One point at each position of sheets, less the constant of its sheet.
-std::vector<std::array<double, 3>> one_surface(std::span<const std::array<double, 3>> points,
-                                               const Sheets& sheets,
-                                               const std::vector<double>& constants) {
-    std::vector<std::array<double, 3>> leveled(points.begin(), points.end());
-    for (std::size_t i = 0; i < leveled.size(); ++i)
-        leveled[i][2] -= constants[sheets.of_points[i]];
-    std::sort(leveled.begin(), leveled.end());
-    const auto are_at_one = [](const auto& a, const auto& b) {
-        return a[0] == b[0] && a[1] == b[1];
-    };
-    leveled.erase(std::unique(leveled.begin(), leveled.end(), are_at_one), leveled.end());
-    return leveled;
-}
-
-bool is_enough(const Likelihood& likelihood) {
-    return likelihood.free() >= 2 && likelihood.diagonal() > 0;
-}
-
-}  // namespace
-
-std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 3>> points,
-                                             const Anisotropy& given, const FitOptions& options,
-                                             Progress* progress) {
-    const Likelihood likelihood(points, options.dips, options.drift);
-    if (!is_enough(likelihood)) return std::nullopt;
-    LikelihoodSearch search(likelihood, progress);
-    search.run(models_for(options), given, options.finds_anisotropy);
-    if (!search.has_found()) return std::nullopt;
-    return search.variogram();
-}
-
-std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> points,
-                                       const Sheets& sheets, const Anisotropy& anisotropy,
-                                       const FitOptions& options,
-                                       const std::optional<Variogram>& given,
-                                       const Execution& execution) {
-    check_anisotropy(anisotropy);
-    check_sheets(sheets, points.size(), options.dips.positions.size());
-    if (points.size() > kMostPointsOfSheets) return std::nullopt;
-    const Likelihood likelihood(points, options.dips, options.drift, sheets);
-    if (!is_enough(likelihood)) return std::nullopt;
-    LikelihoodSearch search(likelihood, execution.progress);
-    if (given) {
-        search.thicknesses_of(*given);
-    } else {
-        search.run(models_for(options), anisotropy, options.finds_anisotropy);
-    }
-    if (!search.has_found()) return std::nullopt;
-    FittedSheets found = given ? search.sheets_of(*given) : search.sheets();
-    const std::vector<std::array<double, 3>> leveled = one_surface(points, sheets, found.constants);
-    if (!given && found.thickness <= kThicknesses[0]) {
-        // thicknesses that do not vary say nothing of how heights do
-        const auto as_one = likeliest_variogram(leveled, anisotropy, options, execution.progress);
-        if (as_one) found.variogram = *as_one;
-    }
-    found.experimental = experimental_variogram(leveled, found.variogram.anisotropy);
     return found;
 }
 

@@ -24,12 +24,12 @@ namespace realmodel::interpolation {
 /// How likely heights and slopes together are with a variogram: restricted maximum likelihood,
 /// which knows nothing of the drift (Kitanidis 1983, "Statistical estimation of polynomial
 /// generalized covariance functions", Water Resources Research 19; Chiles and Delfiner 2012,
-/// section 2.6.3). Each sheet of several has a constant of its own. Of many dips a fixed, even part
-/// counts.
+/// section 2.6.3). Each sheet of several has a constant of its own. Of many points, and of many
+/// dips, a fixed, even part counts.
 class Likelihood {
 public:
-    /// Points and both slopes of the dips that are taken together.
-    static constexpr std::size_t kMostData = 200;
+    /// Points, and points and both slopes of the dips together, that are taken.
+    static constexpr std::size_t kMostPoints = kMostPointsOfSheets, kMostData = 200;
 
     /// @param dips    their baseline is the mean spacing of points and dips
     /// @param sheets  of points and dips; their variances say how many there are
@@ -41,6 +41,8 @@ public:
     /// Heights and slopes, less the terms of the drift.
     std::size_t free() const { return free_; }
     bool has_sheets() const { return sheet_count_ > 0; }
+    /// So many count.
+    std::size_t points() const { return points_.local.size(); }
 
     /// What is asked how likely it is.
     struct Shape {
@@ -48,9 +50,17 @@ public:
         double thickness = 0;  ///< the variance of each thickness between sheets
     };
     struct Found {
-        double logarithm;
-        double sill;                    ///< with which the data are most likely
+        double density;                 ///< its logarithm with the sill 1, but for the squares
+        double squares;                 ///< of what shape and drift do not explain
+        std::size_t free;               ///< as of free()
         std::vector<double> constants;  ///< of each sheet, above the first point; 0 without points
+
+        /// With which the data are most likely.
+        double sill() const { return squares / static_cast<double>(free); }
+        /// How likely they are with this sill.
+        double logarithm() const;
+        /// Of data that do not depend on these, with the same sill.
+        void add(const Found& other);
     };
     /// @return none where the data are one another's consequences with it, up to rounding
     std::optional<Found> of(const Shape& shape) const;
@@ -61,6 +71,7 @@ private:
     Eigen::MatrixXd drift_of(const LinearData& data) const;
 
     DataPoints points_;
+    double base_;  // of heights: the first point's
     std::vector<Position> dips_, slopes_;
     std::vector<std::int32_t> of_dips_;
     double spacing_, diagonal_ = 0;

@@ -29,8 +29,7 @@ constexpr std::size_t kPointsLeftOutOfDrift = 1000;
 constexpr double kAsGood = 1.004;     // of mean squares: RMS errors within 0.2 % are equally good
 constexpr double kNearlyBest = 1.05;  // of mean squares, by few points
 constexpr std::size_t kFinalists = 8;
-constexpr std::size_t kLeastForAnisotropy = 30;                 // points
-constexpr std::size_t kFewWithBounds = 30, kFewWithDips = 150;  // fewer points: by likelihood
+constexpr std::size_t kLeastForAnisotropy = 30;  // points
 // Fewer points show less of how honest variances are than pairs of them show of the curve.
 constexpr double kFewPoints = 200;
 constexpr double kHardlyWorse = 1.002;  // of mean squares, for the sake of honest variances
@@ -252,8 +251,7 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
     const bool varies = !e.gamma.empty() && *std::max_element(e.gamma.begin(), e.gamma.end()) >
                                                 1e-12 * out.variogram.sill;
     const bool has_dips = !options.dips.positions.empty();
-    const std::size_t few = has_dips ? kFewWithDips : options.has_bounds ? kFewWithBounds : 0;
-    if (all.size() < few && (varies || has_dips)) {
+    if (fits_by_likelihood(all.size(), has_dips, options.has_bounds) && (varies || has_dips)) {
         const auto likeliest = likeliest_variogram(points, anisotropy, options, execution.progress);
         if (likeliest) {
             out.variogram = *likeliest;

@@ -44,10 +44,10 @@ TEST(Likelihood, OfTwoPointsByHand) {
     const double c = 1 - (1.5 * 0.25 - 0.5 * 0.25 * 0.25 * 0.25);
     const auto found = likelihood.of({shape});
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->sill, 16 / (2 * (1 - c)), 1e-9);
+    EXPECT_NEAR(found->sill(), 16 / (2 * (1 - c)), 1e-9);
     // -1/2 (log sill + log |C| + log 1' C^-1 1), with |C| = 1 - c^2 and 1' C^-1 1 = 2 / (1 + c)
-    const double expected = -0.5 * (std::log(found->sill) + std::log(2 * (1 - c)));
-    EXPECT_NEAR(found->logarithm, expected, 1e-9);
+    const double expected = -0.5 * (std::log(found->sill()) + std::log(2 * (1 - c)));
+    EXPECT_NEAR(found->logarithm(), expected, 1e-9);
 }
 
 TEST(Likelihood, DoesNotDependOnTheUnitOfHeights) {
@@ -110,6 +110,42 @@ TEST(Likelihood, FitUsesIt) {
     EXPECT_EQ(fitted.variogram.range, found->range);
     EXPECT_EQ(fitted.variogram.sill, found->sill);
     EXPECT_FALSE(fitted.experimental.lags.empty());
+}
+
+TEST(Likelihood, SurfacesThatVaryAlikeHaveTheShapeThatTheirDataShowTogether) {
+    const Folded folded;
+    // three contacts of a surface of twice the amplitude, and one of another
+    Points few{{5e5 + 100, 4e6, 100}, {5e5 + 500, 4e6 + 300, 101}, {5e5 + 300, 4e6 + 700, -99}};
+    const Points single{{5e5 + 50, 4e6 + 50, 7}};
+    const FitOptions options = folded.options();
+    const std::vector<SurfaceData> surfaces{{folded.points, options.dips}, {few}, {single}};
+    const auto found = fit_alike(surfaces, {}, options);
+    ASSERT_EQ(found.size(), 3U);
+    for (const FittedVariogram& each : found) {
+        EXPECT_EQ(each.variogram.model, found[0].variogram.model);
+        EXPECT_EQ(each.variogram.range, found[0].variogram.range);
+        EXPECT_GT(each.variogram.anisotropy.ratio, 3);
+    }
+    // too few data for a sill of their own: that of all
+    EXPECT_EQ(found[1].variogram.sill, found[2].variogram.sill);
+    EXPECT_NE(found[1].variogram.sill, found[0].variogram.sill);
+    EXPECT_EQ(found[1].experimental.pairs.size(), found[1].experimental.lags.size());
+}
+
+TEST(Likelihood, OneSurfaceAloneVariesAsItself) {
+    const Folded folded;
+    const FitOptions options = folded.options();
+    const std::vector<SurfaceData> one{{folded.points, options.dips}};
+    const auto found = fit_alike(one, {}, options);
+    const auto alone = likeliest_variogram(folded.points, {}, options, nullptr);
+    ASSERT_TRUE(alone && found.size() == 1);
+    EXPECT_EQ(found[0].variogram.range, alone->range);
+    EXPECT_EQ(found[0].variogram.sill, alone->sill);
+}
+
+TEST(Likelihood, SurfacesOfTooFewDataHaveNone) {
+    const Points one{{0, 0, 1}}, other{{5, 0, 2}};
+    EXPECT_TRUE(fit_alike(std::vector<SurfaceData>{{one}, {other}}, {}, {}).empty());
 }
 
 }  // namespace

@@ -73,13 +73,33 @@ TEST(SheetFit, ASheetWithoutPointsHasNoConstant) {
     EXPECT_EQ(found->constants[0], 0);
 }
 
-TEST(SheetFit, OfManyPointsThereIsNone) {
-    const Points points = hills(kMostPointsOfSheets + 1, 1000, {0, 0}, 3);
-    const std::vector<std::int32_t> of_points(points.size(), 0);
+/// Contacts of two parallel sheets of folds, at the same positions where both are met; of the
+/// second only at the first few.
+struct ManyContacts {
+    Points points;
+    std::vector<std::int32_t> of_points;
+
+    ManyContacts(std::size_t of_first, std::size_t of_second) {
+        const Points plan = hills(of_first, 1000, {5e5, 4e6}, 3);
+        for (std::size_t i = 0; i < of_first + of_second; ++i) {
+            const auto [x, y, z] = plan[i % of_first];
+            const std::int32_t sheet = i < of_first ? 0 : 1;
+            points.push_back({x, y, 50 * std::sin((x - 5e5) / 150) + 30 * sheet});
+            of_points.push_back(sheet);
+        }
+    }
+};
+
+TEST(SheetFit, OfManyPointsAnEvenPartCounts) {
+    const ManyContacts many(kMostPointsOfSheets + 250, 20);
     const std::vector<double> variances{0, 0};
-    EXPECT_FALSE(fit_sheets(points, {of_points, {}, variances}, {}, {}));
+    const Sheets sheets{many.of_points, {}, variances};
+    const auto found = fit_sheets(many.points, sheets, {}, {});
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->points, kMostPointsOfSheets);
+    EXPECT_NEAR(found->constants[1] - found->constants[0], 30, 0.5);  // by all points of the second
     const std::vector<std::int32_t> one{0};
-    EXPECT_THROW(fit_sheets(points, {one, {}, variances}, {}, {}), InputError);
+    EXPECT_THROW(fit_sheets(many.points, {one, {}, variances}, {}, {}), InputError);
 }
 
 }  // namespace

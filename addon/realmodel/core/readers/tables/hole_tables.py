@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -196,21 +197,33 @@ def _parts(body: str, separator: str):
         yield from fields(line, separator)
 
 
+def _joined(name: str) -> str:
+    """A column's name, in which words may be parted by spaces and hyphens, too."""
+    return re.sub(r"[\s_-]+", "_", name)
+
+
 def _columns(given: Reading, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
-    names = [plain_name(name) for name in table.layout.names or ()]
-    as_written = [name.strip().lower() for name in table.layout.names or ()]
+    written = table.layout.names or ()
+    names = [_joined(plain_name(name)) for name in written]
+    as_written = [name.strip().lower() for name in written]
     columns: dict[str, int] = {}
-    for column, aliases in known.items():
-        called = given.columns.get(column)
+    for column, called in given.columns.items():  # first, so that no other column takes what they name
+        if column not in known:
+            continue
         if isinstance(called, int):
             columns[column] = called - 1
-        elif called is not None and called.strip().lower() in as_written:
+        elif called.strip().lower() in as_written:
             columns[column] = table.column(called)
-        elif called is None or known is SURVEY:  # depths of picks are often called otherwise than a survey's
-            at = next((names.index(alias) for alias in aliases if alias in names), None)
-            if at is not None and at not in columns.values():
-                columns[column] = at
+        elif _joined(called.strip().lower()) in names:
+            columns[column] = names.index(_joined(called.strip().lower()))
+    for column, aliases in known.items():
+        # depths of picks are often called otherwise than a survey's
+        if column in columns or (given.columns.get(column) is not None and known is not SURVEY):
+            continue
+        at = next((names.index(_joined(alias)) for alias in aliases if _joined(alias) in names), None)
+        if at is not None and at not in columns.values():
+            columns[column] = at
     for column in needed:
         if column not in columns:
             called = given.columns.get(column)

@@ -21,6 +21,7 @@ from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
@@ -353,7 +354,7 @@ class InterpolatedSurface:
         surfaces[self.number] = replace(surface, points=points, tie=surface.tie and not self.ties_at_end)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
-        for other in sheets_beside(entry.rock, self.number):
+        for other in self._that_say_more():
             if other != self.number:
                 surfaces[other] = self._with_own_points(family, entry.rock.surfaces[other])
         shapes: list[Sheet | None] = [None] * len(surfaces)
@@ -371,6 +372,13 @@ class InterpolatedSurface:
         )
         give_heights(self.work, one, self.number, trend and self._trend(trend))
         return one
+
+    def _that_say_more(self) -> list[int]:
+        """The surfaces whose data count for it, itself included."""
+        rock = self.entry.rock
+        if self.dips is None and self.bounds is None:
+            return sheets_beside(rock, self.number)
+        return sheets_beside(rock, self.number) or conformable_run(rock, self.number)
 
     def _counts_by_node(self, surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""

@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that are conformable, so that a series of sheets would interpolate them better."""
+"""Surfaces that are conformable: their heights vary alike, and a series of sheets may interpolate them
+better."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused, number_list
 from ...base.work import Work
-from ...heights.companions import Companions
+from ...heights.companions import Alike, Companions
 from ...heights.cross_validation import validate
 from ...heights.interpolation import Task
-from ...project.project import Rock
-from ...settings.methods import checked_options
+from ...project.project import Rock, Surface
+from ...settings.methods import METHODS, checked_options
+from ...settings.rules import RULES
 
+_MOST_ALIKE = 10_000  # points of a surface: more are a survey, which says of itself how its heights vary
 # contacts of a surface: fewer do not show that it follows another one; more show its own shape, and take long
 _LEAST, _MOST = 8, 300
 _BETTER = 0.8  # of the error alone: below it two surfaces are taken to be conformable
@@ -31,17 +35,60 @@ class _Compared:
     together: float
 
 
+def conformable_run(rock: Rock, number: int) -> list[int]:
+    """The surfaces that are interpolated with a variogram in the run of consecutive ones that their rules
+    call conformable, oldest first, with one of them; none where it has no other, or is in a series. What
+    protects itself, and what cuts older rock, has a shape of its own."""
+    surfaces = rock.surfaces
+
+    def belongs(other: int) -> bool:
+        rule = RULES[surfaces[other].rule]
+        return not rule.protects and (other == 0 or not rule.cuts)
+
+    if not belongs(number) or not _is_kriged(surfaces[number]):
+        return []
+    first, last = number, number
+    while first > 0 and belongs(first - 1):
+        first -= 1
+    while last + 1 < len(surfaces) and belongs(last + 1):
+        last += 1
+    run = [other for other in range(first, last + 1) if _is_kriged(surfaces[other])]
+    return run if len(run) > 1 else []
+
+
+def _is_kriged(surface: Surface) -> bool:
+    """Whether a surface that is read is interpolated from points with a variogram, by itself."""
+    if surface.series is not None or not surface.interpolated:
+        return False
+    if not 0 < len(surface.point_array()) <= _MOST_ALIKE:
+        return False
+    method = METHODS[surface.method_options()[0]]
+    return method.run is None or "variogram" in method.options
+
+
+def alike_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Alike | None:
+    """The surfaces whose data say how heights of one vary; None where there are no others. known: as of
+    Alike."""
+    run = conformable_run(rock, number)
+    if not run:
+        return None
+    surfaces = [rock.surfaces[each] for each in run]
+    points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
+    return Alike(run.index(number), points, [each.known_dips() for each in surfaces], known)
+
+
 def proposals(work: Work, rock: Rock, numbers: Sequence[int]) -> list[BuildWarning]:
     """A warning for each run of consecutive surfaces among those of a rock mass with these numbers whose
     contacts, left out one by one, are estimated better with those of the next surface: they are conformable,
     and none of them is in a series."""
     runs: list[list[int]] = []
     errors: dict[tuple[int, int], _Compared] = {}
+    fits: dict[bytes, Any] = {}
     known = [number for number in numbers if _is_known(rock, number)]
     for one, other in pairwise(known):
         if other != one + 1:
             continue
-        found = _compared(work, rock, one, other)
+        found = _compared(work, rock, fits, one, other)
         if found is None or not found.together < _BETTER**2 * found.alone:
             continue
         errors[one, other] = found
@@ -58,8 +105,8 @@ def _is_known(rock: Rock, number: int) -> bool:
     return surface.series is None and _LEAST <= count <= _MOST
 
 
-def _compared(work: Work, rock: Rock, *numbers: int) -> _Compared | None:
-    """Of two surfaces; None where their points cannot be kriged."""
+def _compared(work: Work, rock: Rock, known: dict[bytes, Any], *numbers: int) -> _Compared | None:
+    """Of two surfaces; None where their points cannot be kriged. known: as of Alike."""
     surfaces = [rock.surfaces[number] for number in numbers]
     points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
     dips = [each.known_dips() for each in surfaces]
@@ -67,8 +114,10 @@ def _compared(work: Work, rock: Rock, *numbers: int) -> _Compared | None:
     settings, nodes = checked_options("kriging", {}), np.empty((0, 2))
     try:
         for own in range(2):
+            alike = alike_of(rock, numbers[own], known)
             for which, companions in enumerate((None, Companions(own, points, dips))):
                 task = Task(work, points[own], nodes, settings, dips=dips[own], companions=companions)
+                task = replace(task, alike=alike)
                 error = validate("kriging", task, 2).errors
                 squares[which].append(error[np.isfinite(error)] ** 2)
     except InputRefused:  # it is said where the surface itself is interpolated

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -34,9 +35,9 @@ def with_least_thickness(rock: Rock) -> Rock:
     return replace(rock, surfaces=surfaces)
 
 
-def companions_of(rock: Rock, number: int, known: dict[bytes, dict | None]) -> Companions | None:
+def companions_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Companions | None:
     """The sheets with which a surface is interpolated; None where none of the others has points. known: as
-    of Companions."""
+    of Alike."""
     beside = sheets_beside(rock, number)
     points = [np.ascontiguousarray(rock.surfaces[each].point_array()) for each in beside]
     if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
