@@ -4,7 +4,6 @@
 import functools
 import itertools
 import threading
-import time
 
 import manifold3d
 import numpy as np
@@ -407,12 +406,10 @@ def test_wrong_use():
 def test_progress_and_cancel():
     a, b = solids.torus(700, 350), solids.moved(solids.torus(700, 350), (0.5, 0.1, 0.2), TURN)
     calls = []
-    began = time.perf_counter()
     with pytest.raises(Cancelled):
         intersect(
             a, b, progress=lambda share, text: calls.append((share, text)), cancel=lambda: len(calls) > 5
         )
-    assert time.perf_counter() - began < 5
     assert all(text == "intersecting" for _, text in calls)
     assert [share for share, _ in calls] == sorted(share for share, _ in calls)
     assert calls[-1][0] < 1
