@@ -178,6 +178,8 @@ class CompartmentSheets:
             before = structure.distinct(number)
             found, warnings = surface.tied(before)
             tied = dict(zip(before, found, strict=True))
+            if all(after is sheet for sheet, after in tied.items()):
+                break
             for compartment, sheets in enumerate(structure.sheets):
                 sheets[number] = tied[structure.sheet(compartment, number)]
             if not self._draw_together(around):
