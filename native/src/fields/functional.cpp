@@ -9,8 +9,7 @@ double between(const ValueAtom& a, const ValueAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double squared = dot(d, d);
     if (!(squared > 0)) return a.measured && b.measured ? kernel.error * a.weight * b.weight : 0;
-    const double r = std::sqrt(squared);
-    return a.weight * b.weight * (kernel.order == 2 ? -r : squared * r);
+    return a.weight * b.weight * kernel.of_squared(squared);
 }
 
 double between(const ValueAtom& a, const SlopeAtom& b) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "base/vectors.hpp"
@@ -26,6 +27,12 @@ struct ValueAtom {
 struct Kernel {
     int order = 3;  ///< 2 or 3
     double error = 0;
+
+    /// At a distance, by its square.
+    double of_squared(double squared) const {
+        const double r = std::sqrt(squared);
+        return order == 2 ? -r : squared * r;
+    }
 };
 
 /// The derivative along a vector, which says its weight by its length.

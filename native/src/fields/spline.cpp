@@ -44,7 +44,7 @@ void Spline::factor(const Execution& execution) {
         const Vec3 of = known_[i].of_coordinates();
         terms.row(i) << of[0], of[1], of[2];
     }
-    const Kernel kernel{smoothness_.order, smoothness_.errors.value};
+    const Kernel kernel = smoothness_.kernel();
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
         const double error = i == j && known_[i].measured_slope ? smoothness_.errors.slope : 0;
         return known_[i].with(known_[j], kernel) + error +
@@ -165,8 +165,7 @@ double Spline::value(const Vec3& at) const {
     double sum = dot(tilt_, p);
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        const double squared = dot(d, d), r = std::sqrt(squared);
-        sum += atom.weight * (smoothness_.order == 2 ? -r : squared * r);
+        sum += atom.weight * smoothness_.kernel().of_squared(dot(d, d));
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);

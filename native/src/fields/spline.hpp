@@ -23,6 +23,8 @@ struct Smoothness {
     Map3 map{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< of space: it bends less along some directions
     Errors errors{};
     int order = 3;  ///< of the derivatives that are least: 2 (no slopes are known), or 3
+
+    Kernel kernel() const { return {order, errors.value}; }
 };
 
 /// The function in space that meets functionals and whose second or third derivatives are least,

@@ -376,9 +376,10 @@ class InterpolatedSurface:
     def _that_say_more(self) -> list[int]:
         """The surfaces whose data count for it, itself included."""
         rock = self.entry.rock
-        if self.dips is None and self.bounds is None:
-            return sheets_beside(rock, self.number)
-        return sheets_beside(rock, self.number) or conformable_run(rock, self.number)
+        beside = sheets_beside(rock, self.number)
+        if beside or (self.dips is None and self.bounds is None):
+            return beside
+        return conformable_run(rock, self.number)
 
     def _counts_by_node(self, surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
