@@ -148,8 +148,8 @@ class Holes:
     def warnings(self) -> list[str]:
         warnings = list(self._warnings)
         for file in dict.fromkeys(file for file, _, _ in self._taken):
-            names = [f"'{name}' for '{hole}'" for own, name, hole in self._taken if own == file]
-            warnings.append(f"{file}: holes are taken for those with collars: {number_list(names)}")
+            taken = [f"'{name}' for '{hole}'" for own, name, hole in self._taken if own == file]
+            warnings.append(f"{file}: holes are taken for those with collars: {number_list(taken)}")
         if incomplete := [hole for hole in self._incomplete if hole not in (self._collars or ())]:
             warnings.append(
                 f"{self.given.collars}: holes without a place, which are not used: {number_list(incomplete)}"
