@@ -264,7 +264,7 @@ def tunnel(folder):
         163.0,
         21.0,
         "Tunnel",
-        f"The rock that the tunnel removes from each layer: {found['taken']:,.0f} m\u00b3 in total",
+        "A hill cut open along a tunnel and its shaft, and the rock that they remove from each layer",
         labels,
         room=(0.1, 0.06),
     )

@@ -59,7 +59,7 @@ _PRESETS = {
     "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
 }
 _PICTURES = "filling.jpg"  # of the presets in their order, made by scripts/draw_filling.py
-_PICTURE_SIZE = 4.0  # in heights of a button
+_PICTURE_SIZE = 3.0  # in heights of a button
 
 
 def _set_preset(self, _context):
