@@ -227,13 +227,13 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def draw(self, _context):
         layout = self.layout
-        layout.use_property_split = True
         layout.label(text="Preset")
         grid = layout.grid_flow(row_major=True, columns=4, even_columns=True)
         for number, key in enumerate(_PRESETS):
             cell = grid.column(align=True)
             cell.template_icon(icon_value=thumbnails.icon(_PICTURES, number), scale=_PICTURE_SIZE)
             cell.prop_enum(self, "preset", key)
+        layout.use_property_split = True
         groups = (
             ("palette", "rock_looks", "seed"),
             ("beds", "thickness", "variation", "dip", "dip_direction"),
