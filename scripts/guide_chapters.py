@@ -2,6 +2,8 @@
 """The chapters of the guide: each function sets up a scene with the operators that the guide names, and keeps
 pictures of it. Needs Blender."""
 
+import math
+
 import guide_scenes
 from guide_window import (
     build,
@@ -220,12 +222,12 @@ def boreholes(walk):
 
     yield from example(walk, "uncertain_valley")
     group = bpy.context.scene.realmodel
-    group.view.exaggeration = 6.0
+    group.view.exaggeration = 4.0
     group.view.show_boreholes = True
     for row in group.results:
         row.object.hide_set(row.name in ("Till", "Lake clay"))
     yield from settled(walk)
-    frame(walk)
+    frame(walk, elevation=math.radians(48.0))  # into the channel
     yield from keep(walk, "boreholes", panels=["results", "field"])
 
 

@@ -2,7 +2,10 @@
 """The window in which `draw_guide.py` takes pictures: the tab of the sidebar, where the viewport looks, and
 what is kept of the screen. Needs Blender."""
 
+import math
+
 TAB = {}  # the panels of the tab in their order, and their options
+ELEVATION = math.radians(27.0)  # of the eye above the horizon, as in the add-on
 MARGIN = 14  # pixels around a viewport, where Blender has a border and arrows that open regions
 
 
@@ -149,27 +152,28 @@ def example(walk, name):
     yield walk.redrawn(3)
 
 
-def frame(walk, share=0.92):
-    """Turns the viewport to the blocks, or else to what the scene has."""
+def frame(walk, share=0.92, elevation=ELEVATION):
+    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians."""
     import bpy
 
     rows = [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
     for item in bpy.context.selected_objects:
         item.select_set(False)
-    fill_view(walk, rows or [item for item in bpy.data.objects if item.type == "MESH"], share)
+    fill_view(walk, rows or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation)
 
 
-def fill_view(walk, items, share=0.92):
+def fill_view(walk, items, share=0.92, elevation=ELEVATION):
     """Turns the viewport to objects, which then fill a share of it."""
     import bpy
     import numpy as np
     from gallery_picture import seen_from
     from mathutils import Vector
-    from realmodel.bl import picture
+    from realmodel.bl import viewports
 
     bpy.context.view_layer.update()
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
-    view, rotation = walk.area.spaces.active.region_3d, picture.view_rotation()
+    view = walk.area.spaces.active.region_3d
+    rotation = viewports.view_rotation(elevation=elevation)
     view.view_perspective, view.view_rotation = "PERSP", rotation.to_quaternion()
     view.update()
     tangents = share / np.array([view.window_matrix[0][0], view.window_matrix[1][1]])
