@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <string>
@@ -179,6 +180,7 @@ std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
             add(k, k + 1, gaps[k]);
     }
     out.insert(out.end(), tilts_.begin(), tilts_.end());
+    assert(out.size() >= planes_.size() + 1);
     return out;
 }
 
@@ -212,25 +214,27 @@ Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) co
 }
 
 std::vector<Inequality> KnownData::inequalities() const {
-    using Kind = Inequality::Kind;
     std::vector<Inequality> out;
     for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
         const Vec3 &older = contacts_[reference(k)], &younger = contacts_[reference(k + 1)];
         out.push_back({Functional::difference(younger, older),
-                       kLeastRise * total_gap() / data_.surfaces, Kind::kOrder, k, younger});
+                       kLeastRise * total_gap() / data_.surfaces, Inequality::Kind::kOrder, k,
+                       younger});
     }
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         const Vec3 at = frame_.to_local(data_.dips[n]);
-        out.push_back({Functional::slope(at, data_.normals[n]), kLeastRise, Kind::kPolarity,
-                       static_cast<std::int64_t>(n), at});
+        out.push_back({Functional::slope(at, data_.normals[n]), kLeastRise,
+                       Inequality::Kind::kPolarity, static_cast<std::int64_t>(n), at});
     }
     for (std::size_t n = 0; n < data_.bounds.size(); ++n) {
         const auto item = static_cast<std::int64_t>(n);
         const Vec3 at = frame_.to_local(data_.bounds[n]);
         if (data_.bound_below[n] >= 0)
-            out.push_back({bound(n, data_.bound_below[n], 1), 0, Kind::kBound, item, at});
+            out.push_back(
+                {bound(n, data_.bound_below[n], 1), 0, Inequality::Kind::kBound, item, at});
         if (data_.bound_above[n] >= 0)
-            out.push_back({bound(n, data_.bound_above[n], -1), 0, Kind::kBound, item, at});
+            out.push_back(
+                {bound(n, data_.bound_above[n], -1), 0, Inequality::Kind::kBound, item, at});
     }
     return out;
 }
