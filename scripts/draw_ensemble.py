@@ -32,7 +32,7 @@ CLOUD = (0.1, 0.1, 0.1, 0.08)
 def draw(path):
     """Writes the picture."""
     model = build(load_project(SAMPLE / "project.toml"), cells="blocks")
-    samples = section_samples(model, model.section(*PLANE), (8.0, 1.0))
+    samples = section_samples(model, model.section(*PLANE), (4.0, 0.5))
     realizer = Realizer(model, seed=1)
     blocks, sections = [], []
     for number in range(REALIZATIONS):

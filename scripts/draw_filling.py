@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders the pictures of filled meshes in the guide: a sculpted boulder, the cliff of the recipes for
-artists, and beds with pegs for a print.
+artists, and beds with pegs for a print; and the thumbnails of the presets.
 
     build/venv-bpy/bin/python scripts/draw_filling.py [NAME ...]      (default: all)
 
@@ -11,6 +11,7 @@ The module bpy has a denoiser, which Debian's Blender lacks.
 import math
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 import bpy
@@ -22,9 +23,11 @@ sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
 
 import gallery_picture  # noqa: E402
 import realmodel  # noqa: E402
+import sculptures  # noqa: E402
 from realmodel.bl import versions  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images" / "guide"
+THUMBNAILS, SIDE = ROOT / "addon" / "realmodel" / "previews" / "filling.jpg", 128  # pixels
 SIZE = (900, 560)
 RAYS, SECONDS = 10, 200.0  # of a pixel, and of a picture at most
 
@@ -70,7 +73,7 @@ def filled_boulder():
         unconformity=0.75,
     )
     light_and_camera(bpy.context.scene)
-    render("filled_boulder", (720, 560))
+    render(IMAGES / "filled_boulder.jpg", (720, 560))
 
 
 def cliff():
@@ -81,7 +84,7 @@ def cliff():
     bpy.ops.realmodel.set_up_picture(sun_elevation=math.radians(20.0), sun_azimuth=math.radians(120.0))
     corners = np.array([(x, y, z) for x in (-21, 21) for y in (-9, 9) for z in (-8, 9)], float)
     gallery_picture.aim(bpy.context.scene.camera, corners, SIZE, 160.0, 24.0, (0.0, 0.0))
-    render("cliff", SIZE)
+    render(IMAGES / "cliff.jpg", SIZE)
 
 
 def print_parts():
@@ -95,10 +98,43 @@ def print_parts():
     bpy.context.view_layer.update()
     corners = [bed.matrix_world @ Vector(corner) for bed in beds for corner in bed.bound_box]
     gallery_picture.aim(bpy.context.scene.camera, np.array(corners), (900, 750), 150.0, 18.0, (0.0, 0.0))
-    render("print_parts", (900, 750))
+    render(IMAGES / "print_parts.jpg", (900, 750))
 
 
-def render(name, size):
+def thumbnails():
+    """The same block filled with each preset, beside one another."""
+    properties = bpy.ops.realmodel.fill_with_strata.get_rna_type().properties
+    presets = [item.identifier for item in properties["preset"].enum_items if item.identifier != "NONE"]
+    strip = np.empty((SIDE, SIDE * len(presets), 4), np.float32)
+    for number, preset in enumerate(presets):
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+        sculptures.block()
+        bpy.ops.realmodel.fill_with_strata(preset=preset, fold_axis=math.radians(170.0))
+        for height, bed in enumerate(sorted(bpy.context.selected_objects, key=lambda item: item.name)):
+            bed.location.z += 0.2 * height if preset == "PRINT" else 0.0
+        bpy.ops.realmodel.set_up_picture()
+        corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+        gallery_picture.aim(bpy.context.scene.camera, corners, (SIDE, SIDE), 150.0, 20.0, (0.0, 0.0))
+        strip[:, number * SIDE : (number + 1) * SIDE] = rendered((SIDE, SIDE))
+    image = bpy.data.images.new("thumbnails", strip.shape[1], strip.shape[0])
+    image.pixels.foreach_set(strip.ravel())
+    image.filepath_raw, image.file_format = str(THUMBNAILS), "JPEG"
+    image.save(quality=88)
+
+
+def rendered(size):
+    """(height, width, 4) the picture of the scene's camera."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "picture.jpg"
+        render(file, size)
+        image = bpy.data.images.load(str(file))
+        pixels = np.empty(4 * size[0] * size[1], np.float32)
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
+    return pixels.reshape(size[1], size[0], 4)
+
+
+def render(file, size):
     """Writes the picture of the scene's camera."""
     scene = bpy.context.scene
     versions.plain_colors(scene)
@@ -107,13 +143,13 @@ def render(name, size):
     versions.denoise(scene)
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 88
-    scene.render.filepath = str(IMAGES / f"{name}.jpg")
+    scene.render.filepath = str(file)
     bpy.ops.render.render(write_still=True)
 
 
 def main(names):
     realmodel.register()
-    for draw in (filled_boulder, cliff, print_parts):
+    for draw in (filled_boulder, cliff, print_parts, thumbnails):
         if not names or draw.__name__ in names:
             bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
             draw()

@@ -8,7 +8,7 @@ BLENDER is the Blender that renders (default: blender), or a Python that has the
 which Debian's Blender lacks, pictures have no grain.
 
 Each function in SCENES is one picture, docs/images/gallery/NAME.jpg: it builds a sample and says
- what is shown of it, from where, and with which labels. DRAFT=3 makes pictures of a third of the size in
+what is shown of it, from where, and with which labels. DRAFT=3 makes pictures of a third of the size in
 a folder for drafts, to compose them.
 """
 
@@ -20,6 +20,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import sculptures
 from gallery_picture import (
     DRAFT,
     EXPOSURE,
@@ -30,6 +31,7 @@ from gallery_picture import (
     SAMPLES,
     SECONDS,
     SIZE,
+    Picture,
     aim,
     apply_looks,
     around,
@@ -129,7 +131,7 @@ def basin(folder):
         (f"{name} fault", (x_of(section, z), section, z) - np.array(picture.origin), offset)
         for name, x_of, z, offset in (
             ("Western", made.western_fault, -1250.0, (-60.0, -60.0)),
-            ("Middle", made.middle_fault, -1500.0, (-10.0, -62.0)),
+            ("Middle", made.middle_fault, -1300.0, (-70.0, -78.0)),
             ("Antithetic", made.antithetic_fault, -1550.0, (56.0, -62.0)),
             ("Eastern", made.eastern_fault, -1150.0, (66.0, -62.0)),
         )
@@ -149,7 +151,7 @@ def castle_hill(folder):
     """A castle hill, cut open from one valley to the other."""
     model, picture = sample("castle_hill", folder)
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
-    half = model.cut_by_plane((0.0, low[1] + 0.3 * (high[1] - low[1]), 0.0), (0.0, 1.0, 0.0)).above
+    half = model.cut_by_plane((0.0, low[1] + 0.42 * (high[1] - low[1]), 0.0), (0.0, 1.0, 0.0)).above
     picture.show(half, blocks_of(half, picture))
     apply_looks(model, 0.8)
     picture.sun = math.radians(130.0), math.radians(40.0)
@@ -185,11 +187,14 @@ def dome(folder):
     """A dome that leans, displaced by a fault, its two sides moved apart."""
     import numpy as np
     from realmodel.core.display import polygon_mesh
+    from realmodel.core.results.section_faults import traces_on_plane
 
     model, picture = sample("faulted_dome", folder)
     half = model.cut_by_plane((0.0, 480.0, 0.0), (0.0, 1.0, 0.0)).above
     picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
     apply_looks(model, 0.6)
+    traces = traces_on_plane(model, (0.0, 480.0, 0.0), (0.0, 1.0, 0.0))
+    picture.lines = [ends - np.array(picture.origin) for trace in traces for ends in trace.ends]
     picture.sun = math.radians(140.0), math.radians(42.0)
     fault = model.structures.faults[0].vertices
     plane = np.linalg.lstsq(np.column_stack([np.ones(len(fault)), fault[:, 1:]]), fault[:, 0], rcond=None)[0]
@@ -259,7 +264,7 @@ def tunnel(folder):
         163.0,
         21.0,
         "Tunnel",
-        f"The rock that the tunnel takes of each layer, together {found['taken']:,.0f} m\u00b3",
+        "A hill cut open along a tunnel and its shaft, and the rock that they remove from each layer",
         labels,
         room=(0.1, 0.06),
     )
@@ -357,6 +362,35 @@ def island(folder):
     )
 
 
+def overturned(folder):
+    """A sculpted arch filled with folds that lie on their side."""
+    import bpy
+    import numpy as np
+    from realmodel.bl.fill_job import FilledShape
+    from realmodel.core import Strata, fill_with_strata
+
+    item = sculptures.arch()
+    vertices, triangles = FilledShape.of(item, bpy.context.evaluated_depsgraph_get()).closed(0.0)
+    bpy.data.objects.remove(item)
+    height, width = np.ptp(vertices[:, 2]), np.ptp(vertices[:, 0])
+    folds = {"fold_amplitude": 0.22 * height, "fold_wavelength": 0.62 * width, "fold_axis": 175.0}
+    strata = Strata(beds=18, dip=5.0, axial_dip=24.0, palette="cliff", seed=2, **folds)
+    model = fill_with_strata(vertices, triangles, strata)
+    picture = Picture((0.0, 0.0, 0.0), folder)
+    picture.show(model, blocks_of(model, picture), only_outside=True)
+    apply_looks(model, 0.5)
+    picture.sun = math.radians(120.0), math.radians(36.0)
+    picture.draw(
+        "overturned",
+        166.0,
+        15.0,
+        "Overturned Folds",
+        "A sculpted arch, filled with recumbent folds by Fill with Strata. Each bed is a closed solid.",
+        legend=False,
+        room=(0.0, 0.12),
+    )
+
+
 def diagram(folder):
     """A block diagram as geologists draw it: the add-on's own legend, axes and exaggeration."""
     import bpy
@@ -431,6 +465,7 @@ SCENES = (
     canyon,
     quarry,
     island,
+    overturned,
     diagram,
     basin,
     fold,

@@ -73,6 +73,14 @@ class FieldTables(PanelCase):
         self.assertEqual([row.name for row in self.model.results], ["Sandstone", "Clay", "Gravel"])
         self.assertTrue(all(volume > 0 for volume in self.volumes().values()))
 
+    def test_logs_of_a_hole_without_a_collar_are_left_out(self):
+        logs = LOGS.replace("B2", "B7").replace("B1,9,20,Clay", "b1,9,20,CLAY")
+        self.read({**TABLES, "logs.csv": logs})
+        seen = observed_blocks.of_rock(self.rock)
+        self.assertEqual(set(seen.holes), {"B0", "B1"})
+        self.assertEqual([s.name for s in self.rock.surfaces], ["Sandstone", "Clay", "Gravel"])
+        self.assertEqual(sorted(set(seen.depths[seen.holes == "B1"])), [0, 9, 20, 21, 31])
+
     def test_lines_and_tubes_go_to_the_ends_of_the_holes(self):
         self.read(TABLES)
         item = self.clouds()["rock mass boreholes"]
@@ -218,7 +226,9 @@ class FieldTables(PanelCase):
     def test_refused_tables_leave_the_scene_as_it_was(self):
         empty = self.state()
         self.refused(self.read, "no surface that the dips", tables={**TABLES, "dips.csv": DIPS})
-        self.refused(self.read, "has no collar", tables={**TABLES, "logs.csv": LOGS.replace("B2", "B7")})
+        self.refused(
+            self.read, "no hole of it has a collar", tables={**TABLES, "logs.csv": LOGS.replace("B", "C")}
+        )
         self.refused(self.read, "both have collars", tables={**TABLES, "more.csv": COLLARS})
         self.refused(self.read, "columns do not say", tables={"other.csv": "a,b\n1,2\n"})
         self.refused(self.read, "neither picks nor intervals", tables={"collars.csv": COLLARS})

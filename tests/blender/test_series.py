@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Projects with series in Blender: built as by the core, kept in the .blend, and saved again."""
 
+import shutil
 import time
 
 import bpy
@@ -27,10 +28,21 @@ class Series(PanelCase):
             labels = " ".join(draw_tab(bpy.context).labels)
             self.assertEqual("A level set of the field" in labels, surface.series == "folded beds")
 
+    def coarse(self):
+        """The example with a field and a mesh that are built soon, in a folder of its own."""
+        project = shutil.copytree(FOLDER, self.folder / "coarse") / PROJECT.name
+        text = project.read_text(encoding="utf-8")
+        for given, used in (("resolution = 20", "resolution = 80"), ("edge_length = 40", "edge_length = 80")):
+            self.assertIn(given, text)
+            text = text.replace(given, used)
+        project.write_text(text, encoding="utf-8")
+        return project
+
     def test_a_fold_is_built_kept_and_saved(self):
-        ops.open_project(filepath=str(PROJECT))
+        project = self.coarse()
+        ops.open_project(filepath=str(project))
         ops.build()
-        expected = {block.name: block.volume for block in build(load_project(PROJECT)).blocks}
+        expected = {block.name: block.volume for block in build(load_project(project)).blocks}
         self.assertEqual(self.volumes(), expected)
         for name in expected:
             self.assertIn(name, bpy.data.objects)
@@ -41,7 +53,7 @@ class Series(PanelCase):
         self.assertEqual(self.volumes(), expected)
         saved = self.folder / "saved.toml"
         ops.save_project(filepath=str(saved))
-        rock, given = (load_project(path).rocks[0] for path in (saved, PROJECT))
+        rock, given = (load_project(path).rocks[0] for path in (saved, project))
         self.assertEqual([each.series for each in rock.surfaces], [each.series for each in given.surfaces])
         self.assertEqual(rock.series[0].resolution, given.series[0].resolution)
         again = build(load_project(saved))

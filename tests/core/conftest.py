@@ -59,6 +59,15 @@ def layers(write):
     return put
 
 
+@pytest.fixture
+def tiles_in_this_process():
+    """Tiles are built one after another, without Dask."""
+    from tiled_models import in_this_process
+
+    with in_this_process():
+        yield
+
+
 def grid_surface(n, height, size=1.0):
     """A surface over the square 0..size of n x n cells, two triangles each; height(x, y) in arrays."""
     x, y = np.meshgrid(np.linspace(0.0, size, n + 1), np.linspace(0.0, size, n + 1), indexing="ij")

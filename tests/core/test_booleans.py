@@ -346,7 +346,7 @@ def check_scans(first, second, count):
 @pytest.mark.skipif(not solids.SOLIDS.is_dir(), reason=places.DATA_ABSENT)
 @pytest.mark.parametrize("first, second", itertools.combinations_with_replacement(SCANS, 2))
 def test_scanned_solids_in_random_positions(first, second):
-    check_scans(first, second, 2)
+    check_scans(first, second, 1)
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)
@@ -433,7 +433,7 @@ def moved_less_than_edges(mesh, way, by):
 @pytest.mark.parametrize(
     "way, by",
     # with more for each vertex the copy would cross itself
-    [("shifted", 1e-6), ("shifted", 0.3), ("scaled", 1e-3), ("each vertex", 1e-6), ("each vertex", 0.03)],
+    [("shifted", 1e-6), ("scaled", 1e-3), ("each vertex", 0.03)],
 )
 def test_a_result_of_nearly_coinciding_scans_with_its_operands(way, by):
     a = scan("cow")

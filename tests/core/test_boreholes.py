@@ -96,11 +96,12 @@ def test_units(write):
 @pytest.mark.parametrize(
     ("collars", "picks", "file", "line", "words"),
     [
-        (COLLARS, PICKS + "B9,clay,3\n", "p.csv", 8, "hole 'B9' has no collar"),
+        (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "no hole of it has a collar in"),
         (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
         (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
         (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
         (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "has two collars"),
+        ("hole,x,y,z\nB1,0,,1\n", PICKS, "c.csv", None, "line 2 of"),
         (
             COLLARS.replace("z", "q"),
             PICKS,
@@ -121,6 +122,32 @@ def test_tables_refused(write, collars, picks, file, line, words):
         read_boreholes(Boreholes(**files))
     assert words in str(raised.value)
     assert (raised.value.file.name, raised.value.line) == (file, line)
+
+
+def test_picks_of_holes_without_a_collar_are_listed(write):
+    collars = write("c.csv", COLLARS.replace("B4,0,4,11", "B4,0,,11"))
+    met = read_boreholes(Boreholes(write("p.csv", PICKS + "B9,clay,3\n"), collars))
+    assert met.points["clay"].tolist() == CLAY
+    assert met.points["sand"].tolist() == SAND[:1]
+    assert [(each.kind, each.block, each.hole, each.depth, each.text) for each in met.left_out] == [
+        ("no_collar", "sand", "B4", 2.0, f"line 7, hole 'B4' at 2, 'sand': line 5 of {collars} has no y"),
+        ("no_collar", "clay", "B9", 3.0, f"line 8, hole 'B9' at 3, 'clay': it has no collar in {collars}"),
+    ]
+    assert any(text.endswith("holes without a place, which are not used: B4") for text in met.warnings)
+
+
+def test_holes_are_found_however_they_are_written(write):
+    collars = COLLARS.replace("B1,", "DH-1,").replace("B2,", "DH 2,").replace("B5,", "dh_2,")
+    picks = PICKS.replace("B1,", "dh 1,").replace("B2,", "DH_2,").replace("B3,", "b3,")
+    survey = write("s.csv", "hole,depth,azimuth,inclination\nDh 1,0,90,90\n")
+    met = read_boreholes(Boreholes(write("p.csv", picks), write("c.csv", collars), survey=survey))
+    # 'DH_2' may be 'DH 2' or 'dh_2', at another place; 'DH-1' is horizontal
+    np.testing.assert_allclose(met.points["clay"], [[4, 0, 10], CLAY[2]], atol=1e-12)
+    assert [each.hole for each in met.left_out] == ["DH_2"]
+    assert set(met.holes) == {"DH-1", "B3", "B4"}
+    assert any(
+        "are taken for those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
+    )
 
 
 PROJECT = """format = 1

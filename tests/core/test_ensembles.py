@@ -118,16 +118,16 @@ def two_surfaces(correlation):
 
 
 def test_errors_of_surfaces_are_correlated_as_the_project_says():
-    def found(own, others=0.0):
+    def found(own, others=0.0, count=25):
         realizer = Realizer(build(two_surfaces(own), cells="blocks"), correlation=others)
         base = realizer.model
-        models = [realizer.realization(number, threads=1) for number in range(25)]
+        models = [realizer.realization(number, threads=1) for number in range(count)]
         return [np.array([heights(m, n) - heights(base, n) for m in models]) for n in (0, 1)]
 
     lower, upper = found(0.9)
     assert np.corrcoef(lower.ravel(), upper.ravel())[0, 1] == pytest.approx(0.9, abs=0.05)
-    assert np.array_equal(found(None, 0.9)[1], upper)
-    assert np.array_equal(found(0.9, -0.5)[1], upper)  # what the project says comes first
+    assert np.array_equal(found(None, 0.9, 3)[1], upper[:3])
+    assert np.array_equal(found(0.9, -0.5, 3)[1], upper[:3])  # what the project says comes first
     assert abs(np.corrcoef(lower.ravel(), found(None)[1].ravel())[0, 1]) < 0.2
 
 

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Models with faults and bodies in tiles, built in this process: the same cells as undivided ones."""
 
-import contextlib
-import pickle
+import functools
 import tracemalloc
-from concurrent.futures import Future
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import structure_cases
 from faulted.generate import random_case
-from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
+from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, open_tiles
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
 from realmodel.core.cells.cell_complex import CellComplex
@@ -20,29 +18,29 @@ from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
 from realmodel.core.tiles.owned_cells import Seam, face_keys, owners
 from realmodel.distributed import build as build_tiles
-from realmodel.distributed import faulted_folder, tile_folder
-from realmodel.distributed.workers import Workers
-from sample_scripts import SAMPLES
+from realmodel.distributed import faulted_folder
+from tiled_models import sample
+
+pytestmark = pytest.mark.usefixtures("tiles_in_this_process")
 
 
-class NoWorkers(Workers):
-    """This process does all tasks, with what it would get as a worker."""
-
-    def __init__(self):
-        super().__init__(Future())
-
-    def in_any_order(self, function, shared, tasks, cancel=None, **options):
-        shared = pickle.loads(pickle.dumps(shared))
-        return super().in_any_order(function, shared, tasks, cancel, **{**options, "here": True})
+@functools.cache
+def undivided(name, cells):
+    """The model of a sample."""
+    return build(sample(name), cells=cells)
 
 
-@pytest.fixture(autouse=True)
-def one_after_another(monkeypatch):
-    monkeypatch.setattr(tile_folder, "workers_of", lambda *_: contextlib.nullcontext(NoWorkers()))
+@pytest.fixture(scope="module")
+def in_six(tmp_path_factory):
+    """in_six(name, cells) is a sample in six tiles, as it was built, and its folder."""
 
+    @functools.cache
+    def made(name, cells):
+        folder = tmp_path_factory.mktemp("six")
+        size = tile_size(undivided(name, cells), 3, 2)
+        return build_tiles(sample(name), folder, size, cells=cells), folder
 
-def sample(name):
-    return load_project(SAMPLES / name / "project.toml")
+    return made
 
 
 def tile_size(model, columns, rows):
@@ -80,13 +78,12 @@ def cell_keys(model):
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 @pytest.mark.parametrize("name", ["fault_blocks", "rift_basin", "intrusion", "quarry", "tunnel"])
-def test_samples_have_the_blocks_of_the_undivided_model(name, cells, tmp_path):
-    project = sample(name)
-    whole = build(project, cells=cells)
-    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 3, 2), cells=cells)
+def test_samples_have_the_blocks_of_the_undivided_model(name, cells, in_six):
+    whole = undivided(name, cells)
+    tiled, folder = in_six(name, cells)
     assert len(tiled.tiles) == 6 and tiled.patches > 0
     assert_same_blocks(tiled, whole)
-    opened = open_tiles(tmp_path / "t")
+    opened = open_tiles(folder)
     assert [block.volume for block in opened.blocks] == [block.volume for block in tiled.blocks]
     for tile in opened.tiles:
         model = tile.model()
@@ -96,12 +93,14 @@ def test_samples_have_the_blocks_of_the_undivided_model(name, cells, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["fault_blocks", "intrusion", "quarry"])
-def test_cells_do_not_depend_on_where_tiles_end(name, tmp_path):
-    project = sample(name)
-    found = []
-    for folder, columns, rows in (("one", 1, 1), ("six", 3, 2), ("eight", 2, 4)):
-        tiled = build_tiles(project, tmp_path / folder, tile_size(build(project), columns, rows))
-        assert len(tiled.tiles) == columns * rows
+def test_cells_do_not_depend_on_where_tiles_end(name, in_six, tmp_path):
+    whole, found = undivided(name, "columns"), []
+    one, others = (
+        build_tiles(sample(name), tmp_path / f"{columns}-{rows}", tile_size(whole, columns, rows))
+        for columns, rows in ((1, 1), (2, 3))
+    )
+    for tiled, count in ((one, 1), (in_six(name, "columns")[0], 6), (others, 6)):
+        assert len(tiled.tiles) == count
         keys = [key for tile in tiled.tiles for key in cell_keys(tile.model())]
         assert len(keys) == len(set(keys))
         found.append(set(keys))
@@ -134,10 +133,8 @@ def test_sheets_of_neighbors_do_not_depend_on_where_tiles_end(tmp_path):
     assert found[0] == found[1]
 
 
-def test_sections_boreholes_and_warnings_are_those_of_the_whole(tmp_path):
-    project = sample("fault_blocks")
-    whole = build(project)
-    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 3, 3))
+def test_sections_boreholes_and_warnings_are_those_of_the_whole(in_six):
+    whole, (tiled, _) = undivided("fault_blocks", "columns"), in_six("fault_blocks", "columns")
     rng = np.random.default_rng(3)
     low, high = whole.vertices.min(axis=0), whole.vertices.max(axis=0)
     for x, y in rng.uniform(low[:2], high[:2], (40, 2)):
@@ -266,8 +263,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
     assert large - small < many - few  # bytes, triangles
 
 
-@pytest.mark.parametrize("dies_out", [False, True])
-@pytest.mark.parametrize("cells", ["columns", "blocks"])
+@pytest.mark.parametrize(("cells", "dies_out"), [("columns", True), ("blocks", False)])
 def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):
     project = faulted(48, dies_out)
     whole, seen = build(project, cells=cells), []
@@ -404,10 +400,10 @@ def test_a_fault_that_ends_in_the_rock_is_refused_as_without_tiles(tmp_path):
         build_tiles(project, tmp_path / "t", (340, 340))
 
 
-def test_paraview_opens_all_of_them_at_once(tmp_path):
+def test_paraview_opens_all_of_them_at_once(in_six):
     pyvista = pytest.importorskip("pyvista")
-    tiled = build_tiles(sample("fault_blocks"), tmp_path / "t", (900, 900))
-    grid = pyvista.read(tmp_path / "t" / "model.pvtu")
+    tiled, folder = in_six("fault_blocks", "columns")
+    grid = pyvista.read(folder / "model.pvtu")
     cells = np.bincount(grid["block"], minlength=len(tiled.blocks))
     assert cells.tolist() == [block.cells for block in tiled.blocks]
 

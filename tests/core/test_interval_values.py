@@ -43,7 +43,9 @@ def test_rows_without_depths_are_left_out_and_empty_tables_refused(tmp_path):
     assert found.columns["Au"].tolist() == [2.0]
     with pytest.raises(InputRefused, match="no intervals"):
         read_interval_values(given(tmp_path, "hole,from,to,Au\n"))
-    with pytest.raises(InputRefused, match="has no collar"):
+    found = read_interval_values(given(tmp_path, "hole,from,to,Au\nZ,0,1,1\nA,5,6,2\n"))
+    assert found.columns["Au"].tolist() == [2.0], "hole Z has no collar"
+    with pytest.raises(InputRefused, match="no hole of it has a collar"):
         read_interval_values(given(tmp_path, "hole,from,to,Au\nZ,0,1,1\n"))
 
 

@@ -165,12 +165,13 @@ def test_inclined_holes_have_places_between_the_ends(write):
         ("B4,9,8,sand\n", "from_to", 9.0, "line 16, hole 'B4' at 9, 'sand': from 9 is below to 8"),
         ("B4,,8,sand\n", "no_depth", 8.0, "line 16, hole 'B4' at 8, 'sand': 'from' has no value"),
         ("B4,7,8,slate\n", "unknown_block", 7.0, "line 16, hole 'B4' at 7, 'slate': this is no block"),
+        ("B9,7,8,sand\n", "no_collar", 7.0, "line 16, hole 'B9' at 7, 'sand': it has no collar in"),
     ],
 )
 def test_rows_that_are_listed(write, more, kind, depth, words):
     found = read(write, LOG + more)
     (entry,) = found.left_out
-    assert (entry.kind, entry.hole) == (kind, "B4")
+    assert (entry.kind, entry.hole) == (kind, more[:2])
     assert entry.depth == depth
     assert entry.text.startswith(words)
     plain = rows(read(write, LOG).observations[0])
@@ -205,6 +206,21 @@ def test_names():
     assert UnitNames(["S0", "S1"], ["sand", "sand"]).block("sand") is None
 
 
+def test_names_in_other_capitals_and_signs():
+    units = UnitNames(["Top Clay", "sand"], ["Clay-2", "SAND"], ["Na"], {"SST": "sand", "Till": ""})
+    codes = ("TOP_CLAY", "clay 2", "sst", "Sst", "Sand", "na")
+    # 'Sand' may be the surface, or the block of which it is the top
+    assert [units.block(code) for code in codes] == ["Top Clay", "Top Clay", "sand", "sand", None, None]
+    assert units.says_nothing("TILL") and units.means_nothing("TILL")
+    assert units.says_nothing("na") and not units.says_nothing("Na"), "what stands for nothing is no name"
+
+
+def test_a_table_of_holes_without_collars_is_refused(write):
+    with pytest.raises(InputRefused, match="no hole of it has a collar") as raised:
+        read(write, LOG.replace("B", "C"))
+    assert (raised.value.file.name, raised.value.line) == ("log.csv", 2)
+
+
 def test_names_are_for_picks_too(write):
     given = Boreholes(
         write("p.csv", "hole,surface,depth\nB1,SST,1\nB2,clay,4\nB3,S2,2\n"), write("c.csv", COLLARS)
@@ -214,13 +230,15 @@ def test_names_are_for_picks_too(write):
 
 
 def test_observed_places(write):
-    table = "Easting,Northing,Elevation,Unit\n1,2,3,SST\n4,5,6,basement\n7,8,9,\n1,1,,clay\n2,2,2,slate\n"
+    table = "Easting,Northing,Elevation,Unit\n1,2,3,SST\n4,5,6,basement\n7,8,9,\n"
+    table += "1,1,,clay\n2,2,2,slate\n,2,2,clay\n"
     found, left_out = read_observed_places(ObservationFile(write("o.csv", table)), UNITS)
     assert found.places.tolist() == [[1, 2, 3], [4, 5, 6]]
     assert found.blocks.tolist() == ["S2", "S0"]
     assert [(each.kind, each.block) for each in left_out] == [
         ("no_depth", "clay"),
         ("unknown_block", "slate"),
+        ("no_depth", "clay"),
     ]
 
 

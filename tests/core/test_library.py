@@ -31,7 +31,6 @@ def test_every_key(write):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("", None, "[[property]] is missing"),
         ("title = 1\n", 1, "unknown key 'title'"),
         ('[[property]]\nid = 1\nname = "a"\ncolour = "#000000"\n', 4, "did you mean 'color'"),
         ('[[property]]\nname = "a"\n', 1, "'id' is missing"),
@@ -64,6 +63,12 @@ def test_refused(write, text, line, words):
         load_library(path)
     assert words in str(raised.value)
     assert (raised.value.file, raised.value.line) == (path, line)
+
+
+def test_a_library_may_be_empty(write):
+    """Its properties come later; whatever names one is refused until then."""
+    library = load_library(write("library.toml", "# none yet\n"))
+    assert list(library) == [] and 1 not in library
 
 
 def test_libraries_made_in_python_are_checked_too():

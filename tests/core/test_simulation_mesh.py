@@ -57,10 +57,15 @@ def thicknesses(mesh):
 
 
 @pytest.mark.parametrize(
-    ("sample", "edge", "thickness", "deviation"),
-    [("two_layers", 4.0, 0.2, 0.003), ("castle_hill", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
+    ("sample", "edge", "thickness", "deviation", "elements"),
+    [
+        ("two_layers", 4.0, 0.2, 0.003, "prisms"),
+        ("two_layers", 4.0, 0.2, 0.003, "tetrahedra"),
+        ("gravel_plain", 15.0, 0.5, 0.03, "prisms"),
+        ("gravel_plain", 15.0, 0.5, 0.03, "tetrahedra"),
+        ("castle_hill", 13.0, 0.5, 0.02, "tetrahedra"),  # made of prisms
+    ],
 )
-@pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
 def test_samples(sample, edge, thickness, deviation, elements):
     model = build(load_project(SAMPLES / sample / "project.toml"))
     mesh = checked(model.simulation_mesh(edge, thickness, layers=2, elements=elements))

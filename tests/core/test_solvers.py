@@ -2,6 +2,7 @@
 """Solvers take the meshes: checkMesh finds no fault, two solvers that share nothing find one flux, and
 CalculiX finds the settlement that is known."""
 
+import functools
 import re
 import shutil
 from pathlib import Path
@@ -79,6 +80,7 @@ def test_check_mesh_finds_no_fault(tmp_path, name, edge, thickness, layer):
     assert least_angles(mesh.plan.vertices, mesh.plan.triangles).min() > 20
 
 
+@functools.cache
 def overturned_fold(base=-8.0):
     """A section with overturned limbs, given as points. As heights they are steep, and cross one another."""
     rng = np.random.default_rng(0)
@@ -93,6 +95,7 @@ def overturned_fold(base=-8.0):
     return section_model(surfaces, base)
 
 
+@functools.cache
 def hecho_fold():
     """The section of shared/data/folds/hecho_sparse, its points taken as heights."""
     folder = places.REAL_DATA / "folds" / "hecho_sparse"
@@ -165,9 +168,11 @@ def two_layers():
     return build(load_project(SAMPLES / "two_layers" / "project.toml"))
 
 
-def foam_flux(model, folder):
+@pytest.fixture(scope="module")
+def foam_flux(two_layers, tmp_path_factory):
     """The heat that flows in on top of the prisms, by laplacianFoam; of unit diffusivity times MEDIA."""
-    mesh = model.simulation_mesh(2.5, 0.4, layer_thickness=1.0)
+    folder = tmp_path_factory.mktemp("foam")
+    mesh = two_layers.simulation_mesh(2.5, 0.4, layer_thickness=1.0)
     case = folder / "case.foam"
     save_mesh(mesh, case)
     cells = ElementFaces(mesh).polyhedral()
@@ -253,17 +258,16 @@ def outside_triangles(mesh):
 
 
 @foam_only
-def test_laplacian_foam_converges(two_layers, tmp_path):
+def test_laplacian_foam_converges(foam_flux):
     """Heat flows through clay and sand in series: between what either would let through alone."""
-    flux = foam_flux(two_layers, tmp_path)
     area = 100.0 * 60.0
-    assert MEDIA[1] * area / 26 < flux < MEDIA[0] * area / 15
+    assert MEDIA[1] * area / 26 < foam_flux < MEDIA[0] * area / 15
 
 
 @foam_only
 @ogs_only
-def test_open_geo_sys_and_open_foam_agree(two_layers, tmp_path):
-    assert ogs_flux(two_layers, tmp_path) == pytest.approx(foam_flux(two_layers, tmp_path), rel=0.01)
+def test_open_geo_sys_and_open_foam_agree(two_layers, foam_flux, tmp_path):
+    assert ogs_flux(two_layers, tmp_path) == pytest.approx(foam_flux, rel=0.01)
 
 
 def ogs_boundaries(mesh, folder):

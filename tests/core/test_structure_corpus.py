@@ -2,6 +2,8 @@
 """Models with faults and bodies that were once built wrongly, kept as small files in tests/data/structures/,
 and some random ones (scripts/fuzz.sh --structures looks further)."""
 
+import json
+
 import numpy as np
 import pytest
 from faulted.case import CORPUS, BodyCase, load_case, save_case
@@ -22,14 +24,11 @@ def test_it_is_built_right(path):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_file_is_small_and_survives_rewriting(path, tmp_path):
-    case = load_case(path)
     assert path.stat().st_size < 20_000
-    save_case(case, tmp_path / "again.json")
-    again = load_case(tmp_path / "again.json")
-    for one, other in zip(case.bodies + case.faults, again.bodies + again.faults, strict=True):
-        assert np.array_equal(one.vertices, other.vertices)
-        assert np.array_equal(one.triangles, other.triangles)
-    assert failures_of(again, count=40) == []
+    save_case(load_case(path), tmp_path / "again.json")
+    given, again = (json.loads(file.read_text()) for file in (path, tmp_path / "again.json"))
+    del given["why"]
+    assert {key: again.get(key) for key in given} == given
 
 
 @pytest.mark.parametrize("seed", range(100, 112))

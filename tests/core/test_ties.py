@@ -120,6 +120,21 @@ def test_points_that_contradict_at_one_position_are_listed_and_not_fitted():
     assert (off > 1e-6).sum() == 2
 
 
+def test_bounds_on_the_surface_itself_leave_its_points_where_they_are():
+    """Outcrops on the ground say that it is at their height or above: it is, whatever else its points say."""
+    plan = np.array([[x, y] for x in np.arange(-5, 106, 5.0) for y in np.arange(-5, 106, 5.0)])
+    seen = np.random.default_rng(2).uniform(3, SIZE - 3, (150, 2))
+    ground, at = [np.column_stack([each, 0.1 * each[:, 0]]) for each in (plan, seen)]
+    surfaces = [
+        Surface("bottom", method="constant", options={"value": -20.0}),
+        Surface("ground", points=ground, method="tin", block="rock"),
+    ]
+    rock = Rock("r", surfaces, region=REGION, edge_length=6.0, observations=Observations(at, ["rock"] * 150))
+    model = build(Project("p", [rock]))
+    assert worst_share(model) <= 1e-9
+    assert not any("cannot be honored" in warning.text for warning in model.warnings)
+
+
 def observed_model(edge_length=12.0, tie=True):
     """Two layers, and places in them between sparse contacts."""
     random = np.random.default_rng(4)

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from realmodel.bl import meshes
+from realmodel.bl import meshes, thumbnails
 from steps_1_panel import idle
 from steps_3_import import invoked
 
@@ -45,6 +45,8 @@ def preview_and_cancel(walk):
     invoked(walk, bpy.ops.realmodel.fill_with_strata)
     yield walk.redrawn(4)
     assert "Strata Preview" in bpy.data.objects and item.hide_get()
+    icons = {thumbnails.icon("filling.jpg", number) for number in range(7)}
+    assert len(icons) == 7 and 0 not in icons
     walk.shot("fill_preview")
     walk.key("ESC")
     yield lambda: "Strata Preview" not in bpy.data.objects

@@ -17,6 +17,7 @@ from ..core.readers import (
     table_kind,
 )
 from ..core.readers.objects.object_file import is_object_file
+from ..core.readers.tables.hole_tables import joined
 from ..core.readers.tables.interval_values import read_interval_values
 from ..core.settings.boreholes import COLUMNS as OF_HOLES
 from ..core.settings.boreholes import Boreholes, check_column_names
@@ -176,7 +177,9 @@ def _read(scene, rock, tables, units):
     of_series = [read_space_dips(file, unit) for file in tables.series_dips]
     known = {*units.surfaces, *units.blocks, *units.bodies}
     codes = [each.block for each in left_out if each.kind == "unknown_block"]
-    meant = dict.fromkeys(units.names.get(code, code) for code in codes)
+    meant = {}
+    for name in map(units.meaning, codes):
+        meant.setdefault(joined(name), name)  # of names that are written in several ways the first
     return Found(
         picks,
         Observations.joined(seen),
@@ -184,7 +187,7 @@ def _read(scene, rock, tables, units):
         Dips.joined(of_rock) if of_rock else None,
         SpaceDips.joined(of_series) if of_series else None,
         left_out,
-        [name for name in meant if name not in known],
+        [name for name in meant.values() if name not in known],
         [read_interval_values(each, unit) for each in logged],
         maps,
         warnings,

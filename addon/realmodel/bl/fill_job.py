@@ -125,15 +125,15 @@ class FillJob(ThreadJob):
 
     def _work(self, job):
         with job.part(0.0, _SHARE), named(self._shape.name):
-            model, places = fill_within(job, self._mesh, self._strata)
+            beds = lay_beds(self._strata, self._mesh[0])
+            model, places = fill_within(job, self._mesh, beds, self._strata)
         with job.phase(_SHARE, 1.0, "making meshes"):
             local = self._shape.to_local(places)
             found = polygon_mesh.of_blocks(model, np.zeros(3), self._threads, vertices=local)
             found = [
                 None if shape is None else filled_beds.exposed(shape, self._shape.matrix) for shape in found
             ]
-        masks = lay_beds(self._strata, self._mesh[0]).numbers(self._shape.vertices)
-        return model, found, masks
+        return model, found, beds.numbers(self._shape.vertices)
 
     # -- in the main thread
 

@@ -6,17 +6,16 @@ import uuid
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 from ..core.base.atomic import Outputs
 from ..core.project.looks import LOOKS
-from . import looks, materials, versions
+from . import looks, materials, thumbnails, versions
 
 LIBRARY = "RealModel Rock Looks"
 FILE = "rock_looks.blend"
 CATALOGS = "blender_assets.cats.txt"
 CATALOG = uuid.uuid5(uuid.NAMESPACE_URL, "realmodel:rock looks")  # the same in every library
-_PREVIEWS = Path(__file__).parents[1] / "previews" / "looks.jpg"  # beside one another (scripts/draw_looks.py)
+_PREVIEWS = "looks.jpg"  # made by scripts/draw_looks.py
 _CATALOG_TEXT = f"""# This is an Asset Catalog Definition file for Blender.
 #
 # The first non-ignored line should be the version indicator.
@@ -38,7 +37,7 @@ def write(folder):
     folder = Path(folder)
     made = []
     try:
-        previews = _previews()
+        previews = thumbnails.pictures(_PREVIEWS)
         for number, (key, look) in enumerate(LOOKS.items()):
             made.append(_asset(key, look, previews[number]))
         with Outputs() as outputs:
@@ -76,15 +75,3 @@ def _asset(key, look, preview):
     image.image_size = preview.shape[1], preview.shape[0]
     image.image_pixels_float.foreach_set(preview.ravel())
     return material
-
-
-def _previews():
-    """(looks, side, side, 4) float32, the bottom row first."""
-    image = bpy.data.images.load(str(_PREVIEWS))
-    try:
-        width, side = image.size
-        pixels = np.empty(4 * width * side, np.float32)
-        image.pixels.foreach_get(pixels)
-    finally:
-        bpy.data.images.remove(image)
-    return np.ascontiguousarray(pixels.reshape(side, width // side, side, 4).swapaxes(0, 1))

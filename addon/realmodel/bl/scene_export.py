@@ -52,6 +52,7 @@ def write(context, items, path, size):
     path = writable_target(path)
     ending = path.suffix.lower()
     export = {".glb": _write_gltf, ".obj": _write_obj}.get(ending, _write_usd)
+    _require_exporter(export)
     with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
         target = Path(place) / path.name
         with _copies(context, items, target if size else None, size):
@@ -63,17 +64,21 @@ def write(context, items, path, size):
                 file.write(made.read_bytes())
 
 
-def _write_gltf(path):
-    if "gltf" not in dir(bpy.ops.export_scene):
+def _require_exporter(export):
+    """Before looks are baked, which takes a while."""
+    if export is _write_gltf and "gltf" not in dir(bpy.ops.export_scene):
         raise InputRefused("Blender's add-on for glTF is off", advice="enable glTF 2.0 in the preferences")
+    if export is _write_usd and not bpy.app.build_options.usd:
+        raise InputRefused("this Blender cannot write USD", advice="use glTF, or Blender of blender.org")
+
+
+def _write_gltf(path):
     bpy.ops.export_scene.gltf(
         filepath=path, export_format="GLB", use_selection=True, export_extras=True, check_existing=False
     )
 
 
 def _write_usd(path):
-    if not bpy.app.build_options.usd:
-        raise InputRefused("this Blender cannot write USD", advice="use glTF, or Blender of blender.org")
     known = bpy.ops.wm.usd_export.get_rna_type().properties
     wanted = {"export_custom_properties": True, "relative_paths": True}
     wanted |= (

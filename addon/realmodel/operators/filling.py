@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
+from ..bl import thumbnails
 from ..bl.boolean_job import VOLUME
 from ..bl.fill_job import FilledShape, FillJob
 from ..bl.fill_preview import FillPreview
@@ -57,6 +58,8 @@ _PRESETS = {
     ),
     "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
 }
+_PICTURES = "filling.jpg"  # of the presets in their order, made by scripts/draw_filling.py
+_PICTURE_SIZE = 3.0  # in heights of a button
 
 
 def _set_preset(self, _context):
@@ -224,9 +227,15 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def draw(self, _context):
         layout = self.layout
+        layout.label(text="Preset")
+        grid = layout.grid_flow(row_major=True, columns=4, even_columns=True)
+        for number, key in enumerate(_PRESETS):
+            cell = grid.column(align=True)
+            cell.template_icon(icon_value=thumbnails.icon(_PICTURES, number), scale=_PICTURE_SIZE)
+            cell.prop_enum(self, "preset", key)
         layout.use_property_split = True
         groups = (
-            ("preset", "palette", "rock_looks", "seed"),
+            ("palette", "rock_looks", "seed"),
             ("beds", "thickness", "variation", "dip", "dip_direction"),
             ("fold_amplitude", "fold_wavelength", "fold_axis", "axial_dip"),
             ("faults", "throw", "fault_strike"),
@@ -312,3 +321,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 def _degrees(angle):
     """An azimuth, which Blender has in radians of 32 bits."""
     return round(math.degrees(angle), 4) % 360.0
+
+
+def unregister():
+    thumbnails.forget()

@@ -2,6 +2,8 @@
 #include "realmodel/fields/critical_points.hpp"
 
 #include <array>
+#include <bit>
+#include <cassert>
 #include <string>
 
 #include "base/parallel.hpp"
@@ -32,6 +34,14 @@ struct Link {
                     joined[a] |= static_cast<std::uint16_t>(1U << b);
             }
         }
+        assert(edges() == 3 * (kNeighbors - 2));  // a sphere of triangles
+    }
+
+    std::size_t edges() const {
+        std::size_t ends = 0;
+        for (const std::uint16_t of : joined)
+            ends += static_cast<std::size_t>(std::popcount(of));
+        return ends / 2;
     }
 
     /// Edges of the lattice go up along some of the axes, or down along some.

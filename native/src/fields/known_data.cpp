@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <string>
@@ -224,6 +225,7 @@ std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
             add(k, k + 1, gaps[k]);
     }
     out.insert(out.end(), tilts_.begin(), tilts_.end());
+    assert(out.size() >= planes_.size() + 1);
     return out;
 }
 

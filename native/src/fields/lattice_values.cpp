@@ -2,6 +2,7 @@
 #include "fields/lattice_values.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/parallel.hpp"
@@ -41,6 +42,7 @@ std::vector<double> refined(const std::vector<double>& from, Counts& counts, std
     for (std::size_t k = 0; k < axis; ++k)
         step *= static_cast<std::size_t>(counts[k]);
     const int n = counts[axis];
+    assert(n >= 4 && (count == 2 * n - 1 || count == 2 * n - 2));
     const std::size_t run = step * static_cast<std::size_t>(n);
     const std::size_t to_run = step * static_cast<std::size_t>(count);
     counts[axis] = count;
@@ -97,6 +99,7 @@ std::vector<double> lattice_values(
         if (counts[axis] != lattice.counts[axis])
             values = refined(values, counts, axis, lattice.counts[axis], execution);
     }
+    assert(counts == lattice.counts && values.size() == lattice.nodes());
     return values;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -95,6 +96,7 @@ private:
             mask |= std::size_t{1} << i;
             ++inside;
         }
+        assert(inside > 0 && inside < 4);
         const auto& order = orders_[mask];
         const auto between = [&](std::size_t in, std::size_t out) -> Crossing {
             const std::int64_t own = tetrahedron[order[in]];
@@ -128,6 +130,7 @@ Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double
     const Vec3 b = lattice.position(crossing[1]);
     const double from = lattice.value(crossing[0]), to = lattice.value(crossing[1]);
     const double share = (level - from) / (to - from);
+    assert(share >= 0 && share <= 1);
     Vec3 p{};
     for (std::size_t k = 0; k < 3; ++k)
         p[k] = std::clamp(a[k] + share * (b[k] - a[k]), std::min(a[k], b[k]), std::max(a[k], b[k]));

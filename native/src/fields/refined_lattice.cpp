@@ -2,11 +2,13 @@
 #include "fields/refined_lattice.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "exact/space_predicates.hpp"
+#include "fields/lattice_weights.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
@@ -71,7 +73,9 @@ void RefinedLattice::add_layer(const LatticeField& field, std::span<const double
             high = std::max(high, number);
         }
     }
-    const double beyond = high + std::max(high - low, 1.0);
+    const double beyond =
+        std::max(high + std::max(high - low, 1.0), std::nextafter(high, HUGE_VAL));
+    assert(beyond > high);
     values_.assign(static_cast<std::size_t>(nodes_), beyond);
     auto from = field.values.begin();
     for (std::int32_t k = 0; k < counts_[2]; ++k) {
@@ -155,6 +159,7 @@ std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedr
         own[i] = exact(tetrahedron[i]);
     // the side of the volume of the tetrahedron itself, however orient3d counts
     const int inside = orient3d(exact_, own[0], own[1], own[2], own[3]);
+    if (inside == 0) return std::nullopt;  // nodes at one place: coordinates are too coarse
     std::vector<std::int64_t> found;
     for (std::size_t i = 0; i < 4; ++i) {
         auto with = own;
@@ -181,6 +186,7 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
         if (simplex) break;
     }
     if (!simplex) refuse_lattice("its coordinates are too coarse for its spacing");
+    assert(!simplex->empty() && corner_of_point_.size() == point);
     if (simplex->size() == 1) {
         const std::int64_t corner = simplex->front();
         const auto known = corner < nodes_ ? point_at_node_.find(corner) : point_at_node_.end();
@@ -201,6 +207,7 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
     }
     const std::int64_t own = nodes_ + static_cast<std::int64_t>(point);
     corner_of_point_.push_back(own);
+    [[maybe_unused]] std::size_t replaced = 0;
     for (const CellIndex& cell : cells) {
         std::vector<Tetrahedron> divided;
         for (const Tetrahedron& tetrahedron : make_divided(cell)) {
@@ -213,6 +220,7 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
                 divided.push_back(tetrahedron);
                 continue;
             }
+            ++replaced;
             for (const std::int64_t corner : *simplex) {
                 divided.push_back(tetrahedron);
                 divided.back()[static_cast<std::size_t>(place(corner))] = own;
@@ -220,6 +228,10 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
         }
         make_divided(cell) = std::move(divided);
     }
+    // its own tetrahedron, the two beside its face, or those around its edge
+    assert(simplex->size() == 4   ? replaced == 1
+           : simplex->size() == 3 ? replaced == 2
+                                  : replaced > 2);
 }
 
 /// Of those that are flat but for rounding their neighbors have the same values.
@@ -259,19 +271,14 @@ std::optional<Located> RefinedLattice::located(const Vec3& p) const {
     if (cells.empty()) return std::nullopt;
     const CellIndex& cell = cells.front();
     if (const auto* tetrahedra = divided(cell)) return in_tetrahedra(*tetrahedra, p);
-    // from the lowest corner to the highest, the axis with the largest share first
-    std::array<double, 3> shares{};
+    Vec3 shares{};
     for (std::size_t axis = 0; axis < 3; ++axis)
         shares[axis] =
             std::clamp((p[axis] - coordinate(axis, cell[axis])) / spacing_[axis], 0.0, 1.0);
-    std::array<std::size_t, 3> axes{0, 1, 2};
-    std::ranges::stable_sort(axes, std::greater<>(),
-                             [&](std::size_t axis) { return shares[axis]; });
-    Located found{{node(cell)}, {1 - shares[axes[0]]}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        found.corners[i + 1] = found.corners[i] + stride_[axes[i]];
-        found.weights[i + 1] = shares[axes[i]] - (i < 2 ? shares[axes[i + 1]] : 0);
-    }
+    const Walk walk = walk_to(shares);
+    Located found{{node(cell)}, walk.weights};
+    for (std::size_t i = 0; i < 3; ++i)
+        found.corners[i + 1] = found.corners[i] + stride_[walk.axes[i]];
     return found;
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 #include <map>
 
 namespace realmodel::fields {
@@ -24,6 +25,7 @@ constexpr Eigen::Index kBlock = 64;
 Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
                const Execution& execution)
     : smoothness_(smoothness) {
+    assert(smoothness.order == 2 || smoothness.order == 3);
     known_.reserve(known.size());
     for (const Functional& f : known)
         known_.push_back(f.mapped_by(smoothness.map, smoothness.lift));
@@ -33,6 +35,7 @@ Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
 }
 
 void Spline::set_right(std::span<const Functional> known) {
+    assert(known.size() == known_.size());
     for (std::size_t i = 0; i < known.size(); ++i)
         known_[i].right = known[i].right;
     solve({});
@@ -161,6 +164,8 @@ void Spline::collect_centers() {
             values[{atom.at, atom.lift}] += forces_[i] * atom.weight;
             if (atom.measured) measured_[{atom.at, atom.lift}] += forces_[i] * atom.weight;
         }
+        // the kernel -r has no derivatives at its center
+        assert(smoothness_.order == 3 || known_[i].slopes.empty());
         for (const SlopeAtom& atom : known_[i].slopes) {
             auto& [along, up] = slopes[{atom.at, atom.lift}];
             along = moved(along, forces_[i], atom.along);

@@ -114,6 +114,13 @@ TEST(LevelSetsTest, ALevelThroughNodesHasNoTriangleTwiceAndNoneWithoutCorners) {
     EXPECT_TRUE(std::ranges::adjacent_find(sorted) == sorted.end());
 }
 
+TEST(LevelSetsTest, ALevelOfLargeValuesIsClosedAroundTheLattice) {
+    Sampled large({3, 3, 3}, {1, 1, 1}, [](const Point&) { return 1e17; });  // 1e17 + 1 is 1e17
+    const auto sets = large.at({1e17});
+    expect_closed(sets[0]);
+    EXPECT_GE(volume(sets[0]), 8.0);
+}
+
 TEST(LevelSetsTest, ATouchingPairOfTrianglesCancels) {
     // three nodes of one face are on the level, all others above: there is nothing inside
     Sampled touched({3, 3, 3}, {1, 1, 1}, [](const Point&) { return 1.0; });
@@ -237,6 +244,10 @@ TEST(LevelSetsTest, WhatMakesNoFieldIsRefused) {
     expect_refused(flat, {1}, "bad_lattice");
     Sampled down({3, 3, 3}, {1, 1, 1}, f);
     expect_refused(down, {2, 1}, "bad_lattice");
+    Sampled coarse({3, 3, 3}, {1, 1, 1}, f);  // all nodes have the same x
+    coarse.field.lattice.origin[0] = 1e18;
+    coarse.add({1e18, 3, 1}, 1);
+    expect_refused(coarse, {1}, "bad_lattice");
 }
 
 double slope(const Point& p) {

@@ -52,17 +52,19 @@ def fill_with_strata(
     """
     threads = check_threads(threads)
     mesh = closed_mesh(vertices, triangles, strata.base)
-    model, places = run(lambda work: fill_within(work, mesh, strata), progress, cancel, threads=threads)
-    surfaces = replace(model.surfaces, vertices=lay_beds(strata, mesh[0]).leaned(model.surface_vertices))
+    beds = lay_beds(strata, mesh[0])
+    model, places = run(lambda work: fill_within(work, mesh, beds, strata), progress, cancel, threads=threads)
+    surfaces = replace(model.surfaces, vertices=beds.leaned(model.surface_vertices))
     return replace(model, complex=replace(model.complex, vertices=places), surfaces=surfaces)
 
 
-def fill_within(work: Work, mesh: tuple[np.ndarray, np.ndarray], strata: Strata) -> tuple[Model, np.ndarray]:
-    """`fill_with_strata` of a closed mesh, as a job. Returns the model in the space in which folds stand
-    upright (`Beds`), where its surfaces have one height at each position, and where its vertices (V, 3)
-    belong."""
+def fill_within(
+    work: Work, mesh: tuple[np.ndarray, np.ndarray], beds: Beds, strata: Strata
+) -> tuple[Model, np.ndarray]:
+    """`fill_with_strata` of a closed mesh with the beds that were laid through it, as a job. Returns the
+    model in the space in which folds stand upright (`Beds`), where its surfaces have one height at each
+    position, and where its vertices (V, 3) belong."""
     given, triangles = mesh
-    beds = lay_beds(strata, given)
     mesh = beds.upright(given), triangles
     check_gap(beds, strata.gap)
     solid = solid_within(work, mesh, _SOLID)

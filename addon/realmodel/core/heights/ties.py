@@ -35,12 +35,14 @@ class Terms(NamedTuple):
 @dataclass(frozen=True)
 class TieData:
     """What a surface is to honor: places (C, 2), no two equal, and lower and upper (C,), equal at contacts,
-    infinite where there is no bound; contacts: their number, which come first; left_out: the number of
-    points that contradict others at their place. tolerance: of heights."""
+    infinite where there is no bound; margins: (C,), by how much bounds are narrowed, where there is room;
+    contacts: their number, which come first; left_out: the number of points that contradict others at their
+    place. tolerance: of heights."""
 
     places: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    margins: np.ndarray
     contacts: int
     left_out: int
     tolerance: float
@@ -53,6 +55,7 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
     wrong = contradictions(points) if len(points) else np.zeros(0, bool)
     kept = first_at_each_place(points[~wrong])
     places, lower, upper, heights = kept[:, :2], kept[:, 2], kept[:, 2], [points[:, 2]]
+    margins = np.zeros(len(kept))
     if bounds is not None and len(bounds):
         given = consistent(kept, bounds)
         places = np.concatenate([places, given.positions])
@@ -60,12 +63,14 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
         margin = np.minimum(_MARGIN * float(np.ptp(np.concatenate(heights))), (given.upper - given.lower) / 3)
         lower = np.concatenate([lower, given.lower + margin])
         upper = np.concatenate([upper, given.upper - margin])
+        margins = np.concatenate([margins, margin])
     every = np.concatenate(heights)
     tolerance = 0.0
     if len(every):
         digits = float(np.spacing(np.abs(every).max()))
         tolerance = max(_TOLERANCE * float(np.ptp(every)), _DIGITS * digits)
-    return TieData(np.ascontiguousarray(places), lower, upper, len(kept), int(wrong.sum()), tolerance)
+    places = np.ascontiguousarray(places)
+    return TieData(places, lower, upper, margins, len(kept), int(wrong.sum()), tolerance)
 
 
 def corrected(
@@ -123,11 +128,11 @@ def missed_warnings(data: TieData, after: np.ndarray) -> list[str]:
         warnings.append(
             f"{data.left_out} of its points contradict others at their position and are not fitted"
         )
-    off = np.nan_to_num(after)
-    missed = np.abs(off) > _MISSED * data.tolerance
+    off = np.abs(np.nan_to_num(after)) - data.margins
+    missed = off > _MISSED * data.tolerance
     for which, name in ((slice(None, data.contacts), "points"), (slice(data.contacts, None), "bounds")):
         if missed[which].any():
-            own = np.abs(off[which])
+            own = off[which]
             worst = int(own.argmax())
             place = place_text(data.places[which][worst].tolist())
             warnings.append(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -82,6 +83,8 @@ def is_file(path: Path) -> bool:
 
 def check_file(file: str | Path | None, key: str, refuse: Refuse) -> None:
     if file is not None and not is_file(Path(file)):
+        if os.path.isdir(file):
+            raise refuse(f"a folder, not a file: {file}", key, "name a file in it")
         raise refuse(f"file not found: {file}", key, "check the path")
 
 

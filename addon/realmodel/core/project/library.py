@@ -110,7 +110,7 @@ def load_library(path: str | Path) -> Library:
     top.allow_only(("property",))
     properties: list[Property] = []
     seen: set[int] = set()
-    for table in top.tables("property", "property"):
+    for table in top.tables("property", "property") if "property" in top else []:
         entry = _read_property(table)
         try:
             _check_property(entry, seen)

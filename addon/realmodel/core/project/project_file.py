@@ -24,7 +24,7 @@ from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SERIES, SURFACE
 from ..settings.setting import Settings
-from .entry import is_file, refused_by
+from .entry import check_file, is_file, refused_by
 from .library import load_library
 from .plan_input import is_place_elsewhere
 from .project import Project, Rock, Surface, check_project
@@ -56,8 +56,7 @@ def load_project(path: str | Path) -> Project:
     library = None
     if (library_file := top.text("library")) is not None:
         library_path = path.parent / library_file
-        if not is_file(library_path):
-            raise top.refuse(f"file not found: {library_path}", "library", "check the path")
+        check_file(library_path, "library", top.refuse)
         library = load_library(library_path)
     rocks = [_read_rock(table, path.parent) for table in top.tables("rock", "rock")]
     faults = [_read_fault(table, path.parent) for table in _optional(top, "fault")]

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -23,10 +24,9 @@ using Members = std::vector<std::int32_t>;
 
 constexpr double kRadius = 2.5;  // of a kernel: times as far as the data of its level are apart
 constexpr std::size_t kMostLevels = 24;
-constexpr int kMostPasses = 6;       // over the last level, until what is left is rounding
-constexpr double kRounding = 1e-14;  // of the diagonal: no pivot is exactly 0
-constexpr double kDependent = 1e-5;  // of a row: less left by others asks for absurd corrections
-constexpr double kAlike = 0.5;       // of two rows: so alike an inequality contradicts another row
+constexpr int kMostPasses = 6;         // over the last level, until what is left is rounding
+constexpr double kRounding = 1e-14;    // of the diagonal: no pivot is exactly 0
+constexpr double kDependent = 1e-5;    // of a row: less left by others asks for absurd corrections
 constexpr double kMostCrowded = 0.02;  // of the square of a row: less left by others asks as much
 
 constexpr double kSteep = 1;
@@ -195,12 +195,21 @@ private:
         }
     }
 
-    /// Gives up active rows that nodes cannot honor beside others.
+    /// Gives up active rows that nodes cannot honor beside others: contacts beside contacts first,
+    /// so that none of these yields to an inequality.
     void leave_out_crowded() {
-        while (!active_.empty()) {
-            const Members crowded = crowded_members(rows_, active_, kMostCrowded);
+        const auto is_contact = [&](std::int32_t row) { return rows_.rows[row].is_contact(); };
+        Members contacts;
+        std::copy_if(active_.begin(), active_.end(), std::back_inserter(contacts), is_contact);
+        if (contacts.size() < active_.size()) leave_out_crowded(std::move(contacts));
+        leave_out_crowded(active_);
+    }
+
+    void leave_out_crowded(Members some) {
+        while (!some.empty()) {
+            const Members crowded = crowded_members(rows_, some, kMostCrowded);
             if (crowded.empty()) return;
-            give_up(TieSystem(rows_, active_, DBL_MIN, kRounding), crowded);
+            give_up(TieSystem(rows_, some, DBL_MIN, kRounding), some, crowded);
         }
     }
 
@@ -264,7 +273,7 @@ private:
             const TieSystem system(rows_, active_, radii_[level], kRounding);
             const Members dependent = system.dependent(kDependent);
             if (dependent.empty()) return meet_with(system, level);
-            give_up(system, dependent);
+            give_up(system, active_, dependent);
         }
     }
 
@@ -279,26 +288,45 @@ private:
         }
     }
 
-    /// Leaves rows out that others leave no room for, or inequalities in their place.
-    void give_up(const TieSystem& system, const Members& dependent) {
+    /// Leaves rows out that others leave no room for, of `members` as of the active ones.
+    void give_up(const TieSystem& system, Members& members, const Members& dependent) {
         Members victims;
-        for (const std::int32_t at : dependent) {
-            std::int32_t victim = at;
-            double most = kAlike;
-            if (rows_.rows[active_[at]].is_contact()) {
-                for (const std::int32_t other : system.related(at)) {
-                    const double likeness = system.likeness(at, other);
-                    if (rows_.rows[active_[other]].is_contact() || likeness <= most) continue;
-                    victim = other;
-                    most = likeness;
-                }
-            }
-            victims.push_back(victim);
-        }
+        for (const std::int32_t at : dependent)
+            victims.push_back(that_yields(system, members, at));
         sort_unique(victims);
         for (const std::int32_t victim : victims)
-            state_[active_[victim]] = State::kGivenUp;
-        remove(active_, victims);
+            state_[members[victim]] = State::kGivenUp;
+        const auto is_given_up = [&](std::int32_t row) { return state_[row] == State::kGivenUp; };
+        std::erase_if(members, is_given_up);
+        std::erase_if(active_, is_given_up);
+    }
+
+    /// The place in `members` of the row that is left out for one: in the place of a contact the
+    /// most alike of the inequalities that have a product with it, or else with such a row.
+    std::int32_t that_yields(const TieSystem& system, const Members& members,
+                             std::int32_t at) const {
+        const auto is_contact = [&](std::int32_t place) {
+            return rows_.rows[members[place]].is_contact();
+        };
+        if (!is_contact(at)) return at;
+        std::vector<bool> is_seen(members.size(), false);
+        is_seen[at] = true;
+        for (Members ring{at}, next; !ring.empty(); ring.swap(next), next.clear()) {
+            std::int32_t victim = at;
+            double most = 0;
+            for (const std::int32_t from : ring) {
+                for (const std::int32_t to : system.related(from)) {
+                    if (is_seen[to]) continue;
+                    is_seen[to] = true;
+                    next.push_back(to);
+                    if (is_contact(to) || system.likeness(from, to) <= most) continue;
+                    victim = to;
+                    most = system.likeness(from, to);
+                }
+            }
+            if (victim != at) return victim;
+        }
+        return at;
     }
 
     static void remove(Members& from, const Members& places) {

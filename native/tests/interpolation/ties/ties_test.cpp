@@ -115,6 +115,32 @@ TEST(Ties, WhatHoldsStaysAsItIs) {
     EXPECT_TRUE(std::isnan(ties.after[2]));
 }
 
+TEST(Ties, ContactsNeverYieldToInequalities) {
+    const Grid grid(12);
+    const auto plane = [](double x, double y) { return 3 * x - y; };
+    std::vector<double> z;
+    for (const auto& [x, y] : grid.nodes)
+        z.push_back(plane(x, y));
+    Asked asked;
+    for (int i = 0; i < 121; ++i) {
+        const double x = i % 11 + 0.3, y = i / 11 + 0.3;
+        asked.contact({x, y}, plane(x, y));
+    }
+    std::mt19937_64 random(5);
+    const auto draw = [&] { return 11 * static_cast<double>(random() >> 11) / 9007199254740992.0; };
+    for (int i = 0; i < 60;
+         ++i) {  // a little above the plane, with hardly any room between contacts
+        const double x = draw(), y = draw();
+        asked.add({x, y}, plane(x, y) + 1e-3, kNone);
+    }
+    const Ties ties = tie({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), kTolerance);
+    for (std::size_t i = 0; i < 121; ++i)
+        EXPECT_NEAR(ties.after[i], 0, 1e-10) << i;
+    const auto held = std::count_if(ties.after.begin() + 121, ties.after.end(),
+                                    [](double after) { return after < 1e-10; });
+    EXPECT_GT(held, 20);
+}
+
 TEST(Ties, BoundsHoldBesideContacts) {
     const Grid grid(40);
     const std::vector<double> z(grid.nodes.size(), 0);

@@ -23,7 +23,8 @@ class Picks:
     """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
     and (surface, place (3,)) of its picks, and of the tops of its intervals, the highest first; warnings,
     sentences. ends: where holes end (3,), as far as their collars say. observations: of the blocks of
-    intervals; left_out: intervals that are not used. switched_off: as points, those of rows that are."""
+    intervals; left_out: intervals, and picks of holes without a collar, that are not used. switched_off: as
+    points, those of rows that are."""
 
     points: dict[str, np.ndarray] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -42,7 +43,8 @@ def read_borehole_tables(
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
     (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
-    depth are left out with a warning: the hole did not reach the surface. units: what the names of the tables
+    depth are left out with a warning: the hole did not reach the surface. Rows of holes without a collar are
+    listed, and refused where no hole has one. units: what the names of the tables
     mean. plan_step: as of read_intervals.
     Raises InputRefused naming file and line.
     """
@@ -68,9 +70,10 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
     off: dict[str, list] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
+    left_out: list[LeftOut] = []
+    refused: InputRefused | None = None
     missing = 0
     for row in rows(given, Path(given.picks), COLLARS, ("hole", "surface"), step):
-        begin = holes.begin_of(row)
         name = units.surface(row.text("surface"))
         if not row.text("surface"):
             raise row.refuse("the surface has no name")
@@ -78,6 +81,12 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         if not name or row.text(column).lower() in NO_VALUE:
             missing += 1
             continue
+        lost = holes.without_collar(row, row.number(column), name)
+        if lost is not None:
+            refused = refused or holes.refuse_all(row)
+            left_out.append(lost)
+            continue
+        begin = holes.begin_of(row)
         if column == "depth":
             place = holes.place(row, row.number("depth"), scale)
         else:
@@ -87,14 +96,14 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         if not row.is_used:
             continue
         collar = begin * scale if np.isfinite(begin).all() else None
-        hole = row.text("hole")
+        hole = holes.hole_of(row)
         met.setdefault(hole, (collar, []))[1].append((name, place))
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)
     if not (found or off):
-        raise InputRefused("there are no picks in it", file=given.picks)
+        raise refused or InputRefused("there are no picks in it", file=given.picks)
     points, switched_off = ({name: np.array(of) for name, of in each.items()} for each in (found, off))
-    picks = Picks(points, met, ends=ends, switched_off=switched_off)
+    picks = Picks(points, met, ends=ends, left_out=left_out, switched_off=switched_off)
     if missing:
         picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
     return picks

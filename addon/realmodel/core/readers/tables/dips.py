@@ -83,7 +83,7 @@ def read_dips_of_rock(
             else:
                 left_out.append(LeftOut("dip_unit", f"line {row.line}, '{code}'", code))
                 continue
-        elif code in units.names:
+        elif units.means_nothing(code):
             continue
         kept.append(row)
         surfaces.append(surface)

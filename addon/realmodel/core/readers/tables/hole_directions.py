@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,21 +40,23 @@ class HoleDirections:
         self.warnings: list[str] = []
 
     @classmethod
-    def of_survey(cls, given: Boreholes, step: Step = no_step) -> HoleDirections:
-        """The stations of a survey table. Raises InputRefused naming the line."""
+    def of_survey(
+        cls, given: Boreholes, hole_of: Callable[[Row], str], step: Step = no_step
+    ) -> HoleDirections:
+        """The stations of a survey table. hole_of: the hole of a row. Raises InputRefused naming the line."""
         found = cls(given)
         assert given.survey is not None
         for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
             depth = row.number("depth")
             if depth < 0:
                 raise row.refuse(f"depth is {depth:g}", "depths count from the collar along the hole")
-            found.add(row, depth)
+            found.add(row, depth, hole_of(row))
         if not found._stations:
             raise InputRefused("there are no directions in it", file=given.survey)
         return found
 
-    def add(self, row: Row, depth: float) -> None:
-        """A row with the columns azimuth, and dip or inclination."""
+    def add(self, row: Row, depth: float, hole: str) -> None:
+        """A row of a hole, with the columns azimuth, and dip or inclination."""
         name = "inclination" if "inclination" in row.columns else "dip"
         if name not in row.columns:
             raise row.refuse(
@@ -76,7 +79,7 @@ class HoleDirections:
                 raise row.refuse(f"azimuth is {azimuth:g}", "it is in degrees clockwise from north")
         elif angle not in ((0.0, 180.0) if name == "inclination" else (90.0, -90.0)):
             raise row.refuse(f"the azimuth is missing where {name} is {angle:g}")
-        self._stations.setdefault(row.text("hole"), []).append(_Station(row, depth, angle, azimuth))
+        self._stations.setdefault(hole, []).append(_Station(row, depth, angle, azimuth))
 
     def paths(self) -> dict[str, WellTrajectory]:
         """The ways of the holes. Raises InputRefused naming the line."""

@@ -197,15 +197,16 @@ def _parts(body: str, separator: str):
         yield from fields(line, separator)
 
 
-def _joined(name: str) -> str:
-    """A column's name, in which words may be parted by spaces and hyphens, too."""
-    return re.sub(r"[\s_-]+", "_", name)
+def joined(name: str) -> str:
+    """A name, for comparing, in small letters, and with one sign for the spaces, hyphens and underscores that
+    may part its words."""
+    return re.sub(r"[\s_-]+", "_", name.strip().lower())
 
 
 def _columns(given: Reading, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     written = table.layout.names or ()
-    names = [_joined(plain_name(name)) for name in written]
+    names = [joined(plain_name(name)) for name in written]
     as_written = [name.strip().lower() for name in written]
     columns: dict[str, int] = {}
     for column, called in given.columns.items():  # first, so that no other column takes what they name
@@ -215,13 +216,13 @@ def _columns(given: Reading, table: Table, known: Columns, needed: Sequence[str]
             columns[column] = called - 1
         elif called.strip().lower() in as_written:
             columns[column] = table.column(called)
-        elif _joined(called.strip().lower()) in names:
-            columns[column] = names.index(_joined(called.strip().lower()))
+        elif joined(called) in names:
+            columns[column] = names.index(joined(called))
     for column, aliases in known.items():
         # depths of picks are often called otherwise than a survey's
         if column in columns or (given.columns.get(column) is not None and known is not SURVEY):
             continue
-        at = next((names.index(_joined(alias)) for alias in aliases if _joined(alias) in names), None)
+        at = next((names.index(joined(alias)) for alias in aliases if joined(alias) in names), None)
         if at is not None and at not in columns.values():
             columns[column] = at
     for column in needed:

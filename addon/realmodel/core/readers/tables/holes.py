@@ -11,7 +11,8 @@ from ...base.errors import InputRefused, number_list
 from ...base.text import no_step
 from ...settings.boreholes import Boreholes
 from .hole_directions import HoleDirections, is_inclined
-from .hole_tables import COLLARS, Row, rows
+from .hole_tables import COLLARS, Row, joined, rows
+from .observations import LeftOut
 from .well_trajectory import WellTrajectory
 
 
@@ -24,12 +25,19 @@ class Holes:
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, WellTrajectory] = {}
         self._warnings: list[str] = []
+        self._incomplete: dict[str, str] = {}  # holes whose collars are without a number: what they lack
+        self._written: dict[
+            str, dict[str, None]
+        ] = {}  # names of holes with collars that `joined` makes alike
+        self._taken: dict[tuple[str, str, str], None] = {}  # (file, name in it, the hole that it means)
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
         self._collars = None if given.collars is None else self._read_collars()
+        for hole in self._collars or ():
+            self._written.setdefault(joined(hole), {})[hole] = None
         self._unused = set(self._collars or ())
         self._surveyed: set[str] = set()
         if given.survey is not None:
-            directions = HoleDirections.of_survey(given)
+            directions = HoleDirections.of_survey(given, self.hole_of)
             surveyed = directions.paths()
             self._warnings += directions.warnings
             self._surveyed = set(surveyed)
@@ -41,6 +49,10 @@ class Holes:
         assert self.given.collars is not None
         for row in rows(self.given, Path(self.given.collars), COLLARS, ("hole", "x", "y", "z"), no_step):
             hole = row.text("hole")
+            lacking = [axis for axis in "xyz" if not row.has(axis)]
+            if lacking:
+                self._incomplete[hole] = f"line {row.line} of {self.given.collars} has no {lacking[0]}"
+                continue
             place = (row.number("x"), row.number("y"), row.number("z"))
             known = hole in collars
             end = next((name for name in ("end", "depth") if row.has(name)), None)
@@ -49,13 +61,43 @@ class Holes:
             if collars.setdefault(hole, place) != place:
                 raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
             if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
-                directions.add(row, 0.0)
+                directions.add(row, 0.0, hole)
             elif is_inclined(row) and not known:
                 self._inclined[hole] = None
         if not collars:
-            raise InputRefused("there are no holes in it", file=self.given.collars)
+            what = next(iter(self._incomplete.values()), "there are no holes in it")
+            raise InputRefused(what, file=self.given.collars)
         self._paths |= directions.paths()
         return collars
+
+    def hole_of(self, row: Row) -> str:
+        """The name of a row's hole, as the collars have it where it is one of theirs: they may write it with
+        other capitals, spaces, hyphens or underscores."""
+        hole = row.text("hole")
+        if self._collars is None or hole in self._collars:
+            return hole
+        alike = list(self._written.get(joined(hole), ()))
+        if len({self._collars[each] for each in alike}) != 1:
+            return hole
+        self._taken[str(row.table.file), hole, alike[0]] = None
+        return alike[0]
+
+    def without_collar(self, row: Row, depth: float | None, code: str) -> LeftOut | None:
+        """What a row says, where its hole has no collar; None where it has one. depth, code: of the row."""
+        hole = self.hole_of(row)
+        self._unused.discard(hole)
+        if self._collars is None or hole in self._collars:
+            return None
+        at = "" if depth is None else f" at {depth:.9g}"
+        lacks = self._incomplete.get(hole, f"it has no collar in {self.given.collars}")
+        return LeftOut(
+            "no_collar", f"line {row.line}, hole '{hole}'{at}, '{code}': {lacks}", code, hole, depth
+        )
+
+    def refuse_all(self, row: Row) -> InputRefused:
+        """That of a table no hole has a collar. row: its first."""
+        what = f"no hole of it has a collar in {self.given.collars}, as hole '{row.text('hole')}'"
+        return row.refuse(what, "check how holes are written")
 
     def place(self, row: Row, depth: float, scale: np.ndarray) -> np.ndarray:
         """(3,) the place at a depth along a row's hole. scale: (3,) to the unit of the model."""
@@ -66,13 +108,8 @@ class Holes:
     def begin_of(self, row: Row) -> np.ndarray:
         """(3,) the collar of a row's hole, in the units of the tables; its height is NaN where it is not
         known."""
-        hole = row.text("hole")
-        self._unused.discard(hole)
         if self._collars is not None:
-            if hole not in self._collars:
-                what = f"hole '{hole}' has no collar in {self.given.collars}"
-                raise row.refuse(what, "check how it is written")
-            return np.array(self._collars[hole])
+            return np.array(self._collars[self.hole_of(row)])
         for column in ("x", "y"):
             if column not in row.columns:
                 advice = "give the table of collars = ..., or the columns of x and y"
@@ -85,7 +122,7 @@ class Holes:
 
     def way_to(self, row: Row, depth: float) -> np.ndarray:
         """(3,) how far to the east, to the north and down from the collar a depth in a row's hole is."""
-        hole = row.text("hole")
+        hole = self.hole_of(row)
         path = self._paths.get(hole)
         if path is None:
             if self.given.survey is not None:
@@ -101,7 +138,7 @@ class Holes:
 
     def refuse_deviated(self, row: Row) -> None:
         """Refuses an elevation that does not determine the position in the hole."""
-        path = self._paths.get(row.text("hole"))
+        path = self._paths.get(self.hole_of(row))
         if self._collars is not None and path is not None and not path.is_vertical:
             what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"
             raise row.refuse(
@@ -110,6 +147,13 @@ class Holes:
 
     def warnings(self) -> list[str]:
         warnings = list(self._warnings)
+        for file in dict.fromkeys(file for file, _, _ in self._taken):
+            taken = [f"'{name}' for '{hole}'" for own, name, hole in self._taken if own == file]
+            warnings.append(f"{file}: holes are taken for those with collars: {number_list(taken)}")
+        if incomplete := [hole for hole in self._incomplete if hole not in (self._collars or ())]:
+            warnings.append(
+                f"{self.given.collars}: holes without a place, which are not used: {number_list(incomplete)}"
+            )
         inclined = [hole for hole in self._inclined if hole not in self._paths]
         if inclined:
             warnings.append(

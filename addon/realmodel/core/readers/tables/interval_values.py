@@ -73,24 +73,28 @@ def read_interval_values(
     given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step
 ) -> IntervalValues:
     """The columns of the table of intervals of some boreholes that do not say where an interval is, in the
-    order of the table. A column is of numbers where all its values are numbers. Rows without a depth are left
-    out. Raises InputRefused naming file and line."""
+    order of the table. A column is of numbers where all its values are numbers. Rows without a depth, and
+    of holes without a collar, are left out. Raises InputRefused naming file and line."""
     assert given.intervals is not None
     plan, height = factors(given.units, model_unit)
     scale = np.array([plan, plan, height])
     holes, read, ends, depths = Holes(given), [], [], []
     names: list[str] = []
+    refused: InputRefused | None = None
     for row in rows(given, Path(given.intervals), INTERVALS, ("hole", "from", "to"), step):
         if not names:
             names = _names(row)
         if not (row.has("from") and row.has("to")):
             continue
         between = row.number("from"), row.number("to")
+        if holes.without_collar(row, between[0], "") is not None:
+            refused = refused or holes.refuse_all(row)
+            continue
         ends.append([holes.place(row, depth, scale) for depth in between])
         depths.append(between)
-        read.append((row.text("hole"), row.entries, row.decimal))
+        read.append((holes.hole_of(row), row.entries, row.decimal))
     if not read:
-        raise InputRefused("there are no intervals in it", file=given.intervals)
+        raise refused or InputRefused("there are no intervals in it", file=given.intervals)
     columns = {name: _column(read, at) for at, name in enumerate(names) if name}
     places = np.array(ends, np.float64)
     texts = np.array([hole for hole, _, _ in read], str)

@@ -59,10 +59,16 @@ def read_intervals(
     assert given.intervals is not None
     found: dict[str, _Hole] = {}
     left_out: list[LeftOut] = []
+    refused: InputRefused | None = None
     for row in rows(given, Path(given.intervals), INTERVALS, ("hole", "from", "to", "block"), step):
-        name, code = row.text("hole"), row.text("block")
+        name, code = holes.hole_of(row), row.text("block")
         if not name:
             raise row.refuse("the hole has no name")
+        lost = holes.without_collar(row, _first_depth(row), code)
+        if lost is not None:
+            refused = refused or holes.refuse_all(row)
+            left_out += [] if units.says_nothing(code) else [lost]
+            continue
         hole = found.get(name)
         if hole is None:
             hole = found[name] = _Hole(row, holes.begin_of(row))
@@ -70,7 +76,7 @@ def read_intervals(
         if interval is not None:
             (hole.intervals if row.is_used else hole.switched_off).append(interval)
     if not found:
-        raise InputRefused("there are no intervals in it", file=given.intervals)
+        raise refused or InputRefused("there are no intervals in it", file=given.intervals)
     if plan_step is None:
         plan = np.array([hole.begin[:2] for hole in found.values()]) * scale[:2]
         plan_step = plan_step_of(plan)
@@ -92,6 +98,11 @@ def plan_step_of(plan: np.ndarray) -> float:
     return float(np.ptp(plan, axis=0).max()) / _STEPS
 
 
+def _first_depth(row: Row) -> float | None:
+    """Where an interval begins, or ends where that is not known; None where neither is."""
+    return next((row.number(name) for name in ("from", "to") if row.has(name)), None)
+
+
 def _interval(
     row: Row, hole: str, code: str, units: UnitNames, left_out: list[LeftOut]
 ) -> tuple[float, float, str] | None:
@@ -99,7 +110,7 @@ def _interval(
     if units.says_nothing(code):
         return None
     lacking = [name for name in ("from", "to") if not row.has(name)]
-    depth = next((row.number(name) for name in ("from", "to") if name not in lacking), None)
+    depth = _first_depth(row)
     at = "" if depth is None else f" at {depth:.9g}"
     where = f"line {row.line}, hole '{hole}'{at}, '{code}'"
     if lacking:

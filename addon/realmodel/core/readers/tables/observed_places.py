@@ -35,8 +35,9 @@ def read_observed_places(
         depth = row.number("depth") if row.has("depth") else float("nan")
         block = units.block(code)
         where = f"line {row.line}, '{code}'"
-        if not row.has("z"):
-            left_out.append(LeftOut("no_depth", f"{where}: 'z' has no value", code, hole))
+        lacking = [axis for axis in "xyz" if not row.has(axis)]
+        if lacking:
+            left_out.append(LeftOut("no_depth", f"{where}: '{lacking[0]}' has no value", code, hole))
             continue
         place = np.array([row.number(axis) for axis in "xyz"]) * scale
         if block is None:

@@ -6,12 +6,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
-from .hole_tables import NO_VALUE
+from .hole_tables import NO_VALUE, joined
 
-# What stands for core that is not there, or that nobody looked at; in small letters, with blanks.
+# What stands for core that is not there, or that nobody looked at.
 _NO_CORE = frozenset(
-    (
+    joined(name)
+    for name in (
         *("lost core", "core loss", "coreloss", "lostcore", "lc", "no core", "no recovery", "nr"),
         *("not recovered", "not logged", "nl", "not cored", "no sample", "no data", "unknown", "missing"),
     )
@@ -22,7 +24,8 @@ _WHOLE = re.compile(r"([+-]?\d+)[.,]0+")
 @dataclass(frozen=True)
 class UnitNames:
     """surfaces, blocks: their names in a rock mass, oldest first; the block of each surface is beneath it.
-    bodies: names. names: what a name in a table means: one of these, or "" for nothing."""
+    bodies: names. names: what a name in a table means: one of these, or "" for nothing. A name that is none
+    of them is the one that differs from it in capitals, spaces, hyphens and underscores alone, if any."""
 
     surfaces: Sequence[str] = ()
     blocks: Sequence[str] = ()
@@ -31,17 +34,24 @@ class UnitNames:
 
     def says_nothing(self, code: str) -> bool:
         """Whether an entry stands for no unit: it is empty, lost core, or `names` says so."""
-        given = self.names.get(code)
-        if given is not None:
-            return not given
-        return not self._is_known(code) and (
-            code.lower() in NO_VALUE or re.sub(r"[\s_-]+", " ", code.strip().lower()) in _NO_CORE
-        )
+        meant = self._found(code)
+        if meant is not None:
+            return not meant
+        return _is_empty(code)
+
+    def means_nothing(self, code: str) -> bool:
+        """Whether `names` says that an entry stands for nothing."""
+        return self._found(code) == ""
+
+    def meaning(self, code: str) -> str:
+        """What a name means; the name itself where nothing is called so."""
+        found = self._found(code)
+        return code if found is None else found
 
     def block(self, code: str) -> str | None:
         """The surface over the block that a name means, or the body, by its name; None for an unknown name,
         or one that several blocks have."""
-        name = self._meant(code)
+        name = self.meaning(code)
         over = [
             surface for surface, block in zip(self.surfaces, self.blocks, strict=True) if block == name
         ] or [each for each in (*self.surfaces, *self.bodies) if each == name]
@@ -50,7 +60,7 @@ class UnitNames:
     def surface(self, code: str) -> str:
         """The surface that a name means, that over a block of this name where no surface has it; else the
         name itself."""
-        name = self._meant(code)
+        name = self.meaning(code)
         if name in self.surfaces:
             return name
         over = self.block(code)
@@ -58,17 +68,33 @@ class UnitNames:
 
     def is_surface(self, code: str) -> bool:
         """Whether a name is that of a surface."""
-        return self._meant(code) in self.surfaces
+        return self.meaning(code) in self.surfaces
 
     def _is_known(self, name: str) -> bool:
         return name in self.surfaces or name in self.blocks or name in self.bodies
 
-    def _meant(self, code: str) -> str:
-        """A name as `names` has it; numbers also as programs write them that know no whole ones (51.0)."""
+    @cached_property
+    def _alike(self) -> dict[str, str | None]:
+        """What names mean that are written otherwise; None where it is not clear."""
+        known = {name: name for name in (*self.bodies, *self.blocks, *self.surfaces)} | dict(self.names)
+        found: dict[str, str | None] = {}
+        for name, meant in known.items():
+            if found.setdefault(joined(name), meant) != meant:
+                found[joined(name)] = None
+        return found
+
+    def _found(self, code: str) -> str | None:
+        """A name as `names` or the rock mass has it, None where neither does; numbers also as programs write
+        them that know no whole ones (51.0)."""
         whole = _WHOLE.fullmatch(code)
         for given in (code, *([whole.group(1)] if whole else [])):
             if given in self.names:
                 return self.names[given]
             if self._is_known(given):
                 return given
-        return code
+        return None if _is_empty(code) else self._alike.get(joined(code))
+
+
+def _is_empty(code: str) -> bool:
+    """Whether an entry stands for nothing everywhere."""
+    return code.lower() in NO_VALUE or joined(code) in _NO_CORE

@@ -61,6 +61,7 @@ def data_of_sheets(
         np.concatenate([own.places for own in each])[order],
         np.concatenate([own.lower for own in each])[order],
         np.concatenate([own.upper for own in each])[order],
+        np.concatenate([own.margins for own in each])[order],
         sum(own.contacts for own in each),
         sum(own.left_out for own in each),
         max((own.tolerance for own in each), default=0.0),

@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The chapters of the guide: each function sets up a scene with the operators that the guide names, and keeps
+pictures of it. Needs Blender."""
+
+import math
+
+import guide_scenes
+from guide_window import (
+    build,
+    example,
+    fill_view,
+    frame,
+    keep,
+    labeled,
+    place_in_view,
+    settled,
+    side_by_side,
+    viewed,
+    viewport,
+    within_border,
+)
+
+
+def start(walk):
+    """The tab in a new file."""
+    import bpy
+    import guide_panels
+
+    yield from keep(walk, guide_panels.START, "UI")
+    guide_panels.keep({guide_panels.START: guide_panels.shown(bpy.context, guide_panels.START)})
+
+
+def tour(walk):
+    """Each panel by itself."""
+    import bpy
+    import guide_panels
+
+    yield from example(walk, guide_panels.EXAMPLE)
+    guide_panels.choose_rows(bpy.context.scene.realmodel)
+    found = {}
+    for name in guide_panels.PANELS:
+        yield from keep(walk, name, "UI", [name])
+        found[name] = guide_panels.shown(bpy.context, name)
+    guide_panels.keep(found)
+
+
+def window(walk):
+    """The window with an example."""
+    yield from example(walk, "castle_hill")
+    yield from keep(walk, "window")
+
+
+def modes(walk):
+    """The display modes, a stage, moved apart, cut open: docs/images/view_modes.png."""
+    import bpy
+
+    yield from example(walk, "castle_hill")
+    group = bpy.context.scene.realmodel
+    group.view.show_legend = False
+    yield from settled(walk)
+    frame(walk, 0.8)
+    pictures = []
+    for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
+        group.display = mode
+        yield from settled(walk)
+        pictures.append(labeled(viewed(walk), modes_of(group)[mode]))
+    group.display = "BLOCKS"
+    group.stage = 5
+    yield from settled(walk)
+    pictures.append(labeled(viewed(walk), "Blocks at Stage 5"))
+    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.5
+    yield from settled(walk)
+    pictures.append(labeled(viewed(walk), "Explode 0.5"))
+    group.explode = 0.0
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    pictures.append(labeled(viewed(walk), "Section"))
+    side_by_side(pictures, walk.folder / "view_modes.png", 3, 2)
+    bpy.ops.realmodel.section_remove()
+    for stage in (3, 6, 10):
+        group.stage = stage
+        yield from settled(walk)
+        pictures.append(labeled(viewed(walk), f"Stage {stage}: {group.rocks[0].surfaces[stage].name}"))
+    side_by_side(pictures[-3:], walk.folder / "stages.png", 3, 2)
+
+
+def modes_of(group):
+    """The labels of the display modes."""
+    return {item.identifier: item.name for item in group.bl_rna.properties["display"].enum_items}
+
+
+def csv_panel(walk):
+    """The rock mass of two tables."""
+    yield walk.redrawn()
+    guide_scenes.import_tables()
+    guide_scenes.settle_rock()
+    yield from keep(walk, "csv_rocks", "UI", ["rocks"])
+
+
+def csv(walk):
+    """Two tables of points become a model."""
+    import bpy
+    from driver import save_picture
+
+    table = guide_scenes.SAMPLES / "two_layers" / "clay.csv"
+    with viewport(walk):
+        bpy.ops.realmodel.surface_add("INVOKE_DEFAULT", filepath=str(table))
+    yield walk.redrawn(3)
+    save_picture(within_border(viewed(walk)), walk.folder / "csv_dialog.png")
+    walk.key("ESC")
+    yield walk.redrawn(3)
+    guide_scenes.import_tables()
+    for item in bpy.data.objects:
+        item.hide_set(item.name.endswith(" points"))
+    fill_view(walk, guide_scenes.visible_meshes())
+    yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    guide_scenes.settle_rock()
+    yield from build(walk)
+    bpy.context.scene.realmodel.rocks[0].region.hide_set(True)  # a line that lies on the walls
+    frame(walk)
+    yield from keep(walk, "csv_built", panels=["build", "results"])
+
+
+def quality(walk):
+    """Charts of a surface, as the panel saves them."""
+    import bpy
+    from driver import read_picture
+
+    yield from example(walk, "castle_hill")
+    bpy.context.scene.realmodel.rocks[0].active_surface = 9
+    bpy.ops.realmodel.check_quality()
+    charts = []
+    for chart in ("VARIOGRAM", "CROSS_VALIDATION"):
+        path = walk.folder / f"{chart}.png"
+        bpy.ops.realmodel.save_chart(filepath=str(path), chart=chart)
+        charts.append(read_picture(path))
+        path.unlink()
+    side_by_side(charts, walk.folder / "quality.png", 2)
+
+
+def sculpt_grids(walk):
+    """Three grids that an artist has made."""
+    from driver import save_picture
+
+    yield from settled(walk)
+    guide_scenes.three_grids()
+    walk.area.spaces.active.shading.color_type = "OBJECT"
+    fill_view(walk, guide_scenes.visible_meshes())
+    yield from settled(walk)
+    save_picture(viewed(walk), walk.folder / "sculpt_grids.png")
+
+
+def sculpt_built(walk):
+    """The strata between these grids."""
+    import bpy
+
+    yield from settled(walk)
+    guide_scenes.three_grids()
+    bpy.ops.realmodel.from_selected()
+    guide_scenes.paint(bpy.context.scene.realmodel.library, guide_scenes.GRID_COLORS)
+    yield from build(walk)
+    for row in bpy.context.scene.realmodel.results:
+        guide_scenes.shade_smooth(row.object)
+    frame(walk)
+    yield from keep(walk, "sculpt_built", panels=["build", "surfaces"])
+
+
+def section(walk):
+    """A model cut open by a plane, the box of the model around it."""
+    import bpy
+
+    yield from plain_with_a_box(walk)
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    fill_view(walk, [bpy.data.objects[guide_scenes.BOX]])
+    yield from keep(walk, "section_plane", panels=["view", "view_section"])
+
+
+def fence(walk):
+    """A fence along a curve, its gap where the region has a hole, and the same line as a drawing."""
+    import bpy
+    import numpy as np
+    from driver import save_picture
+
+    yield from plain_with_a_box(walk)
+    blocks = [row.object for row in bpy.context.scene.realmodel.results if row.object]
+    corners = np.concatenate([np.array(block.bound_box) for block in blocks])
+    low, high = corners.min(axis=0)[:2], corners.max(axis=0)[:2]
+    shares = ((0.05, 0.2), (0.5, 0.6), (0.95, 0.35))
+    curve = guide_scenes.line([low + (high - low) * share for share in shares])
+    drawing = walk.folder / "section_drawing.png"
+    bpy.ops.realmodel.save_section(filepath=str(drawing), along="LINE", exaggeration=5.0)
+    bpy.ops.realmodel.fence()
+    made = bpy.context.active_object
+    made.select_set(False)
+    for item in (curve, *blocks):
+        item.hide_set(True)
+    yield from settled(walk)
+    fill_view(walk, [bpy.data.objects[guide_scenes.BOX]], 0.96)
+    yield from settled(walk)
+    label = "The lake: a hole of the region", place_in_view(walk, guide_scenes.gap(made)), (-105, -112)
+    save_picture(labeled(viewed(walk), "", [label]), walk.folder / "section_fence.png")
+
+
+def plain_with_a_box(walk):
+    """The example Gravel Plain with its heights exaggerated, and its box."""
+    import bpy
+
+    yield from example(walk, "gravel_plain")
+    group = bpy.context.scene.realmodel
+    group.view.exaggeration = 8.0
+    yield from settled(walk)
+    guide_scenes.ghost([row.object for row in group.results if row.object])
+    walk.area.spaces.active.overlay.show_relationship_lines = False
+
+
+def boreholes(walk):
+    """Boreholes as tubes over the channel that they found."""
+    import bpy
+
+    yield from example(walk, "uncertain_valley")
+    group = bpy.context.scene.realmodel
+    group.view.exaggeration = 4.0
+    group.view.show_boreholes = True
+    for row in group.results:
+        row.object.hide_set(row.name in ("Till", "Lake clay"))
+    yield from settled(walk)
+    frame(walk, elevation=math.radians(48.0))  # into the channel
+    yield from keep(walk, "boreholes", panels=["results", "field"])
+
+
+def mapped(walk):
+    """A geological map with dips, and the model that follows from them."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.open_sample(sample="mapped_valley", build=False)
+    view = bpy.context.scene.realmodel.view
+    view.show_map = view.show_dips = True
+    yield from settled(walk)
+    frame(walk)
+    yield from settled(walk)
+    pictures = [labeled(viewed(walk), "The map on its ground, and dips")]
+    yield from build(walk)
+    view.show_map = False
+    frame(walk)
+    yield from settled(walk)
+    pictures.append(labeled(viewed(walk), "The model"))
+    side_by_side(pictures, walk.folder / "map.png", 2, 2)
+
+
+def structures(walk):
+    """The compartments of a graben moved apart."""
+    import bpy
+    from driver import save_picture
+
+    yield from settled(walk)
+    guide_scenes.graben()
+    yield from build(walk)
+    group = bpy.context.scene.realmodel
+    guide_scenes.paint(group.library, guide_scenes.GRABEN_COLORS)
+    group.explode_direction, group.explode = "COMPARTMENT", 0.4
+    frame(walk, 0.74)  # of the blocks where they belong
+    yield from settled(walk)
+    save_picture(viewed(walk), walk.folder / "structures.png")
+
+
+OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone
+WITH_PANELS = (csv, quality, sculpt_built, boreholes)  # of the viewport and the sidebar
+WITH_MANY_PANELS = (window, section)  # the same, with a longer sidebar
+OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures)  # of the viewport alone
+AS_FOUND = (start, window)  # with panels open or closed as users find them

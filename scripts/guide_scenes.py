@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What scenes of the guide have beside examples: tables of points, grids that an artist made, lines of
+sections, a graben between two faults. Needs Blender."""
+
+import math
+from pathlib import Path
+
+SAMPLES = Path(__file__).resolve().parents[1] / "blend_samples"
+BOX = "box of the model"
+GRID_COLORS = ("#6f8296", "#d9b070", "#7d9460")  # in the order of the library, as those below
+GRABEN_COLORS = ("#c4aeaa", "#e6b069", "#97c0d6", "#f0e4ab", "#a9cc7a", "#d9b8cf")
+_GRIDS = {"clay": (0.0, 2.0), "sand": (2.2, 2.5), "ground": (4.6, 4.0)}  # height, strength of the Displace
+_FAULTS = {"West fault": (300.0, 0.22, 0.1), "East fault": (720.0, -0.2, -0.06)}
+_LAYERS = {"Basement": -420.0, "Sandstone": -300.0, "Marl": -200.0, "Limestone": -110.0}
+
+
+def import_tables():
+    """Two tables of points become surfaces, their points large and in colors."""
+    import bpy
+
+    for name in ("clay", "ground"):
+        bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
+    bpy.context.scene.realmodel.view.show_contacts = True
+
+
+def settle_rock():
+    """A region around the points, short edges, a base."""
+    import bpy
+
+    rock = bpy.context.scene.realmodel.rocks[0]
+    bpy.ops.realmodel.region_around()
+    rock.edge_length = 4.0
+    rock.use_base, rock.base_elevation = True, 0.0
+
+
+def grid(name, height, size, strength, seed):
+    """A grid with a Displace modifier, as an artist makes it."""
+    import bpy
+
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=size, location=(0, 0, height))
+    item = bpy.context.active_object
+    item.name = name
+    texture = bpy.data.textures.new(name, "CLOUDS")
+    texture.noise_scale = 0.35 * size + 0.1 * seed
+    modifier = item.modifiers.new("Displace", "DISPLACE")
+    modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
+    return item
+
+
+def three_grids():
+    """The surfaces of three layers as grids, selected, with colors of their own."""
+    import bpy
+
+    for number, (name, (height, strength)) in enumerate(_GRIDS.items()):
+        grid(name, height, 12.0, strength, number)
+    for item, color in zip(bpy.data.objects, GRID_COLORS, strict=True):
+        item.select_set(True)
+        item.color = (*rgb(color), 1.0)
+        shade_smooth(item)
+
+
+def shade_smooth(item):
+    """Shades a mesh smoothly, except at its edges."""
+    item.data.polygons.foreach_set("use_smooth", [True] * len(item.data.polygons))
+    item.data.use_auto_smooth = True
+
+
+def rgb(color):
+    """(3,) of #rrggbb."""
+    return [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+
+
+def paint(library, colors):
+    """Gives the rows of a library these colors, as far as there are."""
+    for row, color in zip(library, colors, strict=False):
+        row.color = rgb(color)
+
+
+def visible_meshes():
+    """What the viewport shows of meshes."""
+    import bpy
+
+    return [item for item in bpy.data.objects if item.visible_get() and item.type == "MESH"]
+
+
+def line(points):
+    """A curve through points (x, y), as one draws it seen from above; it is the active object."""
+    import bpy
+
+    curve = bpy.data.curves.new("line", "CURVE")
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for corner, (x, y) in zip(spline.points, points, strict=True):
+        corner.co = (x, y, 0.0, 1.0)
+    item = bpy.data.objects.new("line", curve)
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.objects.active = item
+    item.select_set(True)
+    return item
+
+
+def ghost(items):
+    """The box around objects as thin lines, the object BOX."""
+    import bpy
+    from realmodel.bl import viewports
+
+    bpy.context.view_layer.update()
+    around = viewports.corners(items)
+    low, high = around.min(axis=0), around.max(axis=0)
+    bpy.ops.mesh.primitive_cube_add(location=(low + high) / 2, scale=(high - low) / 2)
+    box = bpy.context.active_object
+    box.name, box.display_type = BOX, "WIRE"
+    box.select_set(False)
+
+
+def gap(fence):
+    """The middle of the widest gap in a fence, in the scene."""
+    import numpy as np
+
+    places = np.array([fence.matrix_world @ vertex.co for vertex in fence.data.vertices])
+    places = places[np.argsort(places[:, 0])]
+    last = np.diff(places[:, 0]).argmax()
+    west, east = places[last], places[last + 1]
+    return (*((west + east)[:2] / 2), places[:, 2].mean())
+
+
+def _across(fault, y, z):
+    """x of a listric fault."""
+    x, lean, turn = _FAULTS[fault]
+    down = 150.0 - z
+    return x + turn * (y - 350.0) + lean * down * (0.5 + down / 1600.0)
+
+
+def _displaced(base, x, y):
+    """The height of a layer where the graben has sunk; None where the layer is missing beside a fault."""
+    z = base + 0.06 * x + 9.0 * math.sin(x / 250.0) * math.cos(y / 230.0)
+    if x < _across("West fault", y, z):
+        return z
+    if x > _across("East fault", y, z + 15.0):
+        return z + 15.0
+    sunk = z - 90.0
+    is_between = _across("West fault", y, sunk) < x < _across("East fault", y, sunk)
+    return sunk if is_between else None
+
+
+def graben():
+    """A model of points and two faults in the scene, not built yet."""
+    import bpy
+    import numpy as np
+    from realmodel.bl import library_rows, meshes
+
+    def added(name, places, triangles=()):
+        if len(triangles):
+            mesh = meshes.triangle_mesh(name, np.array(places, np.float32), np.array(triangles))
+        else:
+            mesh = bpy.data.meshes.new(name)
+            mesh.from_pydata(places, [], [])
+        item = bpy.data.objects.new(name, mesh)
+        bpy.context.scene.collection.objects.link(item)
+        return item
+
+    scene, random = bpy.context.scene, np.random.default_rng(3)
+    bpy.ops.realmodel.new()
+    bpy.ops.realmodel.rock_add()
+    rock = scene.realmodel.rocks[0]
+    for name, base in _LAYERS.items():
+        plan = random.uniform((2.0, 2.0), (998.0, 698.0), (260, 2)).tolist()
+        places = [(x, y, _displaced(base, x, y)) for x, y in plan]
+        bpy.ops.realmodel.surface_add(name=name, empty=True)
+        row = rock.surfaces[-1]
+        row.source, row.method = "POINTS_OBJECT", "kriging"
+        row.object = added(name, [place for place in places if place[2] is not None])
+        row.object.hide_set(True)
+    bpy.ops.realmodel.surface_add(name="Cover", empty=True)
+    cover = rock.surfaces[-1]
+    cover.source, cover.method, cover.value = "NONE", "constant", 0.0
+    for row in rock.surfaces:
+        row.property_id = library_rows.for_surface(scene, row.name)
+    corners = [(0.0, 0.0, 0.0), (1000.0, 0.0, 0.0), (1000.0, 700.0, 0.0), (0.0, 700.0, 0.0)]
+    rock.region = added("region", corners, [[0, 1, 2], [0, 2, 3]])
+    rock.region.hide_set(True)
+    rock.edge_length, rock.use_base, rock.base_elevation = 30.0, True, -640.0
+    heights, along = np.linspace(-650.0, 150.0, 9), np.linspace(-150.0, 850.0, 6)
+    n = len(heights)
+    quads = [j * n + i for j in range(len(along) - 1) for i in range(n - 1)]
+    triangles = [t for a in quads for t in ((a, a + 1, a + n + 1), (a, a + n + 1, a + n))]
+    chosen = [
+        added(name, [(_across(name, y, z), y, z) for y in along for z in heights], triangles)
+        for name in _FAULTS
+    ]
+    for item in bpy.context.view_layer.objects:
+        item.select_set(item in chosen)
+    bpy.ops.realmodel.fault_body_from_selected()
+    for row in scene.realmodel.faults:
+        row.youngest = "Limestone"

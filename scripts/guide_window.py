@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The window in which `draw_guide.py` takes pictures: the tab of the sidebar, where the viewport looks, and
+what is kept of the screen. Needs Blender."""
+
+import math
+
+TAB = {}  # the panels of the tab in their order, and their options
+ELEVATION = math.radians(27.0)  # of the eye above the horizon, as in the add-on
+MARGIN = 14  # pixels around a viewport, where Blender has a border and arrows that open regions
+
+
+def find_panels():
+    """Remembers the panels of the tab, a parent before its children."""
+    import bpy
+
+    kinds = bpy.types.Panel.__subclasses__()
+    found = [cls for cls in kinds if getattr(cls, "bl_category", "") == "RealModel" and cls.is_registered]
+    found.sort(key=lambda cls: hasattr(cls, "bl_parent_id"))
+    TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in found})
+
+
+def open_panels(are_as_found):
+    """Panels are open or closed as users find them, or else all open, when they are shown next."""
+    for cls, options in TAB.items():
+        cls.bl_options = options - (set() if are_as_found else {"DEFAULT_CLOSED"})
+
+
+def open_tab(walk):
+    """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
+    drawn = []
+    panel = next(cls for cls in TAB if cls.__name__ == "REALMODEL_PT_start")
+    before = panel.draw
+
+    def draw(self, context):
+        drawn.append(True)
+        before(self, context)
+
+    panel.draw = draw
+    region = walk.region("UI")
+    for down in range(30, region.height - 30, 30):
+        walk.click(region.x + region.width - 10, region.y + region.height - down)
+        yield walk.redrawn()
+        if drawn:
+            break
+    panel.draw = before
+    if not drawn:
+        raise AssertionError("the tab RealModel was not found")
+    walk.over_viewport()
+    yield walk.redrawn()
+
+
+def show_panels(walk, names=()):
+    """Registers these panels of the tab alone, so that no other takes room; none given: all."""
+    import bpy
+
+    for cls in reversed(list(TAB)):
+        if cls.is_registered:
+            bpy.utils.unregister_class(cls)
+    for cls in TAB:
+        if not names or cls.__name__.removeprefix("REALMODEL_PT_") in names:
+            bpy.utils.register_class(cls)
+    yield walk.redrawn(3)
+
+
+def keep(walk, name, region=None, panels=()):
+    """Keeps a picture of the sidebar (region "UI"), or of the viewport with it, as NAME.png. panels: of the
+    sidebar these alone, open; their idnames end so."""
+    from driver import save_picture
+
+    if panels:
+        yield from show_panels(walk, panels)
+    yield walk.redrawn(3)
+    picture = seen(walk, walk.area if region is None else walk.region(region))
+    save_picture(without_tabs(picture) if region == "UI" else picture, walk.folder / f"{name}.png")
+
+
+def seen(walk, part):
+    """(height, width, 3) a part of the window as it is on the screen."""
+    from driver import read_screen
+
+    return read_screen(walk.screen)[part.y : part.y + part.height, part.x : part.x + part.width]
+
+
+def without_tabs(picture):
+    """The sidebar without the names of its tabs, and without the empty part below its panels."""
+    import bpy
+
+    width = picture.shape[1] - int(30 * bpy.context.preferences.view.ui_scale)
+    picture = picture[:, :width]
+    background = picture[8, width // 2]
+    drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
+    drawn[:12] = False  # the border of the region
+    lowest = int(drawn.argmax())
+    return picture[max(lowest - 8, 0) :]
+
+
+def within_border(picture):
+    """A dark window of Blender's that is open over an empty viewport, without what is around it."""
+    import numpy as np
+
+    is_dark = picture.mean(axis=2) < 0.16
+    rows = np.flatnonzero(is_dark.sum(axis=1) > 200)
+    columns = np.flatnonzero(is_dark.sum(axis=0) > 100)
+    return picture[rows[0] : rows[-1], columns[0] : columns[-1]]
+
+
+def viewed(walk):
+    """(height, width, 3) the viewport without its margins."""
+    return seen(walk, walk.region("WINDOW"))[MARGIN:-MARGIN, MARGIN:-MARGIN]
+
+
+def place_in_view(walk, point):
+    """(2,) where a point of the scene is in the picture of `viewed`."""
+    region = walk.region("WINDOW")
+    x, y = walk.pixel_of(point)
+    return x - region.x - MARGIN, y - region.y - MARGIN
+
+
+def settled(walk):
+    """Nothing is being made any more, and all of it was drawn."""
+    import bpy
+    from realmodel.bl.display import cuts, preparing
+
+    yield walk.redrawn(2)
+    yield lambda: not preparing.is_working(bpy.context.scene) and not cuts.is_working(bpy.context.scene)
+    yield walk.redrawn(3)
+
+
+def build(walk):
+    """Builds as a press of the button does, and waits."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.build("EXEC_DEFAULT")
+    yield walk.redrawn(3)
+
+
+def viewport(walk):
+    import bpy
+
+    return bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW"))
+
+
+def example(walk, name):
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.open_sample(sample=name)
+    if not len(bpy.context.scene.realmodel.results):
+        yield from build(walk)
+    frame(walk)
+    yield walk.redrawn(3)
+
+
+def frame(walk, share=0.92, elevation=ELEVATION):
+    """Turns the viewport to the blocks, or else to what the scene has. elevation: of the eye, radians."""
+    import bpy
+
+    rows = [row.object for row in bpy.context.scene.realmodel.results if row.object is not None]
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    fill_view(walk, rows or [item for item in bpy.data.objects if item.type == "MESH"], share, elevation)
+
+
+def fill_view(walk, items, share=0.92, elevation=ELEVATION):
+    """Turns the viewport to objects, which then fill a share of it."""
+    import bpy
+    import numpy as np
+    from gallery_picture import seen_from
+    from mathutils import Vector
+    from realmodel.bl import viewports
+
+    bpy.context.view_layer.update()
+    corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
+    view = walk.area.spaces.active.region_3d
+    rotation = viewports.view_rotation(elevation=elevation)
+    view.view_perspective, view.view_rotation = "PERSP", rotation.to_quaternion()
+    view.update()
+    tangents = share / np.array([view.window_matrix[0][0], view.window_matrix[1][1]])
+    axes = np.array(rotation.transposed())
+    corners = np.array(corners, float)
+    eye, middle = seen_from(corners, axes, tangents), (corners @ axes[2]).mean()
+    view.view_location = axes.T @ np.array([*eye[:2], middle])
+    view.view_distance = eye[2] - middle
+    space = walk.area.spaces.active
+    space.clip_end = max(space.clip_end, 10.0 * view.view_distance)
+
+
+def side_by_side(pictures, path, columns, smaller=1):
+    """Saves several pictures of one width as one, so many times smaller, with white lines between."""
+    import numpy as np
+    from driver import save_picture
+
+    tiles, highest = [], max(len(picture) for picture in pictures)
+    for picture in pictures:
+        picture = np.pad(picture, ((0, highest - len(picture)), (0, 0), (0, 0)), constant_values=1.0)
+        height, width = (size // smaller * smaller for size in picture.shape[:2])
+        blocks = picture[:height, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
+        tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((4, 4), (4, 4), (0, 0)), constant_values=1.0))
+    rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
+    save_picture(np.concatenate(rows[::-1]), path)
+
+
+def labeled(picture, text, labels=()):
+    """A picture of the window with a text at its upper left, and labels: (text, position (x, y), offset)."""
+    import numpy as np
+    from gallery_picture import INK, LABEL, WHITE, add_label
+    from realmodel.core.drawing.drawing import Drawing
+    from realmodel.core.drawing.glyphs import text_width
+    from realmodel.core.drawing.raster import over, rasterize
+
+    height, width = picture.shape[:2]
+    scale = 28.0 / LABEL
+    drawing = Drawing(width / scale, height / scale)
+    if text:
+        size = 52.0 / scale
+        drawing.rectangle((8, drawing.height - 42, text_width(text, size) + 14, 34), WHITE)
+        drawing.text(15, drawing.height - 32, text, size, INK)
+    for words, place, offset in labels:
+        add_label(drawing, np.array(place) / scale, offset, words)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[:, :, :3] = picture[::-1]
+    over(pixels, rasterize(drawing, scale, None), 0, 0)
+    return pixels[::-1, :, :3]
