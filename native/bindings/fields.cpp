@@ -30,12 +30,16 @@ using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
 using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
 /// Axes and ratios.
 using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
+/// How many faults die out, combinations of sides; further coordinates of contacts, dips and
+/// bounds, how they rise at dips; those of nodes, the nodes that are the same, the sides of bounds.
+using SlitsTuple = std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>,
+                              Array<double>, Array<double>, Array<std::int64_t>, Indices>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
 
 py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                const DipsAndNormals& dips, const BoundsTuple& bounds, const OptionsTuple& given,
-               WatchedExecution* execution) {
+               const std::optional<SlitsTuple>& slits, WatchedExecution* execution) {
     fields::FieldData data;
     data.surfaces = std::get<0>(contacts);
     data.contacts = rows<3>(std::get<1>(contacts), "contacts");
@@ -45,6 +49,12 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     data.bounds = rows<3>(std::get<0>(bounds), "bounds");
     data.bound_below = view(std::get<1>(bounds));
     data.bound_above = view(std::get<2>(bounds));
+    if (slits) {
+        const auto& [count, sides, of_contacts, of_dips, of_bounds, slopes, nodes, same, of_bound] =
+            *slits;
+        data.slits = {count, view(of_contacts), view(of_dips), view(of_bounds), view(slopes),
+                      sides, view(nodes),       view(same),    view(of_bound)};
+    }
     const auto& [tolerance, most_centers, anisotropy] = given;
     std::optional<fields::Anisotropy> known;
     if (anisotropy) known = std::make_from_tuple<fields::Anisotropy>(*anisotropy);
@@ -89,14 +99,18 @@ std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeT
 
 void bind_fields(py::module_& module) {
     module.def("solve_field", &solve, py::arg("lattice"), py::arg("contacts"), py::arg("dips"),
-               py::arg("bounds"), py::arg("options"), py::arg("execution") = py::none(),
+               py::arg("bounds"), py::arg("options"), py::arg("slits") = py::none(),
+               py::arg("execution") = py::none(),
                R"(The smoothest field in space that honors the data, and the level of each surface.
 
 lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), and the surface of
 each (N,), 0 the oldest. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
 (B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
 at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
-one. Returns a dict: values (nodes,), levels (surfaces,), anisotropy, order, centers, misfit, dips_missed,
+one. slits: of faults that die out how many, and the combinations of their sides; the further coordinates that these
+give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3), those of nodes (S, nodes, F) on each
+combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
+Returns a dict: values (S * nodes,), levels (surfaces,), anisotropy, order, centers, misfit, dips_missed,
 bounds_missed. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rock masses with folds whose fields are given in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 from realmodel.core import Project, Rock, Series, Surface
 from realmodel.core.fields import Anisotropy, SolvedField
@@ -28,15 +30,16 @@ def plunging(p):
 
 def given_field(monkeypatch, f, levels):
     """Makes fields in the place of the solver: f, or the one of several that `f(data)` chooses, with these
-    levels."""
+    levels. Beside faults that die out it is greater by three times the sum of their coordinates."""
     levels = np.asarray(levels, float)
 
     def solve_field(lattice, data, work):
         own = f(data) if f.__name__ == "chosen" else f
         none = np.empty(0, np.int64)
-        return SolvedField(
+        jumps = [0.0] if data.slits is None else 3.0 * data.slits.nodes.sum(axis=2)
+        first = SolvedField(
             lattice=lattice,
-            values=own(lattice.positions()),
+            values=own(lattice.positions()) + jumps[0],
             levels=levels,
             anisotropy=Anisotropy(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (1.0, 1.0, 1.0)),
             order=3,
@@ -46,6 +49,8 @@ def given_field(monkeypatch, f, levels):
             bounds_missed=none,
             critical_points=np.empty((0, 3)),
         )
+        others = (replace(first, values=own(lattice.positions()) + jump) for jump in jumps[1:])
+        return replace(first, others=tuple(others))
 
     monkeypatch.setattr(fields, "solve_field", solve_field)
 

@@ -240,9 +240,6 @@ def test_what_cannot_be_made_of_fields_yet_is_refused(monkeypatch, tmp_path):
     project.faults = [Fault("F", *plane((5.3, -2), (4.1, 12)), youngest="f")]
     with pytest.raises(InputRefused, match="displaces some of its surfaces, but not all"):
         build(project)
-    project.faults = [Fault("F", *plane((5.3, 3), (4.1, 12)), dies_out=True)]
-    with pytest.raises(InputRefused, match="which dies out, displaces it"):
-        build(project)
     project.faults = []
     project.rocks[0].series[0].resolution = 1e-3
     with pytest.raises(InputRefused, match=r"its lattice would have .* nodes"):

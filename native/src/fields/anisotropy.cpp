@@ -42,10 +42,11 @@ public:
         const auto at = std::max_element(found.begin(), found.end()) - found.begin();
         return {of[at], found[at]};
     }
-    Candidate best(std::span<const Anisotropy> of, const Errors& errors) const {
-        std::vector<Likely> all;
-        for (const Anisotropy& anisotropy : of)
-            all.push_back({anisotropy, errors});
+    /// The best of some with the anisotropies in the place of theirs.
+    Candidate best(std::span<const Anisotropy> of, const Likely& rest) const {
+        std::vector<Likely> all(of.size(), rest);
+        for (std::size_t n = 0; n < of.size(); ++n)
+            all[n].anisotropy = of[n];
         return best(all);
     }
 
@@ -96,34 +97,34 @@ std::vector<Vec3> main_directions() {
 }
 
 void search_first(const Search& search, std::span<const Vec3> normals, Candidate& best) {
-    const Errors errors = best.what.errors;
+    const Likely rest = best.what;
     std::vector<Anisotropy> tried;
     if (normals.size() >= 3) {
         const Vec3 axis = fold_axis(normals);
         for (const double ratio : {0.5, 0.25, 0.1, 0.05, 0.02, kLeastRatio})
             tried.push_back(along_axis(axis, ratio));
-        Search::improve(best, search.best(tried, errors), kWorth);
+        Search::improve(best, search.best(tried, rest), kWorth);
     }
     if (best.what.anisotropy.ratios[0] < 1) return;
     tried.clear();
     for (const Vec3& direction : main_directions())
         tried.push_back(along_axis(direction, 0.5));
-    const Vec3 direction = search.best(tried, errors).what.anisotropy.axes[0];
+    const Vec3 direction = search.best(tried, rest).what.anisotropy.axes[0];
     tried.clear();
     for (const double ratio : {0.7, 0.5, 0.35, 0.25, 0.1})
         tried.push_back(along_axis(direction, ratio));
-    Search::improve(best, search.best(tried, errors), kWorth);
+    Search::improve(best, search.best(tried, rest), kWorth);
 }
 
 void search_second(const Search& search, Candidate& best) {
-    const Errors errors = best.what.errors;
+    const Likely rest = best.what;
     std::vector<Anisotropy> tried;
     const Anisotropy first = best.what.anisotropy;
     for (int degrees = 0; degrees < 180; degrees += 20) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
     }
-    Candidate found = search.best(tried, errors);
+    Candidate found = search.best(tried, rest);
     double step = 12, factor = 0.6;
     for (int round = 0; round < 8; ++round) {
         const Anisotropy at = found.what.anisotropy;
@@ -132,7 +133,7 @@ void search_second(const Search& search, Candidate& best) {
                  turned(at, 0, std::max(kLeastRatio, ratio * factor)),
                  turned(at, 0, std::min(1.0, ratio / factor))};
         const double before = found.likelihood;
-        Search::improve(found, search.best(tried, errors), 0);
+        Search::improve(found, search.best(tried, rest), 0);
         if (found.likelihood > before) continue;
         step /= 2;
         factor = std::sqrt(factor);
@@ -145,9 +146,20 @@ void search_errors(const Search& search, Candidate& best) {
     std::vector<Likely> tried;
     for (const double value : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5}) {
         for (const double slope : {0.0, 1e-4, 1e-3, 1e-2, 1e-1})
-            tried.push_back({best.what.anisotropy, {value, slope}});
+            tried.push_back({best.what.anisotropy, {value, slope}, 3, best.what.lift});
     }
     Search::improve(best, search.best(tried), kWorth);
+}
+
+/// Other scales of further coordinates: the larger, the less one side says of the other.
+void search_lift(const Search& search, Candidate& best) {
+    std::vector<Likely> tried(7, best.what);
+    double lift = 1.0 / 8;
+    for (Likely& each : tried) {
+        each.lift = lift;
+        lift *= 2;
+    }
+    Search::improve(best, search.best(tried), 0);
 }
 
 }  // namespace
@@ -165,9 +177,12 @@ Map3 map_of(const Anisotropy& anisotropy) {
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
                    const Execution& execution) {
     const Search search(known, execution);
+    const bool has_lift =
+        std::ranges::any_of(known, [](const Functional& each) { return !each.of_lift().empty(); });
     const auto climb = [&](Candidate best) {
         search_first(search, normals, best);
         search_second(search, best);
+        if (has_lift) search_lift(search, best);
         search_errors(search, best);
         return best;
     };

@@ -19,15 +19,16 @@ Map3 map_of(const Anisotropy& anisotropy);
 struct Likely {
     Anisotropy anisotropy = kIsotropic;
     Errors errors;
-    int order = 3;  ///< of the derivatives that are least
+    int order = 3;    ///< of the derivatives that are least
+    double lift = 1;  ///< of further coordinates
 
-    Smoothness smoothness() const { return {map_of(anisotropy), errors, order}; }
+    Smoothness smoothness() const { return {map_of(anisotropy), errors, order, lift}; }
 };
 
-/// The anisotropy and the errors of measurement under which what is known is most likely, with the
-/// third order. The anisotropy is along the fold axis, to which the normals are most nearly
-/// perpendicular, or where they show none along the best of some directions; then along a direction
-/// across it.
+/// The anisotropy, the errors of measurement and the scale of further coordinates under which what
+/// is known is most likely, with the third order. The anisotropy is along the fold axis, to which
+/// the normals are most nearly perpendicular, or where they show none along the best of some
+/// directions; then along a direction across it.
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
                    const Execution& execution);
 

@@ -15,6 +15,7 @@
 #include "fields/known_data.hpp"
 #include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
+#include "fields/lattice_weights.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/fields/critical_points.hpp"
@@ -133,10 +134,16 @@ public:
         Field out;
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
-        std::vector<double> at_nodes = values_of(*spline_, lattice_);
-        for (double& value : at_nodes)
-            value *= unit;
-        out.values = balanced(at_nodes, lattice_, execution_);
+        for (std::size_t side = 0; side < known_.data().slits.sides; ++side) {
+            std::vector<double> at_nodes = values_of(*spline_, lattice_, side);
+            for (double& value : at_nodes)
+                value *= unit;
+            const std::vector<double> smooth = balanced(at_nodes, lattice_, execution_);
+            out.values.insert(out.values.end(), smooth.begin(), smooth.end());
+        }
+        const std::span<const std::int64_t> same = known_.data().slits.same;
+        for (std::size_t n = 0; n < same.size(); ++n)
+            out.values[n] = out.values[static_cast<std::size_t>(same[n])];
         for (const double level : levels())
             out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
@@ -148,6 +155,8 @@ public:
         for (const std::int64_t bound : out.bounds_missed)
             kept[static_cast<std::size_t>(bound)] = 0;
         keep_bounds(lattice_, known_.data(), kept, out.levels, out.values);
+        for (std::size_t n = 0; n < same.size(); ++n)
+            out.values[n] = out.values[static_cast<std::size_t>(same[n])];
         return out;
     }
 
@@ -173,7 +182,9 @@ private:
     }
 
     double level_in(const Spline& spline, std::int32_t surface) const {
-        return spline.of({{{known_.contacts()[known_.reference(surface)], 1, true}}, {}, 0, false});
+        const std::size_t contact = known_.reference(surface);
+        return spline.of(
+            {{{known_.contacts()[contact], 1, true, known_.lift_of(contact)}}, {}, 0, false});
     }
 
     std::vector<double> levels() const {
@@ -256,7 +267,7 @@ private:
             high = std::max(high, steep);
         }
         if (high <= kUneven * low) return;
-        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}});
+        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift});
         look();
         find_gaps(apart, likely_);
         look();
@@ -266,7 +277,7 @@ private:
     /// critical points. That whose second ones are least bends at contacts instead. It is taken
     /// where it has so many fewer of them that the data may be less likely.
     void choose_order() {
-        const Likely rough{kIsotropic, {}, 2};
+        const Likely rough{kIsotropic, {}, 2, likely_.lift};
         if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
     }
 
@@ -281,21 +292,40 @@ private:
         const std::optional<double> likelihood = spline.log_likelihood();
         if (!likelihood) return -HUGE_VAL;
         const Lattice coarse = coarsened(lattice_, kMostCounted);
-        const auto points = critical_points(coarse, values_of(spline, coarse), execution_);
+        const auto points = critical_points(coarse, values_of(spline, coarse, 0), execution_);
         return *likelihood - kPerCriticalPoint * static_cast<double>(points.size());
     }
 
-    /// At the nodes of a lattice, in the frame.
-    std::vector<double> values_of(const Spline& spline, const Lattice& lattice) const {
+    /// At the nodes of a lattice, in the frame, on a combination of sides of slits.
+    std::vector<double> values_of(const Spline& spline, const Lattice& lattice,
+                                  std::size_t side) const {
         return lattice_values(
             lattice,
             [&](std::span<const Vec3> positions, std::span<double> values) {
                 std::vector<Vec3> local(positions.size());
                 std::transform(positions.begin(), positions.end(), local.begin(),
                                [&](const Vec3& at) { return known_.frame().to_local(at); });
-                spline.values_at(local, values);
+                spline.values_at(local, lifts_at(positions, side), values);
             },
-            execution_);
+            execution_, known_.data().slits.count == 0);
+    }
+
+    /// The further coordinates of positions in the lattice, linear between its nodes.
+    std::vector<double> lifts_at(std::span<const Vec3> positions, std::size_t side) const {
+        const Slits& slits = known_.data().slits;
+        std::vector<double> out;
+        if (slits.count == 0) return out;
+        const std::size_t first = side * lattice_.nodes();
+        for (const Vec3& at : positions) {
+            const auto corners = corners_at(lattice_, at);
+            for (std::size_t k = 0; k < slits.count; ++k) {
+                double sum = 0;
+                for (const auto& [node, weight] : corners)
+                    sum += weight * slits.nodes[(first + node) * slits.count + k];
+                out.push_back(sum);
+            }
+        }
+        return out;
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.
@@ -339,7 +369,8 @@ private:
     std::vector<double> steepness(const Spline& spline) const {
         std::vector<std::vector<double>> on(known_.data().surfaces);
         for (const std::size_t n : sample_)
-            on[known_.surface_of(n)].push_back(length(spline.gradient(known_.contacts()[n])));
+            on[known_.surface_of(n)].push_back(
+                length(spline.gradient(known_.contacts()[n], known_.lift_of(n))));
         std::vector<double> out;
         for (std::size_t k = 0; k + 1 < on.size(); ++k) {
             std::vector<double> both = on[k];
@@ -378,7 +409,10 @@ private:
             at.size(), 512, execution_,
             [&](std::size_t from, std::size_t to) {
                 const std::span<const Vec3> here(at.data() + from, to - from);
-                spline_->values_at(here, std::span<double>(out.data() + from, to - from));
+                const std::size_t slits = known_.data().slits.count;
+                spline_->values_at(
+                    here, known_.data().slits.contacts.subspan(slits * from, slits * (to - from)),
+                    std::span<double>(out.data() + from, to - from));
             },
             0.0);
         const std::vector<double> level_of = levels();
@@ -545,7 +579,7 @@ private:
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
-        const Likely rough{kIsotropic, {1e-6, 1e-3}};
+        const Likely rough{kIsotropic, {1e-6, 1e-3}, 3, 1};
         const Spline spline(sampled({}, rough), rough.smoothness(), execution_);
         const double mean_gap = known_.total_gap() / last;
         for (std::int32_t k = 0; k < last; ++k) {

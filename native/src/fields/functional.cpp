@@ -1,37 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fields/functional.hpp"
 
+#include <utility>
+
 namespace realmodel::fields {
 
 namespace {
 
 double between(const ValueAtom& a, const ValueAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
-    const double squared = dot(d, d);
-    if (!(squared > 0)) return a.measured && b.measured ? kernel.error * a.weight * b.weight : 0;
-    return a.weight * b.weight * kernel.of_squared(squared);
+    const double r2 = dot(d, d) + squared(a.lift, b.lift);
+    if (!(r2 > 0)) return a.measured && b.measured ? kernel.error * a.weight * b.weight : 0;
+    return a.weight * b.weight * kernel.of_squared(r2);
 }
 
 double between(const ValueAtom& a, const SlopeAtom& b) {
     const Vec3 d = minus(a.at, b.at);
-    return -3 * a.weight * length(d) * dot(d, b.along);
+    const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
+    return -3 * a.weight * r * (dot(d, b.along) + along(a.lift, b.lift, b.along_lift));
 }
 
 double between(const SlopeAtom& a, const SlopeAtom& b) {
     const Vec3 d = minus(a.at, b.at);
-    const double r = length(d);
+    const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
     if (!(r > 0)) return 0;
-    return -3 * (r * dot(a.along, b.along) + dot(d, a.along) * dot(d, b.along) / r);
+    return -3 * (r * (dot(a.along, b.along) + product(a.along_lift, b.along_lift)) +
+                 (dot(d, a.along) + along(a.lift, b.lift, a.along_lift)) *
+                     (dot(d, b.along) + along(a.lift, b.lift, b.along_lift)) / r);
+}
+
+Lift scaled(double factor, Lift lift) {
+    for (double& each : lift)
+        each *= factor;
+    return lift;
 }
 
 }  // namespace
 
-Functional Functional::mapped_by(const Map3& map) const {
+Functional Functional::mapped_by(const Map3& map, double lift) const {
     Functional out = *this;
-    for (ValueAtom& atom : out.values)
+    for (ValueAtom& atom : out.values) {
         atom.at = mapped(map, atom.at);
-    for (SlopeAtom& atom : out.slopes)
-        atom = {mapped(map, atom.at), mapped(map, atom.along)};
+        atom.lift = scaled(lift, std::move(atom.lift));
+    }
+    for (SlopeAtom& atom : out.slopes) {
+        atom = {mapped(map, atom.at), mapped(map, atom.along), scaled(lift, std::move(atom.lift)),
+                scaled(lift, std::move(atom.along_lift))};
+    }
     return out;
 }
 
@@ -44,6 +59,20 @@ Vec3 Functional::of_coordinates() const {
     return sum;
 }
 
+Lift Functional::of_lift() const {
+    Lift sum;
+    const auto add = [&](double weight, const Lift& lift) {
+        sum.resize(lift.size());
+        for (std::size_t k = 0; k < lift.size(); ++k)
+            sum[k] += weight * lift[k];
+    };
+    for (const ValueAtom& atom : values)
+        add(atom.weight, atom.lift);
+    for (const SlopeAtom& atom : slopes)
+        add(1, atom.along_lift);
+    return sum;
+}
+
 Functional Functional::by_differences(double step) const {
     Functional out = *this;
     out.slopes.clear();
@@ -51,8 +80,13 @@ Functional Functional::by_differences(double step) const {
         const double size = length(atom.along);
         const Vec3 ahead = times(step / size, atom.along);
         const double weight = size / (2 * step);
-        out.values.push_back({plus(atom.at, ahead), weight});
-        out.values.push_back({minus(atom.at, ahead), -weight});
+        Lift up = atom.lift, down = atom.lift;
+        for (std::size_t k = 0; k < up.size(); ++k) {
+            up[k] += step / size * atom.along_lift[k];
+            down[k] -= step / size * atom.along_lift[k];
+        }
+        out.values.push_back({plus(atom.at, ahead), weight, false, std::move(up)});
+        out.values.push_back({minus(atom.at, ahead), -weight, false, std::move(down)});
     }
     return out;
 }

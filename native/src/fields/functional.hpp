@@ -16,10 +16,37 @@ inline Vec3 mapped(const Map3& map, const Vec3& v) {
     return {dot(map[0], v), dot(map[1], v), dot(map[2], v)};
 }
 
+/// Further coordinates of a place: by these the two sides of a fault that dies out are apart
+/// (variably scaled kernels with discontinuities: De Marchi, Erb, Marchetti, Perracchione and
+/// Rossini 2020). Without such faults there are none.
+using Lift = std::vector<double>;
+
+inline double product(const Lift& a, const Lift& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        sum += a[k] * b[k];
+    return sum;
+}
+/// Of a - b.
+inline double squared(const Lift& a, const Lift& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum;
+}
+/// The product of a - b with a way.
+inline double along(const Lift& a, const Lift& b, const Lift& way) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        sum += (a[k] - b[k]) * way[k];
+    return sum;
+}
+
 struct ValueAtom {
     Vec3 at;
     double weight;
     bool measured = false;  ///< of the value as it was measured here, with its error
+    Lift lift{};
 };
 
 /// Of functions of which derivatives of one order are least, integrated over all of space, with the
@@ -38,6 +65,7 @@ struct Kernel {
 /// The derivative along a vector, which says its weight by its length.
 struct SlopeAtom {
     Vec3 at, along;
+    Lift lift{}, along_lift{};
 };
 
 /// What is known of a function f: a sum of values and of derivatives is `right`. The weights of
@@ -49,20 +77,24 @@ struct Functional {
     bool measured_slope = false;  ///< it has an error of its own
 
     /// f(at) - f(from), both measured
-    static Functional difference(const Vec3& at, const Vec3& from) {
-        return {{{at, 1.0, true}, {from, -1.0, true}}, {}, 0, false};
+    static Functional difference(const Vec3& at, const Vec3& from, const Lift& lift = {},
+                                 const Lift& from_lift = {}) {
+        return {{{at, 1.0, true, lift}, {from, -1.0, true, from_lift}}, {}, 0, false};
     }
     static Functional slope(const Vec3& at, const Vec3& along, bool measured = false) {
         return {{}, {{at, along}}, 0, measured};
     }
 
-    Functional mapped_by(const Map3& map) const;
+    /// @param lift  by how much further coordinates are scaled
+    Functional mapped_by(const Map3& map, double lift = 1) const;
     /// With differences of values, `step` to both sides, in the place of derivatives: what the
     /// kernel -r needs, whose functions have none at a point.
     Functional by_differences(double step) const;
 
     /// Of the three coordinates.
     Vec3 of_coordinates() const;
+    /// Of the further coordinates.
+    Lift of_lift() const;
 
     /// Of the kernel, in both of its arguments.
     double with(const Functional& other, const Kernel& kernel) const;

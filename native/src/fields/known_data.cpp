@@ -73,6 +73,52 @@ void KnownData::check(const Lattice& lattice) const {
                          -1, {static_cast<std::int64_t>(n)});
     }
     check_bounds();
+    check_slits(lattice);
+}
+
+void KnownData::check_slits(const Lattice& lattice) const {
+    const Slits& slits = data_.slits;
+    const auto all_finite = [](std::span<const double> of) {
+        return std::ranges::all_of(of, [](double each) { return std::isfinite(each); });
+    };
+    const std::size_t nodes = slits.sides * lattice.nodes();
+    const bool of_data = slits.contacts.size() == slits.count * data_.contacts.size() &&
+                         slits.dips.size() == slits.count * data_.dips.size() &&
+                         slits.dip_slopes.size() == 3 * slits.count * data_.dips.size() &&
+                         slits.bounds.size() == slits.count * data_.bounds.size();
+    const bool of_nodes =
+        slits.count == 0 ||
+        (slits.nodes.size() == slits.count * nodes && slits.same.size() == nodes &&
+         slits.bound_sides.size() == data_.bounds.size() && slits.sides > 0);
+    if (!of_data || !of_nodes || (slits.count == 0 && slits.sides != 1))
+        throw InputError("option", "each datum and node has a coordinate for each slit");
+    for (std::size_t n = 0; n < slits.same.size(); ++n) {
+        if (slits.same[n] < 0 || slits.same[n] > static_cast<std::int64_t>(n))
+            throw InputError("option", "a node is the same as one before it, or itself");
+    }
+    for (const std::int32_t side : slits.bound_sides) {
+        if (side < 0 || static_cast<std::size_t>(side) >= slits.sides)
+            throw InputError("option", "a bound is on one of the combinations of sides");
+    }
+    if (!all_finite(slits.contacts) || !all_finite(slits.dips) || !all_finite(slits.bounds) ||
+        !all_finite(slits.dip_slopes) || !all_finite(slits.nodes))
+        throw InputError("not_finite", "a coordinate of a slit is not finite");
+}
+
+/// The further coordinates of a datum.
+Lift KnownData::lift(std::span<const double> of, std::size_t n) const {
+    const std::span<const double> own = of.subspan(n * data_.slits.count, data_.slits.count);
+    return {own.begin(), own.end()};
+}
+
+/// The derivative of f along a vector at a dip.
+SlopeAtom KnownData::slope(std::size_t dip, const Vec3& along) const {
+    SlopeAtom out{frame_.to_local(data_.dips[dip]), along, lift(data_.slits.dips, dip), {}};
+    for (std::size_t k = 0; k < data_.slits.count; ++k) {
+        const double* const rise = &data_.slits.dip_slopes[3 * (dip * data_.slits.count + k)];
+        out.along_lift.push_back(frame_.unit * dot(along, {rise[0], rise[1], rise[2]}));
+    }
+    return out;
 }
 
 void KnownData::check_places(const Lattice& lattice, FieldData::Points points,
@@ -128,9 +174,9 @@ void KnownData::check_contradictions() const {
 void KnownData::add_dips() {
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         const Vec3& normal = data_.normals[n];
-        const Vec3 at = frame_.to_local(data_.dips[n]), first = perpendicular(normal);
-        planes_.push_back(Functional::slope(at, first, true));
-        planes_.push_back(Functional::slope(at, cross(normal, first), true));
+        const Vec3 first = perpendicular(normal);
+        for (const Vec3& along : {first, cross(normal, first)})
+            planes_.push_back({{}, {slope(n, along)}, 0, true});
     }
 }
 
@@ -142,7 +188,7 @@ Functional KnownData::mean_rise() const {
     Functional rise;
     const double share = 1 / static_cast<double>(data_.dips.size());
     for (std::size_t n = 0; n < data_.dips.size(); ++n)
-        rise.slopes.push_back({frame_.to_local(data_.dips[n]), times(share, data_.normals[n])});
+        rise.slopes.push_back(slope(n, times(share, data_.normals[n])));
     rise.right = 1;
     return rise;
 }
@@ -167,8 +213,7 @@ double KnownData::total_gap() const {
 std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
     std::vector<Functional> out = planes_;
     const auto add = [&](std::int32_t older, std::int32_t younger, double gap) {
-        out.push_back(
-            Functional::difference(contacts_[reference(younger)], contacts_[reference(older)]));
+        out.push_back(difference(reference(younger), reference(older)));
         out.back().right = gap;
     };
     if (data_.surfaces < 2) {
@@ -206,25 +251,28 @@ void KnownData::hold_tilts() {
 
 /// sign (f at a bound - the level of a surface)
 Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) const {
-    return {
-        {{frame_.to_local(data_.bounds[n]), sign}, {contacts_[reference(surface)], -sign, true}},
-        {},
-        0,
-        false};
+    const std::size_t contact = reference(surface);
+    return {{{frame_.to_local(data_.bounds[n]), sign, false, lift(data_.slits.bounds, n)},
+             {contacts_[contact], -sign, true, lift_of(contact)}},
+            {},
+            0,
+            false};
 }
 
 std::vector<Inequality> KnownData::inequalities() const {
     std::vector<Inequality> out;
     for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
-        const Vec3 &older = contacts_[reference(k)], &younger = contacts_[reference(k + 1)];
-        out.push_back({Functional::difference(younger, older),
-                       kLeastRise * total_gap() / data_.surfaces, Inequality::Kind::kOrder, k,
-                       younger});
+        const std::size_t younger = reference(k + 1);
+        out.push_back({difference(younger, reference(k)), kLeastRise * total_gap() / data_.surfaces,
+                       Inequality::Kind::kOrder, k, contacts_[younger]});
     }
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         const Vec3 at = frame_.to_local(data_.dips[n]);
-        out.push_back({Functional::slope(at, data_.normals[n]), kLeastRise,
-                       Inequality::Kind::kPolarity, static_cast<std::int64_t>(n), at});
+        out.push_back({{{}, {slope(n, data_.normals[n])}, 0, false},
+                       kLeastRise,
+                       Inequality::Kind::kPolarity,
+                       static_cast<std::int64_t>(n),
+                       at});
     }
     for (std::size_t n = 0; n < data_.bounds.size(); ++n) {
         const auto item = static_cast<std::int64_t>(n);

@@ -49,9 +49,15 @@ public:
     /// @param gaps  differences of the levels; none: only that of the first and the last is given
     std::vector<Functional> fixed(std::span<const double> gaps) const;
     Functional on_surface(std::size_t contact) const {
-        return Functional::difference(contacts_[contact],
-                                      contacts_[references_[surface_of(contact)]]);
+        return difference(contact, references_[surface_of(contact)]);
     }
+    /// Of f at two contacts.
+    Functional difference(std::size_t contact, std::size_t from) const {
+        return Functional::difference(contacts_[contact], contacts_[from], lift_of(contact),
+                                      lift_of(from));
+    }
+    /// The further coordinates of a contact.
+    Lift lift_of(std::size_t contact) const { return lift(data_.slits.contacts, contact); }
     /// Levels that rise, polarities and bounds.
     std::vector<Inequality> inequalities() const;
     /// About the distance of the first surface from the last.
@@ -61,11 +67,14 @@ private:
     void check(const Lattice& lattice) const;
     void check_places(const Lattice& lattice, FieldData::Points points, const char* what) const;
     void check_bounds() const;
+    void check_slits(const Lattice& lattice) const;
     void check_contradictions() const;
     void find_references();
     void add_dips();
     Functional mean_rise() const;
     void hold_tilts();
+    Lift lift(std::span<const double> of, std::size_t n) const;
+    SlopeAtom slope(std::size_t dip, const Vec3& along) const;
     Functional bound(std::size_t n, std::int32_t surface, double sign) const;
 
     FieldData data_;

@@ -25,13 +25,18 @@ struct Half {
 
 void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const char> kept,
                  std::span<const double> levels, std::vector<double>& values) {
+    const Slits& slits = data.slits;
     std::vector<Half> halves;
     for (std::size_t n = 0; n < data.bounds.size(); ++n) {
         if (kept[n] == 0) continue;
         Half half{};
         const auto corners = corners_at(lattice, data.bounds[n]);
+        const std::size_t first =
+            slits.count > 0 ? static_cast<std::size_t>(slits.bound_sides[n]) * lattice.nodes() : 0;
         for (std::size_t c = 0; c < 4; ++c) {
-            half.nodes[c] = corners[c].first;
+            half.nodes[c] = first + corners[c].first;
+            if (!slits.same.empty())
+                half.nodes[c] = static_cast<std::size_t>(slits.same[half.nodes[c]]);
             half.weights[c] = corners[c].second;
             half.square += half.weights[c] * half.weights[c];
         }

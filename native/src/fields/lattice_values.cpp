@@ -70,9 +70,9 @@ std::vector<double> refined(const std::vector<double>& from, Counts& counts, std
 std::vector<double> lattice_values(
     const Lattice& lattice,
     const std::function<void(std::span<const Vec3>, std::span<double>)>& values_at,
-    const Execution& execution) {
+    const Execution& execution, bool is_smooth) {
     Lattice sampled = lattice;
-    if (lattice.nodes() > kLarge) {
+    if (is_smooth && lattice.nodes() > kLarge) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (lattice.counts[axis] < kLeastCount) continue;
             sampled.spacing[axis] *= 2;

@@ -15,10 +15,11 @@ namespace realmodel::fields {
 /// every other node along each axis; between these by cubic polynomials, whose error is of a higher
 /// order in the spacing than that of functions linear on tetrahedra.
 /// @param values_at  gives the values at positions
+/// @param is_smooth  no: it is evaluated at all nodes
 std::vector<double> lattice_values(
     const Lattice& lattice,
     const std::function<void(std::span<const Vec3>, std::span<double>)>& values_at,
-    const Execution& execution);
+    const Execution& execution, bool is_smooth = true);
 
 /// Between nodes a linear function lies above one that bends upward, and below one that bends
 /// downward: its level sets lie within folds. Node values from which the mean of this error over

@@ -12,7 +12,9 @@ namespace realmodel::fields {
 namespace {
 
 // Added to the kernel as products of coordinates: it changes nothing, since forces have no moment,
-// and makes the matrix positive definite.
+// and makes the matrix positive definite. Of further coordinates forces have moments: across a
+// fault that dies out a jump is not for free, or it would be anything where there are data on one
+// side only.
 constexpr double kProducts = 100;
 // Of a row's variance: what the rows before it leave of a row that follows from them.
 constexpr double kRedundant = 1e-13;
@@ -26,7 +28,7 @@ Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
     assert(smoothness.order == 2 || smoothness.order == 3);
     known_.reserve(known.size());
     for (const Functional& f : known)
-        known_.push_back(f.mapped_by(smoothness.map));
+        known_.push_back(f.mapped_by(smoothness.map, smoothness.lift));
     factor(execution);
     solve(execution);
     collect_centers();
@@ -43,16 +45,20 @@ void Spline::set_right(std::span<const Functional> known) {
 void Spline::factor(const Execution& execution) {
     const auto n = static_cast<Eigen::Index>(known_.size());
     Eigen::MatrixXd terms(n, 3);
+    std::vector<Lift> lifts(known_.size());
     for (Eigen::Index i = 0; i < n; ++i) {
         const Vec3 of = known_[i].of_coordinates();
         terms.row(i) << of[0], of[1], of[2];
+        lifts[static_cast<std::size_t>(i)] = known_[i].of_lift();
     }
     const Kernel kernel = smoothness_.kernel();
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
         const double error = i == j && known_[i].measured_slope ? smoothness_.errors.slope : 0;
         return known_[i].with(known_[j], kernel) + error +
                kProducts * (terms(i, 0) * terms(j, 0) + terms(i, 1) * terms(j, 1) +
-                            terms(i, 2) * terms(j, 2));
+                            terms(i, 2) * terms(j, 2) +
+                            product(lifts[static_cast<std::size_t>(i)],
+                                    lifts[static_cast<std::size_t>(j)]));
     };
     scales_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -145,42 +151,62 @@ void Spline::collect_centers() {
     value_centers_.clear();
     slope_centers_.clear();
     measured_.clear();
-    std::map<Vec3, double> values;
-    std::map<Vec3, Vec3> slopes;
+    lift_tilt_.clear();
+    std::map<Place, double> values;
+    std::map<Place, Place> slopes;
+    const auto add = [](Lift& sum, double weight, const Lift& lift) {
+        sum.resize(lift.size());
+        for (std::size_t k = 0; k < lift.size(); ++k)
+            sum[k] += weight * lift[k];
+    };
     for (std::size_t i = 0; i < known_.size(); ++i) {
         for (const ValueAtom& atom : known_[i].values) {
-            values[atom.at] += forces_[i] * atom.weight;
-            if (atom.measured) measured_[atom.at] += forces_[i] * atom.weight;
+            values[{atom.at, atom.lift}] += forces_[i] * atom.weight;
+            if (atom.measured) measured_[{atom.at, atom.lift}] += forces_[i] * atom.weight;
         }
         // the kernel -r has no derivatives at its center
         assert(smoothness_.order == 3 || known_[i].slopes.empty());
         for (const SlopeAtom& atom : known_[i].slopes) {
-            Vec3& sum = slopes[atom.at];
-            sum = moved(sum, forces_[i], atom.along);
+            auto& [along, up] = slopes[{atom.at, atom.lift}];
+            along = moved(along, forces_[i], atom.along);
+            add(up, forces_[i], atom.along_lift);
         }
+        add(lift_tilt_, kProducts * forces_[i], known_[i].of_lift());
     }
-    for (const auto& [at, weight] : values)
-        value_centers_.push_back({at, weight, false});
-    for (const auto& [at, along] : slopes)
-        slope_centers_.push_back({at, along});
+    for (const auto& [place, weight] : values)
+        value_centers_.push_back({place.first, weight, false, place.second});
+    for (const auto& [place, along] : slopes)
+        slope_centers_.push_back({place.first, along.first, place.second, along.second});
 }
 
-double Spline::value(const Vec3& at) const {
+Lift Spline::scaled(const Lift& lift) const {
+    Lift out = lift;
+    for (double& each : out)
+        each *= smoothness_.lift;
+    return out;
+}
+
+double Spline::value(const Vec3& at, const Lift& lift) const {
     const Vec3 p = mapped(smoothness_.map, at);
-    double sum = dot(tilt_, p);
+    const Lift q = scaled(lift);
+    double sum = dot(tilt_, p) + product(q, lift_tilt_);
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        sum += atom.weight * smoothness_.kernel().of_squared(dot(d, d));
+        sum += atom.weight * smoothness_.kernel().of_squared(dot(d, d) + squared(q, atom.lift));
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
-        sum -= 3 * length(d) * dot(d, atom.along);
+        sum -= 3 * std::sqrt(dot(d, d) + squared(q, atom.lift)) *
+               (dot(d, atom.along) + along(q, atom.lift, atom.along_lift));
     }
     return sum;
 }
 
-void Spline::values_at(std::span<const Vec3> positions, std::span<double> values) const {
+void Spline::values_at(std::span<const Vec3> positions, std::span<const double> lifts,
+                       std::span<double> values) const {
     using Lanes = Eigen::Array<double, kBlock, 1>;
+    const std::size_t further = positions.empty() ? 0 : lifts.size() / positions.size();
+    std::vector<Lanes> up(further, Lanes::Zero());
     for (std::size_t first = 0; first < positions.size(); first += kBlock) {
         const std::size_t count = std::min<std::size_t>(kBlock, positions.size() - first);
         Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
@@ -189,11 +215,17 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<double> values
             x(n) = p[0];
             y(n) = p[1];
             z(n) = p[2];
+            for (std::size_t k = 0; k < further; ++k)
+                up[k](n) = smoothness_.lift * lifts[(first + n) * further + k];
         }
         Lanes sum = tilt_[0] * x + tilt_[1] * y + tilt_[2] * z;
+        for (std::size_t k = 0; k < further; ++k)
+            sum += lift_tilt_[k] * up[k];
         for (const ValueAtom& atom : value_centers_) {
-            const Lanes squared =
+            Lanes squared =
                 (x - atom.at[0]).square() + (y - atom.at[1]).square() + (z - atom.at[2]).square();
+            for (std::size_t k = 0; k < further; ++k)
+                squared += (up[k] - atom.lift[k]).square();
             if (smoothness_.order == 2)
                 sum -= atom.weight * squared.sqrt();
             else
@@ -201,27 +233,49 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<double> values
         }
         for (const SlopeAtom& atom : slope_centers_) {
             const Lanes dx = x - atom.at[0], dy = y - atom.at[1], dz = z - atom.at[2];
-            sum -= (dx.square() + dy.square() + dz.square()).sqrt() *
-                   (dx * (3 * atom.along[0]) + dy * (3 * atom.along[1]) + dz * (3 * atom.along[2]));
+            Lanes squared = dx.square() + dy.square() + dz.square();
+            Lanes rise =
+                dx * (3 * atom.along[0]) + dy * (3 * atom.along[1]) + dz * (3 * atom.along[2]);
+            for (std::size_t k = 0; k < further; ++k) {
+                const Lanes dk = up[k] - atom.lift[k];
+                squared += dk.square();
+                rise += dk * (3 * atom.along_lift[k]);
+            }
+            sum -= squared.sqrt() * rise;
         }
         std::copy_n(sum.data(), count, values.data() + first);
     }
 }
 
-Vec3 Spline::gradient(const Vec3& at) const {
+std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
     const Vec3 p = mapped(smoothness_.map, at);
+    const Lift q = scaled(lift);
     Vec3 sum = tilt_;
+    Lift rise = q.empty() ? Lift{} : lift_tilt_;
+    const auto add = [&](double weight, const Vec3& d, const Lift& from) {
+        sum = moved(sum, weight, d);
+        for (std::size_t k = 0; k < rise.size(); ++k)
+            rise[k] += weight * (q[k] - from[k]);
+    };
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        const double r = length(d);
-        if (r > 0) sum = moved(sum, atom.weight * (smoothness_.order == 2 ? -1 / r : 3 * r), d);
+        const double r = std::sqrt(dot(d, d) + squared(q, atom.lift));
+        if (r > 0) add(atom.weight * (smoothness_.order == 2 ? -1 / r : 3 * r), d, atom.lift);
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
-        const double r = length(d);
-        if (r > 0) sum = moved(sum, -3 * dot(d, atom.along) / r, d);
+        const double r = std::sqrt(dot(d, d) + squared(q, atom.lift));
+        if (r > 0)
+            add(-3 * (dot(d, atom.along) + along(q, atom.lift, atom.along_lift)) / r, d, atom.lift);
         sum = moved(sum, -3 * r, atom.along);
+        for (std::size_t k = 0; k < rise.size(); ++k)
+            rise[k] -= 3 * r * atom.along_lift[k];
     }
+    return {sum, rise};
+}
+
+Vec3 Spline::gradient(const Vec3& at, const Lift& lift) const {
+    const Vec3 sum = mapped_gradient(at, lift).first;
     Vec3 out{};  // by the transposed map
     for (std::size_t row = 0; row < 3; ++row)
         out = moved(out, sum[row], smoothness_.map[row]);
@@ -229,19 +283,22 @@ Vec3 Spline::gradient(const Vec3& at) const {
 }
 
 /// By how much what was measured differs from the function.
-double Spline::error_at(const Vec3& at) const {
-    const auto found = measured_.find(mapped(smoothness_.map, at));
+double Spline::error_at(const Vec3& at, const Lift& lift) const {
+    const auto found = measured_.find({mapped(smoothness_.map, at), scaled(lift)});
     return found == measured_.end() ? 0 : smoothness_.errors.value * found->second;
 }
 
 double Spline::of(const Functional& functional) const {
     double sum = 0;
     for (const ValueAtom& atom : functional.values) {
-        sum += atom.weight * value(atom.at);
-        if (atom.measured) sum += atom.weight * error_at(atom.at);
+        sum += atom.weight * value(atom.at, atom.lift);
+        if (atom.measured) sum += atom.weight * error_at(atom.at, atom.lift);
     }
-    for (const SlopeAtom& atom : functional.slopes)
-        sum += dot(gradient(atom.at), atom.along);
+    for (const SlopeAtom& atom : functional.slopes) {
+        const auto [rise, up] = mapped_gradient(atom.at, atom.lift);
+        sum +=
+            dot(rise, mapped(smoothness_.map, atom.along)) + product(up, scaled(atom.along_lift));
+    }
     return sum;
 }
 

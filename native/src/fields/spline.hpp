@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "fields/functional.hpp"
@@ -22,7 +23,8 @@ struct Errors {
 struct Smoothness {
     Map3 map{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< of space: it bends less along some directions
     Errors errors{};
-    int order = 3;  ///< of the derivatives that are least: 2 (no slopes are known), or 3
+    int order = 3;    ///< of the derivatives that are least: 2 (no slopes are known), or 3
+    double lift = 1;  ///< of further coordinates
 
     Kernel kernel() const { return {order, errors.value}; }
 };
@@ -54,8 +56,9 @@ public:
     /// Whether a functional follows from those before it, and was left out.
     bool left_out(std::size_t functional) const;
 
-    double value(const Vec3& at) const;
-    Vec3 gradient(const Vec3& at) const;
+    double value(const Vec3& at, const Lift& lift = {}) const;
+    /// Where further coordinates do not change.
+    Vec3 gradient(const Vec3& at, const Lift& lift = {}) const;
     /// With the errors of measured values.
     double of(const Functional& functional) const;
     /// How much the function bends.
@@ -64,13 +67,20 @@ public:
     double scale() const;
 
     /// The same as value() of each, faster.
-    void values_at(std::span<const Vec3> positions, std::span<double> values) const;
+    /// @param lifts  further coordinates, those of one position together
+    void values_at(std::span<const Vec3> positions, std::span<const double> lifts,
+                   std::span<double> values) const;
 
 private:
+    using Place = std::pair<Vec3, Lift>;
+
     void factor(const Execution& execution);
     void solve(const Execution& execution);
     void collect_centers();
-    double error_at(const Vec3& at) const;
+    /// The gradient in the mapped coordinates, with the derivatives by the further ones.
+    std::pair<Vec3, Lift> mapped_gradient(const Vec3& at, const Lift& lift) const;
+    Lift scaled(const Lift& lift) const;
+    double error_at(const Vec3& at, const Lift& lift) const;
 
     Smoothness smoothness_;
     std::vector<Functional> known_;  // mapped
@@ -81,7 +91,8 @@ private:
     double coordinates_log_determinant_ = 0;
     std::vector<double> forces_;
     Vec3 tilt_{};
-    std::map<Vec3, double> measured_;  // weights of measured values
+    std::map<Place, double> measured_;  // weights of measured values
+    Lift lift_tilt_;                    // what the products of further coordinates amount to
     std::vector<ValueAtom> value_centers_;
     std::vector<SlopeAtom> slope_centers_;
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -110,10 +111,59 @@ TEST(Spline, ManyValuesAtOnceAreThoseOfEach) {
         for (int n = 0; n < 150; ++n)
             at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
         std::vector<double> values(at.size());
-        spline.values_at(at, values);
+        spline.values_at(at, {}, values);
         for (std::size_t n = 0; n < at.size(); ++n)
             EXPECT_NEAR(values[n], spline.value(at[n]), 1e-12);
     }
+}
+
+/// A slope, and values on both sides of a slit at x = 0 that dies out at y = 0: z, and z + 1 where
+/// x > 0 as far as it is open.
+std::vector<Functional> beside_a_slit() {
+    const auto lift = [](const Vec3& p) {
+        return Lift{(p[0] > 0 ? 0.5 : -0.5) * std::max(0.0, -p[1])};
+    };
+    const Vec3 from{0.5, 0.5, 0};
+    std::vector<Functional> known;
+    for (int n = 0; n < 120; ++n) {
+        const Vec3 at{n % 2 == 0 ? 0.05 : -0.05, 0.2 * (n / 2 % 10) - 1, 0.3 * (n / 20) - 0.8};
+        known.push_back(Functional::difference(at, from, lift(at), lift(from)));
+        known.back().right = at[2] + lift(at)[0];
+    }
+    for (const Vec3& along : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
+        known.push_back({{}, {{{0.3, -0.5, 0}, along, {0.25}, {-0.5 * along[1]}}}, 0, false});
+        known.back().right = known.back().slopes[0].along_lift[0];
+    }
+    return known;
+}
+
+TEST(Spline, BesideASlitBothSidesAreMet) {
+    const std::vector<Functional> known = beside_a_slit();
+    const std::vector<Functional> differences = by_differences(known);
+    Smoothness second = rough(kStretched);
+    second.lift = 2;
+    for (const Spline& spline :
+         {Spline(known, {kStretched, {}, 3, 2}, {}), Spline(differences, second, {})}) {
+        for (const Functional& functional : known) {
+            if (functional.slopes.empty())
+                EXPECT_NEAR(spline.of(functional), functional.right, 1e-8);
+        }
+        // across the open part it jumps, between data, too
+        const double jump =
+            spline.value({0.01, -0.5, 0.15}, {0.25}) - spline.value({-0.01, -0.5, 0.15}, {-0.25});
+        EXPECT_NEAR(jump, 0.5, 0.05);
+    }
+    const Spline spline(known, {kStretched, {}, 3, 2}, {});
+    for (const Functional& functional : known)
+        EXPECT_NEAR(spline.of(functional), functional.right, 1e-8);
+    EXPECT_TRUE(spline.log_likelihood().has_value());
+    const std::vector<Vec3> at{{0.1, -0.2, 0.3}, {-0.4, 0.1, 0}};
+    std::vector<double> values(2);
+    spline.values_at(at, std::array{0.1, -0.3}, values);
+    for (std::size_t n = 0; n < 2; ++n)
+        EXPECT_NEAR(values[n], spline.value(at[n], {n == 0 ? 0.1 : -0.3}), 1e-12);
+    const Functional beyond = Functional::difference({0.2, 1, 0}, {-0.2, 1, 0}, {0}, {0});
+    EXPECT_NEAR(spline.of(beyond), 0, 0.05);
 }
 
 TEST(Spline, BetweenAStepASecondOrderOvershootsLess) {

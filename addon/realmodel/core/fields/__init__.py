@@ -6,16 +6,26 @@ tetrahedron of the lattice, and the level of each surface.
 """
 
 from .lattice import Lattice, ScalarField, rises
-from .level_sets import are_on, level_solids, with_contacts, within_lattice
-from .solve import Anisotropy, LevelSetData, SolvedField, solve_field
+from .level_sets import (
+    SharedCorners,
+    are_on,
+    fields_with_contacts,
+    level_solids,
+    with_contacts,
+    within_lattice,
+)
+from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
 
 __all__ = [
     "Anisotropy",
     "Lattice",
     "LevelSetData",
     "ScalarField",
+    "SharedCorners",
+    "SlitData",
     "SolvedField",
     "are_on",
+    "fields_with_contacts",
     "level_solids",
     "rises",
     "solve_field",

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -24,65 +25,178 @@ _LEAST = 2.0**-10  # of the edges of the lattice: shorter ones are not halved
 _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss its level by
 
 
+@dataclass(frozen=True, eq=False)
+class SharedCorners:
+    """What fields of one lattice have in common, each being one function on its side of faults that die out.
+
+    same: (F, nodes) int64: field * nodes + node of the first field that has the same node. has: (F, C) bool:
+    the fields of which each contact is a corner.
+    """
+
+    same: np.ndarray
+    has: np.ndarray
+
+    @classmethod
+    def of_one(cls, nodes: int, contacts: int) -> SharedCorners:
+        """There is one field."""
+        return cls(np.arange(nodes)[None], np.ones((1, contacts), bool))
+
+    def have(self, corners: np.ndarray, middles: np.ndarray) -> np.ndarray:
+        """(F, N) bool: the fields that have corners (N,): nodes as `same` counts them, then the middles of
+        edges, which the fields (F, M) have."""
+        nodes = self.same.size
+        is_node = corners < nodes
+        of_nodes = self.same[:, np.where(is_node, corners, 0) % self.same.shape[1]] == corners
+        of_middles = np.zeros_like(of_nodes)
+        of_middles[:, ~is_node] = middles[:, corners[~is_node] - nodes]
+        return np.where(is_node, of_nodes, of_middles)
+
+
 def with_contacts(work: Work, field: _Field, contacts: np.ndarray, surfaces: np.ndarray) -> _Field:
-    """The field with contacts (C, 3) as corners of tetrahedra, at which it has the level of their surfaces
-    (C,) exactly. Before that its values are moved as little as they must be for it to have these levels there
-    nearly: a corner alone would be a peak beside its surface where that passes another tetrahedron. Where
-    contacts are denser than nodes, so that it cannot have them all, tetrahedra are halved along their longest
-    edges (M. C. Rivara 1984) until it can. Nodes on a level but for next to nothing are moved onto it."""
-    levels = field.levels[surfaces]
-    contacts = np.ascontiguousarray(contacts, np.float64)
-    middles, at_middles = np.empty((0, 3)), np.empty(0)
+    """One field through all contacts: see `fields_with_contacts`."""
+    shared = SharedCorners.of_one(field.lattice.nodes, len(contacts))
+    return fields_with_contacts(work, [field], contacts, surfaces, shared)[0]
+
+
+def fields_with_contacts(
+    work: Work, fields: Sequence[_Field], contacts: np.ndarray, surfaces: np.ndarray, shared: SharedCorners
+) -> list[_Field]:
+    """Fields of one lattice with contacts (C, 3) as corners of tetrahedra, at which they have the level of
+    their surfaces (C,) exactly. Before that their values are moved as little as they must be to have these
+    levels there nearly: a corner alone would be a peak beside its surface where that passes another
+    tetrahedron. Where contacts are denser than nodes, so that it cannot have them all, tetrahedra are halved
+    along their longest edges (M. C. Rivara 1984) until it can. Nodes on a level but for next to nothing are
+    moved onto it. What fields share stays the same in them."""
+    levels = fields[0].levels[surfaces]
+    made = _Joined(work, fields, np.ascontiguousarray(contacts, np.float64), shared)
     for left in reversed(range(_REFINEMENTS)):
-        given = np.concatenate([field.values, at_middles])
-        lattice, values, own = replace(field, points=middles, point_values=at_middles).native()
-        corners, weights = work.native(native_module().tetrahedra_at, lattice, values, own, contacts)
+        corners, weights = made.tetrahedra()
+        given = made.values
         missed = [np.abs(_through(given, corners, weights, levels, rounds)[1]) for rounds in (0, 1)]
         off = (missed[1] > _BESIDE * np.ptp(given[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
-        ends = _halved(field, middles, corners[off])
+        ends = made.halved(corners[off])
         if not len(ends):
             found, _ = _through(given, corners, weights, levels, _ROUNDS)
-            made = _as_corners(field, found, np.concatenate([middles, contacts]), levels)
-            lattice, values, own = made.native()
-            passed = work.native(native_module().points_between, lattice, values, own)
-            ends = _halved(field, middles, corners[passed[len(middles) :] == 0])
-        places = np.concatenate([middles, _positions(field, middles, ends).mean(axis=1)])
-        new = np.sort(np.unique(places, axis=0, return_index=True)[1])
-        if left == 0 or len(new) == len(middles):
+            ends = made.halved(corners[made.missed(made.fields_through(found, levels))])
+        if left == 0 or not made.add_middles(ends):
             break
-        middles, at_middles = places[new], np.concatenate([at_middles, given[ends].mean(axis=1)])[new]
-    found, _ = _through(given, corners, weights, levels, _ROUNDS)
-    return _as_corners(field, found, np.concatenate([middles, contacts]), levels)
+    corners, weights = made.tetrahedra()
+    found, _ = _through(made.values, corners, weights, levels, _ROUNDS)
+    return made.fields_through(found, levels)
 
 
-def _as_corners(field: _Field, values: np.ndarray, points: np.ndarray, levels: np.ndarray) -> _Field:
-    """A field with values at nodes, then at the first of some points, and levels at the others."""
-    lattice, _, _ = field.native()
-    nodes, own = np.split(values, [len(field.values)])
-    nodes = native_module().moved_onto_levels(lattice, nodes, field.levels)
-    return replace(field, values=nodes, points=points, point_values=np.concatenate([own, levels]))
+class _Joined:
+    """Fields of one lattice with the middles of halved edges, as one array of values: of all nodes, as
+    `SharedCorners` counts them, then of the middles (M, 3), which are corners of the fields `of_middles` (F,
+    M)."""
 
+    def __init__(
+        self, work: Work, fields: Sequence[ScalarField], contacts: np.ndarray, shared: SharedCorners
+    ):
+        self.work, self.fields, self.contacts, self.shared = work, fields, contacts, shared
+        self.values = np.concatenate([field.values for field in fields])
+        self.middles = np.empty((0, 3))
+        self.of_middles = np.empty((len(fields), 0), bool)
 
-def _positions(field: ScalarField, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(..., 3) of corners: nodes, and points (P, 3) counted after all nodes."""
-    lattice = field.lattice
-    steps = np.stack(
-        [corners // stride % count for stride, count in zip(lattice.strides, lattice.counts, strict=True)], -1
-    )
-    found = lattice.origin + np.multiply(lattice.spacing, steps)
-    is_point = corners >= lattice.nodes
-    found[is_point] = points[corners[is_point] - lattice.nodes]
-    return found
+    def _numbers(self, field: int) -> np.ndarray:
+        """Where the corners of a field, nodes and then middles, are in the array of all values."""
+        own = self.shared.same.size + np.flatnonzero(self.of_middles[field])
+        return np.concatenate([self.shared.same[field], own])
 
+    def tetrahedra(self) -> tuple[np.ndarray, np.ndarray]:
+        """(C, 4) the corners of the tetrahedra of the contacts, by their places in the array, and the weights
+        of these; each contact in the first field that has it."""
+        corners = np.empty((len(self.contacts), 4), np.int64)
+        weights = np.empty((len(self.contacts), 4))
+        first = self.shared.has.argmax(axis=0)
+        for number, field in enumerate(self.fields):
+            numbers = self._numbers(number)
+            own, here = numbers[field.lattice.nodes :], np.flatnonzero(first == number)
+            at = replace(
+                field,
+                values=self.values[numbers[: field.lattice.nodes]],
+                points=self.middles[self.of_middles[number]],
+                point_values=self.values[own],
+            )
+            lattice, values, points = at.native()
+            found = self.work.native(
+                native_module().tetrahedra_at, lattice, values, points, self.contacts[here]
+            )
+            corners[here], weights[here] = numbers[found[0]], found[1]
+        return corners, weights
 
-def _halved(field: ScalarField, points: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
-    """(N, 2) the ends of the longest edges of tetrahedra (T, 4), each once, but of those that are small."""
-    edges = tetrahedra[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]
-    ends = _positions(field, points, edges)
-    length = norm(ends[:, :, 1] - ends[:, :, 0])
-    longest = edges[np.arange(len(edges)), length.argmax(axis=1)]
-    large = length.max(axis=1, initial=0.0) > _LEAST * max(field.lattice.spacing)
-    return np.unique(np.sort(longest[large], axis=1), axis=0)
+    def fields_through(self, values: np.ndarray, levels: np.ndarray) -> list:
+        """The fields with these values, and contacts with levels (C,) as corners. A node that fields share is
+        moved onto a level as the first of them has it."""
+        nodes, found = self.fields[0].lattice.nodes, []
+        moved = np.empty(self.shared.same.size)
+        for number, field in enumerate(self.fields):
+            numbers = self._numbers(number)
+            has = self.shared.has[number]
+            lattice, _, _ = field.native()
+            own = values[numbers[:nodes]]
+            moved[number * nodes :][:nodes] = native_module().moved_onto_levels(lattice, own, field.levels)
+            found.append(
+                replace(
+                    field,
+                    values=moved[self.shared.same[number]],
+                    points=np.concatenate([self.middles[self.of_middles[number]], self.contacts[has]]),
+                    point_values=np.concatenate([values[numbers[nodes:]], levels[has]]),
+                )
+            )
+        return found
+
+    def missed(self, fields: list) -> np.ndarray:
+        """(C,) bool: the contacts that the level sets of some field do not pass through."""
+        found = np.zeros(len(self.contacts), bool)
+        for number, field in enumerate(fields):
+            lattice, values, points = field.native()
+            passed = self.work.native(native_module().points_between, lattice, values, points)
+            own = np.flatnonzero(self.shared.has[number])
+            found[own] |= passed[len(passed) - len(own) :] == 0
+        return found
+
+    def halved(self, tetrahedra: np.ndarray) -> np.ndarray:
+        """(N, 2) the ends of the longest edges of tetrahedra (T, 4), each once, but of those that are
+        small."""
+        edges = tetrahedra[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]
+        ends = self._positions(edges)
+        length = norm(ends[:, :, 1] - ends[:, :, 0])
+        longest = edges[np.arange(len(edges)), length.argmax(axis=1)]
+        large = length.max(axis=1, initial=0.0) > _LEAST * max(self.fields[0].lattice.spacing)
+        return np.unique(np.sort(longest[large], axis=1), axis=0)
+
+    def add_middles(self, ends: np.ndarray) -> bool:
+        """Makes the middles of edges (N, 2) corners of all fields that have both ends. False where all are
+        there already."""
+        have = self.shared.have(ends.ravel(), self.of_middles).reshape(len(self.fields), -1, 2).all(axis=2)
+        middles = np.concatenate([self.middles, self._positions(ends).mean(axis=1)])
+        of_middles = np.concatenate([self.of_middles, have], axis=1)
+        for own in of_middles:  # of two in one place a field has the first
+            here = np.flatnonzero(own)
+            own[here] = False
+            own[here[np.unique(middles[here], axis=0, return_index=True)[1]]] = True
+        used = of_middles.any(axis=0)
+        if used.sum() == len(self.middles):
+            return False
+        values = np.concatenate([self.values, self.values[ends].mean(axis=1)])
+        nodes = self.shared.same.size
+        self.values = np.concatenate([values[:nodes], values[nodes:][used]])
+        self.middles, self.of_middles = middles[used], of_middles[:, used]
+        return True
+
+    def _positions(self, corners: np.ndarray) -> np.ndarray:
+        """(..., 3) of corners: nodes and middles by their places in the array."""
+        lattice = self.fields[0].lattice
+        nodes = corners % lattice.nodes
+        steps = np.stack(
+            [nodes // stride % count for stride, count in zip(lattice.strides, lattice.counts, strict=True)],
+            -1,
+        )
+        found = lattice.origin + np.multiply(lattice.spacing, steps)
+        is_middle = corners >= self.shared.same.size
+        found[is_middle] = self.middles[corners[is_middle] - self.shared.same.size]
+        return found
 
 
 def _through(

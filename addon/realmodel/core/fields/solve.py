@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,13 +22,45 @@ def _item(kind: str, row: int) -> str:
 
 
 @dataclass(frozen=True, eq=False)
+class SlitData:
+    """Faults that die out: each gives places one more coordinate, which jumps across it, so that the field
+    may differ on its two sides and is one function around its tips.
+
+    contacts (N, F), dips (M, F), bounds (B, F): the coordinates of data. slopes: (M, F, 3) how they rise at
+    dips. nodes: (S, nodes, F) those of a lattice's nodes, on each combination of sides as if the faults were
+    not there. same: (S, nodes) int64: combination * nodes + node of the first combination that has the same
+    coordinates there by being beyond tips. bound_sides: (B,) int32 the combination that each bound is on.
+    """
+
+    contacts: np.ndarray
+    dips: np.ndarray
+    bounds: np.ndarray
+    slopes: np.ndarray
+    nodes: np.ndarray
+    same: np.ndarray
+    bound_sides: np.ndarray
+
+    def native(self) -> tuple:
+        """The argument of the native module."""
+        sides, _, count = self.nodes.shape
+        arrays = (self.contacts, self.dips, self.bounds, self.slopes, self.nodes)
+        return (
+            count,
+            sides,
+            *(np.ascontiguousarray(each, np.float64).ravel() for each in arrays),
+            self.same.ravel(),
+            self.bound_sides,
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class LevelSetData:
     """What is known of a field whose level sets are surfaces, oldest first.
 
     names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
     points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
     points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
-    item: names a datum in errors, from "contact", "dip" or "bound" and its row.
+    slits: faults that die out. item: names a datum in errors, from "contact", "dip" or "bound" and its row.
     """
 
     names: Sequence[str]
@@ -39,6 +71,7 @@ class LevelSetData:
     bounds: np.ndarray = field(default_factory=_NO_POINTS.copy)
     bound_below: np.ndarray = field(default_factory=_NO_NUMBERS.copy)
     bound_above: np.ndarray = field(default_factory=_NO_NUMBERS.copy)
+    slits: SlitData | None = None
     item: Callable[[str, int], str] = _item
 
 
@@ -55,8 +88,8 @@ class Anisotropy:
 class SolvedField(ScalarField):
     """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
     2 where surfaces are rough; how many contacts carry the field; the largest distance of a contact from its
-    surface, nearly; rows of the dips and bounds that contradict other data and do not hold; and where the
-    field has critical points inside, (C, 3)."""
+    surface, nearly; rows of the dips and bounds that contradict other data and do not hold; where the field
+    has critical points inside, (C, 3); and the fields on the other combinations of sides of slits."""
 
     anisotropy: Anisotropy
     order: int
@@ -65,6 +98,7 @@ class SolvedField(ScalarField):
     dips_missed: np.ndarray
     bounds_missed: np.ndarray
     critical_points: np.ndarray
+    others: tuple[SolvedField, ...] = ()
 
 
 def solve_field(
@@ -95,13 +129,18 @@ def solve_field(
                     MOST_CENTERS,
                     None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
                 ),
+                None if data.slits is None else data.slits.native(),
             )
+        every = found["values"].reshape(-1, lattice.nodes)
         with work.phase(0.95, 1.0, "critical points of the field"):
-            nodes, _ = work.native(native.critical_points, of_lattice, found["values"])
+            points = [
+                lattice.positions()[work.native(native.critical_points, of_lattice, values)[0]]
+                for values in every
+            ]
     axes, ratios = found["anisotropy"]
-    return SolvedField(
+    first = SolvedField(
         lattice=lattice,
-        values=found["values"],
+        values=every[0],
         levels=found["levels"],
         anisotropy=Anisotropy(tuple(map(tuple, axes)), tuple(ratios)),
         order=found["order"],
@@ -109,7 +148,12 @@ def solve_field(
         misfit=found["misfit"],
         dips_missed=found["dips_missed"],
         bounds_missed=found["bounds_missed"],
-        critical_points=lattice.positions()[nodes],
+        critical_points=points[0],
+    )
+    others = zip(every[1:], points[1:], strict=True)
+    return replace(
+        first,
+        others=tuple(replace(first, values=values, critical_points=own) for values, own in others),
     )
 
 

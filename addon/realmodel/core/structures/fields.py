@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,9 +16,9 @@ from ..fields import (
     Lattice,
     ScalarField,
     SolvedField,
+    fields_with_contacts,
     level_solids,
     solve_field,
-    with_contacts,
     within_lattice,
 )
 from ..fields.series_field import SeriesField
@@ -38,6 +39,7 @@ from .parts.part_models import level
 from .series_data import SeriesData
 from .sheets.families import Family, families
 from .sheets.within import Within
+from .slits import Slits
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above it all rock ends
 _CELLS = 50_000  # of the lattice, about, where its resolution is automatic
@@ -114,42 +116,67 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     critical = [np.empty((0, 3))]
     for family in work.share_out(_families(entry, series, numbers)):
         within = Within(work, structure, numbers[-1], family)
-        own = data.some(within.has(sides))
-        if lacks := own.missing(data):
-            own = data
+        chosen = within.has(sides)
+        if lacks := data.some(chosen).missing(data):
+            chosen = np.ones(len(sides), bool)
             warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
+        own = data.some(chosen)
         with naming(f"{entry.rock.item}, {series.item}"):
-            field = solve_field(lattice, own.level_set_data(), work)
+            slits = Slits.of(entry, family, within, lattice)
+            where = slits.numbers(sides[chosen])
+            parts = [own.contacts, own.dips, own.bounds]
+            field = solve_field(lattice, own.level_set_data(slits.data(work, parts, where)), work)
         leave_out(entry, series, own, field.bounds_missed)
-        points = field.critical_points
-        critical.append(points[within(points)])
-        made = _through_data(work, entry, series, own.without_bounds(field.bounds_missed), field)
-        fields |= dict.fromkeys(family.members, made)
+        solved = [field, *field.others]
+        for number, each in enumerate(solved):
+            points = each.critical_points
+            own_sides = sides_of(work, points, structure.faults)
+            critical.append(points[within.has(own_sides) & (slits.numbers(own_sides) == number)])
+        kept = own.kept_rows(field.bounds_missed)
+        made = _through_data(work, entry, series, own.some(kept), _Solved(solved, slits, where[kept]))
+        for each, members_of in zip(made, slits.members, strict=True):
+            fields |= dict.fromkeys(members_of, each)
     points = np.concatenate(critical)
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
 
 
+class _Solved(NamedTuple):
+    """The fields on the combinations of sides of slits; where: (N,) the combination that each datum is on."""
+
+    fields: list[SolvedField]
+    slits: Slits
+    where: np.ndarray
+
+
 def _through_data(
-    work: Work, entry: RockInput, series: Series, data: SeriesData, field: SolvedField
-) -> SolvedField:
-    """The field with contacts on its levels. Bounds that do not hold any more then are places on the level,
-    too: they hold in the end. Warns of what is not honored."""
+    work: Work, entry: RockInput, series: Series, data: SeriesData, solved: _Solved
+) -> list[SolvedField]:
+    """The fields with contacts on their levels. Bounds that do not hold any more then are places on the
+    level, too: they hold in the end. Warns of what is not honored."""
+    fields, slits, where = solved
+    of_contacts, _, of_bounds = np.split(where, np.cumsum([len(data.contacts), len(data.dips)]))
+
+    def through(places: np.ndarray, surfaces: np.ndarray, numbers: np.ndarray) -> list[SolvedField]:
+        return fields_with_contacts(work, fields, places, surfaces, slits.shared(places, numbers))
+
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
-        made = with_contacts(work, field, data.contacts, data.surfaces)
+        made = through(data.contacts, data.surfaces, of_contacts)
         kept = ~are_among(data.bounds, data.contacts)
         pinned = np.zeros(len(kept), bool)
         for _ in range(_ROUNDS):
-            new = kept & ~pinned & data.is_off(made, _NEAR)
+            new = kept & ~pinned & data.is_off(made, of_bounds, _NEAR)
             if not new.any():
                 break
             pinned |= new
             places, first = np.unique(data.bounds[pinned], axis=0, return_index=True)
-            surfaces = data.bound_surfaces[pinned][first]
-            every = np.concatenate([data.contacts, places]), np.concatenate([data.surfaces, surfaces])
-            made = with_contacts(work, field, *every)
-    warn_of_field(entry, series, data, field, np.flatnonzero(data.is_off(made, _NEAR)))
+            made = through(
+                np.concatenate([data.contacts, places]),
+                np.concatenate([data.surfaces, data.bound_surfaces[pinned][first]]),
+                np.concatenate([of_contacts, of_bounds[pinned][first]]),
+            )
+    warn_of_field(entry, series, data, fields[0], np.flatnonzero(data.is_off(made, of_bounds, _NEAR)))
     return made
 
 
@@ -162,10 +189,6 @@ def _families(entry: RockInput, series: Series, numbers: list[int]) -> list[Fami
     for number in np.flatnonzero(faults.active(numbers[0]) & ~active):
         what = f"fault '{faults.names[number]}' displaces some of its surfaces, but not all"
         raise series.refused(what, "name", "divide it into two series, or change 'youngest'", item)
-    for number in np.flatnonzero(active):
-        if faults.dies_out[number]:
-            what = f"fault '{faults.names[number]}', which dies out, displaces it: a field cannot do that yet"
-            raise series.refused(what, "name", "let the fault end outside, or use sheets", item)
     return sorted(families(structure, numbers[-1]), key=lambda family: family.key)
 
 

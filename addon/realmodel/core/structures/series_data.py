@@ -4,12 +4,13 @@ from."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.algebra import norm
-from ..fields import LevelSetData, ScalarField
+from ..fields import LevelSetData, ScalarField, SlitData
 from ..project.project import Rock
 from ..project.series import Series
 from ..readers.tables.observations import Bounds, LeftOut, source_text
@@ -79,16 +80,21 @@ class SeriesData:
             *(each[bounds] for each in (self.bounds, self.bound_surfaces, self.is_lower, self.bound_rows)),
         )
 
-    def without_bounds(self, rows: np.ndarray) -> SeriesData:
-        """All but some bounds, by their rows."""
+    def kept_rows(self, rows: np.ndarray) -> np.ndarray:
+        """(C + D + B,) bool: all but some bounds, by their rows."""
         chosen = np.ones(len(self.contacts) + len(self.dips) + len(self.bounds), bool)
         chosen[len(self.contacts) + len(self.dips) + rows] = False
-        return self.some(chosen)
+        return chosen
 
-    def is_off(self, field: ScalarField, near: float) -> np.ndarray:
-        """(B,) bool: the bounds that do not hold in a field, by more than `near` of the range of f."""
-        above = field.at(self.bounds) - field.levels[self.bound_surfaces]
-        return np.where(self.is_lower, above, -above) > near * float(np.ptp(field.values))
+    def is_off(self, fields: Sequence[ScalarField], numbers: np.ndarray, near: float) -> np.ndarray:
+        """(B,) bool: the bounds that do not hold in fields, each in the one with its number (B,), by more
+        than `near` of the range of f."""
+        off = np.zeros(len(self.bounds), bool)
+        for number, field in enumerate(fields):
+            here = np.flatnonzero(numbers == number)
+            above = field.at(self.bounds[here]) - field.levels[self.bound_surfaces[here]]
+            off[here] = np.where(self.is_lower[here], above, -above) > near * float(np.ptp(field.values))
+        return off
 
     def positions(self) -> np.ndarray:
         """(C + D + B, 3) the places of contacts, dips and bounds."""
@@ -99,8 +105,8 @@ class SeriesData:
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
         return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
 
-    def level_set_data(self) -> LevelSetData:
-        """The same for the solver."""
+    def level_set_data(self, slits: SlitData | None) -> LevelSetData:
+        """The same for the solver, with what faults that die out say of it."""
         none = np.int32(-1)
         return LevelSetData(
             [self.rock.surfaces[number].name for number in self.numbers],
@@ -111,6 +117,7 @@ class SeriesData:
             self.bounds,
             np.where(self.is_lower, none, self.bound_surfaces),
             np.where(self.is_lower, self.bound_surfaces, none),
+            slits,
             self.item,
         )
 

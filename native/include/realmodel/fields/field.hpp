@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,22 @@
 #include "realmodel/fields/lattice.hpp"
 
 namespace realmodel::fields {
+
+/// Faults that die out within: f is one function around their tips, and differs on their two sides.
+/// Each gives places a further coordinate, which jumps across it. Of each datum these come one
+/// after another.
+struct Slits {
+    std::size_t count = 0;  ///< of faults
+    std::span<const double> contacts, dips, bounds;
+    std::span<const double> dip_slopes;  ///< by how much they rise there, three for each
+    std::size_t sides = 1;               ///< combinations of sides of them
+    /// Of the lattice's nodes, on one combination of sides after another, each continued as if the
+    /// faults were not there.
+    std::span<const double> nodes;
+    /// Of these nodes the first one that is the same place: beyond tips.
+    std::span<const std::int64_t> same;
+    std::span<const std::int32_t> bound_sides;  ///< on which combination of sides a bound is
+};
 
 /// What is known of a field f whose level sets are surfaces, numbered from the oldest, which has
 /// the lowest level.
@@ -24,6 +41,7 @@ struct FieldData {
     Points bounds;                              ///< between surfaces
     std::span<const std::int32_t> bound_below;  ///< f is above the level of this one; -1: none
     std::span<const std::int32_t> bound_above;  ///< f is below the level of this one; -1: none
+    Slits slits{};
 };
 
 /// How much less f may bend along some directions than across them.
@@ -40,7 +58,7 @@ struct FieldOptions {
 };
 
 struct Field {
-    std::vector<double> values;  ///< of the lattice's nodes
+    std::vector<double> values;  ///< of the lattice's nodes, on each combination of sides of slits
     std::vector<double> levels;  ///< of the surfaces, rising
     Anisotropy anisotropy;
     int order = 3;             ///< of the derivatives that are least: 2 where surfaces are rough
