@@ -33,9 +33,19 @@ def semivariance(a, b, variogram, anisotropy=None):
         structures = [part]
     gamma = np.zeros((len(a), len(b)))
     for part in structures:
+        if part["model"] == "wave":
+            gamma += part["sill"] * _wave(a, b, part["range"], **(part.get("anisotropy") or anisotropy))
+            continue
         h = distances(a, b, **(part.get("anisotropy") or anisotropy))
         gamma += part["sill"] * SHAPES[part["model"]](h / part["range"])
     return np.where(distances(a, b) > 0, variogram.get("nugget", 0.0) + gamma, 0.0)
+
+
+def _wave(a, b, range, ratio=1.0, azimuth=0.0):
+    d = a[:, None, :2] - b[None, :, :2]
+    angle = np.radians(azimuth)
+    turns = ratio * (d[..., 0] * np.cos(angle) - d[..., 1] * np.sin(angle)) / range
+    return 1 - np.cos(2 * np.pi * turns) * np.exp(-3 * (distances(a, b) / range) ** 2)
 
 
 def drift_terms(places, drift):

@@ -83,13 +83,16 @@ def of_oldest(model):
 
 
 def test_conformable_surfaces_share_how_their_heights_vary():
-    """So those with few data are as smooth, and in the same direction, as the others."""
+    """So those with few data have the folds that the others show: their length and direction."""
     rules = ("erosional", "conformable", "conformable")
     error, found = of_oldest(build(Project("p", [rock_of(folds(rules))])))
     alone, _ = of_oldest(build(Project("p", [rock_of(folds(["erosional"] * 3))])))
     assert error < 0.7 * alone
-    assert found.anisotropy["ratio"] > 3
-    assert min(found.anisotropy["azimuth"], 180 - found.anisotropy["azimuth"]) < 5
+    _, wave = found.structures
+    assert wave.model == "wave"
+    assert wave.range / wave.anisotropy["ratio"] == pytest.approx(2 * np.pi * 90, rel=0.02)
+    assert min(wave.anisotropy["azimuth"], 180 - wave.anisotropy["azimuth"]) < 2
+    assert found.range == found.structures[0].range, "that of the wave is how far it goes on"
 
 
 def test_what_is_not_conformable_says_nothing():

@@ -57,6 +57,11 @@ inline double dense_gamma(const Variogram& v, double dx, double dy) {
             f = 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
             break;
         }
+        case VariogramModel::kWave: {
+            const double h = std::hypot(along, across) / v.range;
+            f = 1 - std::cos(2 * std::numbers::pi * across / minor) * std::exp(-3 * h * h);
+            break;
+        }
     }
     return v.nugget + (v.sill - v.nugget) * f;
 }

@@ -90,10 +90,27 @@ class GaussianField:
         """(N,) float64: the field at nodes (N, 2)."""
         local = np.ascontiguousarray(nodes - (self.frame.low + self.frame.high) / 2)
         field = np.zeros(len(nodes))
-        for number, part in enumerate(self.variogram.parts()):
-            if part.sill > 0:
+        parts = self.variogram.parts()
+        for number, part in enumerate(parts):
+            if part.sill > 0 and part.model == "wave":
+                field += self._of_wave(work, (number, len(parts) + number), part, local)
+            elif part.sill > 0:
                 field += self._of_structure(work, number, part, local)
         return field
+
+    def _of_wave(
+        self, work: Work, numbers: tuple[int, int], part: Structure, local: np.ndarray
+    ) -> np.ndarray:
+        """cos(v) A + sin(v) B, v turning as the wave does: A and B, fields of these numbers, have the
+        covariance along its crests, and the sum has its own."""
+        crests = part.anisotropy or self.anisotropy or NO_ANISOTROPY
+        ratio = max(crests["ratio"], 1 / crests["ratio"])
+        azimuth = math.radians(crests["azimuth"])
+        across = local @ np.array([cos(azimuth), -sin(azimuth)])
+        turn = 2 * math.pi * ratio / part.range * across
+        plain = Structure("gaussian", part.range, part.sill, NO_ANISOTROPY)
+        one, other = (self._of_structure(work, number, plain, local) for number in numbers)
+        return cos(turn) * one + sin(turn) * other
 
     def _of_structure(self, work: Work, number: int, part: Structure, local: np.ndarray) -> np.ndarray:
         east, north = _directions().T[:, :, None]

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..base.units import number_text
 
-# f(t) of each model, t = h / range. The factors of the last two make f(1) = 0.95.
+# f(t) of each model, t = h / range, along the azimuth. The factors of the last two make f(1) = 0.95.
 _A, _B = 4.743864518390579, 5.918649346310188
 _SHAPES = {
     "spherical": lambda t: np.where(t < 1, 1.5 * t - 0.5 * t**3, 1.0),
@@ -18,6 +19,7 @@ _SHAPES = {
     "cubic": lambda t: np.where(t < 1, t**2 * (7 - 8.75 * t + 3.5 * t**3 - 0.75 * t**5), 1.0),
     "matern32": lambda t: 1 - (1 + _A * t) * np.exp(-_A * t),
     "matern52": lambda t: 1 - (1 + _B * t + (_B * t) ** 2 / 3) * np.exp(-_B * t),
+    "wave": lambda t: -np.expm1(-3 * t**2),
 }
 VARIOGRAMS = {  # label and tooltip in the panel
     "spherical": ("Spherical", "Linear at the origin, reaches the sill at the range: for rough elevations"),
@@ -29,6 +31,10 @@ VARIOGRAMS = {  # label and tooltip in the panel
     "cubic": ("Cubic", "Parabolic at the origin, reaches the sill at the range: for smooth elevations"),
     "matern32": ("Matern 3/2", "Between exponential and Gaussian, rougher than Matern 5/2"),
     "matern52": ("Matern 5/2", "Between exponential and Gaussian, smoother than Matern 3/2"),
+    "wave": (
+        "Wave",
+        "Rises and falls across the azimuth of its anisotropy, `ratio` times in a range: for folds",
+    ),
 }
 NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 
@@ -42,7 +48,7 @@ _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found 
 @dataclass(frozen=True)
 class Structure:
     """One part of a nested variogram: sill * f(h / range), f that of the `model`. anisotropy: {ratio,
-    azimuth}, or None for that of the interpolation."""
+    azimuth}, or None for that of the interpolation; of a wave its crests in a range, and their azimuth."""
 
     model: str
     range: float
@@ -59,13 +65,13 @@ class Structure:
 class Variogram:
     """gamma(h) = nugget + (sill - nugget) f(h / range), 0 at h = 0; the sill includes the nugget.
 
-    `model` is spherical, exponential, gaussian, cubic, matern32 or matern52; `range` is the practical range
-    in model units, `sill` and `nugget` are in units of height squared. A nested variogram has `structures`,
-    whose parts are added to the nugget; then `model` is "nested", `range` the longest range and `sill` the
-    whole. `anisotropy` is {ratio, azimuth} where one was found with a fit, `range` then the one along the
-    azimuth; else None: that of the interpolation. Where it was fitted to points, `lags` (L,), `gamma` (L,)
-    and `pairs` (L,) are the experimental semivariogram, with distances under the anisotropy; else they are
-    None.
+    `model` is spherical, exponential, gaussian, cubic, matern32, matern52 or wave; `range` is the practical
+    range in model units, `sill` and `nugget` are in units of height squared. A nested variogram has
+    `structures`, whose parts are added to the nugget; then `model` is "nested", `range` the longest range,
+    that of waves aside, and `sill` the whole. `anisotropy` is {ratio, azimuth} where one was found with a
+    fit, `range` then the one along the azimuth; else None: that of the interpolation. Where it was fitted to
+    points, `lags` (L,), `gamma` (L,) and `pairs` (L,) are the experimental semivariogram, with distances
+    under the anisotropy; else they are None.
     """
 
     model: str
@@ -86,23 +92,26 @@ class Variogram:
         structures = tuple(Structure(**part) for part in settings["structures"])
         nugget = settings["nugget"]
         sill = nugget + sum(part.sill for part in structures)
-        return cls("nested", max(part.range for part in structures), sill, nugget, structures)
+        return cls("nested", _longest(structures), sill, nugget, structures)
 
     @classmethod
     def from_fit(cls, fit: dict, finds_anisotropy: bool) -> Variogram:
         """The variogram that the native fit returns; finds_anisotropy: with the fitted anisotropy."""
-        found = None
-        if finds_anisotropy and fit["anisotropy_ratio"] != 1.0:
-            found = {"ratio": fit["anisotropy_ratio"], "azimuth": fit["anisotropy_azimuth"]}
+
+        def along(ratio: float, azimuth: float) -> dict | None:
+            return {"ratio": ratio, "azimuth": azimuth} if finds_anisotropy and ratio != 1.0 else None
+
+        found = along(fit["anisotropy_ratio"], fit["anisotropy_azimuth"])
         nugget, sill = fit["nugget"], fit["sill"]
         experimental = {name: fit[name] for name in ("lags", "gamma", "pairs")}
         if not fit["further"]:
             return cls(fit["model"], fit["range"], sill, nugget, anisotropy=found, **experimental)
-        further = [Structure(model, range_, part, found) for model, range_, part, *_ in fit["further"]]
+        further = [
+            Structure(model, range_, part, along(*own)) for model, range_, part, *own in fit["further"]
+        ]
         first = sill - nugget - sum(part.sill for part in further)
         structures = (Structure(fit["model"], fit["range"], first, found), *further)
-        longest = max(part.range for part in structures)
-        return cls("nested", longest, sill, nugget, structures, found, **experimental)
+        return cls("nested", _longest(structures), sill, nugget, structures, found, **experimental)
 
     @property
     def fitted(self) -> bool:
@@ -157,6 +166,11 @@ class Variogram:
                 for part in further
             ],
         }
+
+
+def _longest(structures: Sequence[Structure]) -> float:
+    """The longest range, of waves where there is nothing else: they go on far beyond what one shows."""
+    return max([part.range for part in structures if part.model != "wave"] or [structures[0].range])
 
 
 def fit_warnings(

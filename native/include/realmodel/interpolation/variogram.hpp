@@ -15,11 +15,21 @@ enum class VariogramModel {
     kCubic,        ///< 7 t^2 - 8.75 t^3 + 3.5 t^5 - 0.75 t^7, 1 beyond t = 1
     kMatern32,     ///< 1 - (1 + a t) exp(-a t), a = 4.7439
     kMatern52,     ///< 1 - (1 + b t + b^2 t^2 / 3) exp(-b t), b = 5.9186
+    /// 1 - cos(2 pi ratio v / range) exp(-3 t^2), v across the azimuth of the anisotropy, and t of
+    /// the distance without it: a hole effect, of folds whose axes run along the azimuth and of
+    /// which there are `ratio` in a range.
+    kWave,
 };
+
+/// Those that rise with distance.
+inline constexpr std::array kRisingModels{VariogramModel::kSpherical, VariogramModel::kExponential,
+                                          VariogramModel::kGaussian,  VariogramModel::kCubic,
+                                          VariogramModel::kMatern32,  VariogramModel::kMatern52};
 
 inline constexpr std::array kAllVariogramModels{
     VariogramModel::kSpherical, VariogramModel::kExponential, VariogramModel::kGaussian,
-    VariogramModel::kCubic,     VariogramModel::kMatern32,    VariogramModel::kMatern52};
+    VariogramModel::kCubic,     VariogramModel::kMatern32,    VariogramModel::kMatern52,
+    VariogramModel::kWave};
 
 /// "spherical" and so on.
 std::string_view name_of(VariogramModel model);
@@ -28,10 +38,11 @@ std::string_view name_of(VariogramModel model);
 /// @throws InputError kind "variogram", naming the models there are
 VariogramModel variogram_model(std::string_view name);
 
-/// f(t) of a model, t >= 0; 0 at 0.
+/// f(t) of a model, t >= 0, along its azimuth; 0 at 0.
 double structure(VariogramModel model, double t);
 
 /// Geometric anisotropy: the range is longest along `azimuth` (degrees, clockwise from north = +y).
+/// That of a wave is the direction of its crests, and how many there are in a range.
 struct Anisotropy {
     double ratio = 1.0;  ///< longest to shortest range; 2 and 0.5 mean the same, 1: none
     double azimuth = 0.0;

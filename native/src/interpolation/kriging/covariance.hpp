@@ -19,6 +19,7 @@ struct CovariancePart {
     VariogramModel model;
     double xx, xy, yx, yy;
     double share;  ///< of the sill
+    double waves;  ///< crests in a range, across; of a wave
 };
 
 /// share (1 - f(t)), of doubles or of vectors of them: the same bytes.
@@ -30,6 +31,8 @@ inline Number covariance_of(const CovariancePart& part, Number dx, Number dy, co
     const Number across = part.yx * dx + part.yy * dy;
     const Number square = along * along + across * across;
     if (part.model == VariogramModel::kGaussian) return part.share * decay<Bits>(3 * square);
+    if (part.model == VariogramModel::kWave)
+        return part.share * (cosine_of_turns(part.waves * across) * decay<Bits>(3 * square));
     const Number t = root(square);
     switch (part.model) {
         case VariogramModel::kSpherical:

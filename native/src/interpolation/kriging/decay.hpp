@@ -35,6 +35,24 @@ inline constexpr double kSeries[] = {1.0 / 6227020800.0,
 inline constexpr int kTerms = static_cast<int>(sizeof kSeries / sizeof *kSeries);
 }  // namespace exponential
 
+/// The series of the sine by odd powers up to x^21, within 2e-16 where |x| <= pi / 2; its signs
+/// and factorials, the last term first.
+namespace sine {
+inline constexpr double kPi = 3.141592653589793;
+inline constexpr double kSeries[] = {1.0 / 51090942171709440000.0,
+                                     -1.0 / 121645100408832000.0,
+                                     1.0 / 355687428096000.0,
+                                     -1.0 / 1307674368000.0,
+                                     1.0 / 6227020800.0,
+                                     -1.0 / 39916800.0,
+                                     1.0 / 362880.0,
+                                     -1.0 / 5040.0,
+                                     1.0 / 120.0,
+                                     -1.0 / 6.0,
+                                     1.0};
+inline constexpr int kTerms = static_cast<int>(sizeof kSeries / sizeof *kSeries);
+}  // namespace sine
+
 /// exp(-x), x >= 0, of a double or of a vector of doubles. Our own, because the C library's
 /// computes differently on processors with fused multiply-add, and could give other bytes there.
 /// @tparam Bits  the unsigned 64-bit number, or vector of them, with the bytes of a Number
@@ -55,6 +73,20 @@ inline Number decay(Number x) {
     bits += exponent << 52;
     __builtin_memcpy(&sum, &bits, sizeof bits);
     return sum;
+}
+
+/// cos(2 pi x) of a double or of a vector of doubles: 1 - 2 sin(pi x)^2, x less whole turns. Our
+/// own for the reason that decay is.
+template <class Number>
+inline Number cosine_of_turns(Number x) {
+    const Number turns = (x + exponential::kRounder) - exponential::kRounder;
+    const Number half = sine::kPi * (x - turns);
+    const Number square = half * half;
+    Number sum = Number{} + sine::kSeries[0];
+    for (int term = 1; term < sine::kTerms; ++term)
+        sum = sum * square + sine::kSeries[term];
+    sum *= half;
+    return 1 - 2 * (sum * sum);
 }
 
 }  // namespace realmodel::interpolation

@@ -21,8 +21,9 @@ double dip_baseline(const Variogram& variogram, double spacing) {
     double shortest = std::numeric_limits<double>::infinity(), longest = 0;
     bool rough = false;
     const auto add = [&](VariogramModel model, double range, double sill, double ratio) {
-        shortest = std::min(shortest, range / std::max(ratio, 1 / ratio));
-        longest = std::max(longest, range);
+        const double across = range / std::max(ratio, 1 / ratio);
+        shortest = std::min(shortest, across);
+        longest = std::max(longest, model == VariogramModel::kWave ? across : range);
         rough = rough || (is_rough(model) && sill > 0);
     };
     add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy.ratio);

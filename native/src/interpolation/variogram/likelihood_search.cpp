@@ -25,7 +25,29 @@ constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};                      // 
 constexpr double kThicknesses[] = {1e-5, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};  // of the sill
 constexpr double kOfAnisotropy = 2, kOfNugget = 2;  // gains of the logarithm, at least
 constexpr std::size_t kFewestFree = 8;              // data that show an anisotropy or a nugget
-constexpr double kLittle = 1e-3;                    // gains that end the refinement
+constexpr std::size_t kFewestOfWave = 24;           // data that show a wave
+constexpr double kOfWave = 10;                      // as above: many waves are tried
+constexpr double kShortestWave = 0.15, kLongestWave = 1;  // of the extent of the data
+constexpr int kWaves = 11;
+constexpr double kWaveRange = 2;  // to begin with, of the extent
+constexpr double kWaveShares[] = {0.02, 0.5}, kMostOfWave = 0.999;
+constexpr double kLittle = 1e-3;  // gains that end the refinement
+
+constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
+                             VariogramModel::kMatern52, VariogramModel::kMatern32};
+
+std::span<const VariogramModel> models_for(bool has_dips) {
+    if (has_dips) return kSmooth;
+    return kRisingModels;
+}
+
+/// Multiplies all that is in units of height squared.
+void scale(Variogram& variogram, double factor) {
+    variogram.sill *= factor;
+    variogram.nugget *= factor;
+    for (NestedStructure& part : variogram.further)
+        part.sill *= factor;
+}
 
 class LikelihoodSearch {
 public:
@@ -96,6 +118,60 @@ public:
         }
     }
 
+    /// A wave and what it leaves, in no direction more than in others, where they make the data far
+    /// more likely than the best shape: folds that come again and again.
+    void waves() {
+        LikelihoodSearch with(parts_, progress_);
+        const double nugget = shape_.variogram.nugget, range = kWaveRange * diagonal_;
+        const Variogram rest{VariogramModel::kMatern52, shape_.variogram.range, 1, nugget, {}, {}};
+        for (double azimuth = 0; azimuth < 180; azimuth += kAzimuthStep) {
+            for (int k = 0; k < kWaves; ++k) {
+                const double length = diagonal_ * between(kShortestWave, kLongestWave, k, kWaves);
+                for (const double share : kWaveShares) {
+                    Shape shape{rest, shape_.thickness};
+                    shape.variogram.further = {{VariogramModel::kWave,
+                                                range,
+                                                share * (1 - nugget),
+                                                {range / length, azimuth}}};
+                    with.attempt(shape);
+                }
+            }
+        }
+        if (!with.best_ || !(with.best_->logarithm() > best_->logarithm())) return;
+        with.refine_wave();
+        if (with.best_->logarithm() > best_->logarithm() + kOfWave) *this = with;
+    }
+
+    /// As refine, the wave and the range of the first structure.
+    void refine_wave() {
+        double step = 0.35;
+        for (int round = 0; round < 24 && step > 0.01; ++round) {
+            const double before = best_->logarithm();
+            for (const double up : {1.0, -1.0}) {
+                const double by = up * step;
+                attempt_wave([&](Shape& shape) { stretch(shape.variogram.range, by); });
+                attempt_wave([&](Shape& shape) {  // the length alone
+                    shape.variogram.further[0].anisotropy.ratio *= elementary::exp(by / 4);
+                });
+                attempt_wave(
+                    [&](Shape& shape) { turn(shape.variogram.further[0].anisotropy, by); });
+                attempt_wave([&](Shape& shape) {  // the range alone
+                    NestedStructure& wave = shape.variogram.further[0];
+                    const double before_it = wave.range;
+                    stretch(wave.range, 2 * by);
+                    wave.anisotropy.ratio *= wave.range / before_it;
+                });
+                attempt_wave([&](Shape& shape) {  // odds of the share
+                    const double whole = 1 - shape.variogram.nugget;
+                    double& sill = shape.variogram.further[0].sill;
+                    const double odds = sill / (whole - sill) * elementary::exp(4 * by);
+                    sill = whole * std::min(odds / (1 + odds), kMostOfWave);
+                });
+            }
+            if (best_->logarithm() - before < kLittle) step /= 2;
+        }
+    }
+
     /// By steps that get shorter.
     void refine(bool turns) {
         double step = 0.35;
@@ -103,9 +179,7 @@ public:
             const double before = best_->logarithm();
             for (const double up : {1.0, -1.0}) {
                 Shape shape = shape_;
-                shape.variogram.range =
-                    std::clamp(shape.variogram.range * elementary::exp(up * step),
-                               kShortest * diagonal_ / 4, kLongest * diagonal_);
+                stretch(shape.variogram.range, up * step);
                 attempt(shape);
                 if (has_sheets_) {
                     shape = shape_;
@@ -120,9 +194,7 @@ public:
                                               kMostAnisotropic);
                 attempt(shape);
                 shape = shape_;
-                anisotropy.azimuth += up * step * kAzimuthStep;
-                if (anisotropy.azimuth < 0) anisotropy.azimuth += 180;
-                if (anisotropy.azimuth >= 180) anisotropy.azimuth -= 180;
+                turn(anisotropy, up * step);
                 attempt(shape);
             }
             if (best_->logarithm() - before < kLittle) step /= 2;
@@ -131,10 +203,7 @@ public:
 
     void thicknesses_of(const Variogram& given) {
         Variogram shape = given;
-        shape.sill = 1;
-        shape.nugget /= given.sill;
-        for (NestedStructure& part : shape.further)
-            part.sill /= given.sill;
+        scale(shape, 1 / given.sill);
         for (const double thickness : kThicknesses)
             attempt({shape, thickness});
     }
@@ -150,8 +219,7 @@ public:
 
     Variogram variogram() const {
         Variogram out = shape_.variogram;
-        out.sill = best_->sill();
-        out.nugget = shape_.variogram.nugget * best_->sill();
+        scale(out, best_->sill());
         return out;
     }
 
@@ -163,8 +231,8 @@ public:
     }
 
     /// All steps, for a surface or for sheets.
-    void run(std::span<const VariogramModel> models, const Anisotropy& given,
-             bool finds_anisotropy) {
+    void run(bool has_dips, const Anisotropy& given, bool finds_anisotropy) {
+        const std::span<const VariogramModel> models = models_for(has_dips);
         ranges_of(models, given);
         if (!has_found()) return;
         thicknesses();
@@ -173,6 +241,8 @@ public:
         const bool is_rich = free_ >= kFewestFree;
         if (is_rich && finds_anisotropy) anisotropies(models);
         if (is_rich) nuggets();
+        // limbs of folds are seen in dips; points alone may look like waves by chance
+        if (has_dips && finds_anisotropy && free_ >= kFewestOfWave) waves();
     }
 
 private:
@@ -191,10 +261,30 @@ private:
         return all;
     }
 
-    double range(int k) const {
-        return diagonal_ * kShortest *
-               elementary::pow(kLongest / kShortest, static_cast<double>(k) / (kRanges - 1));
+    template <class Change>
+    void attempt_wave(const Change& change) {
+        Shape shape = shape_;
+        change(shape);
+        attempt(shape);
     }
+
+    void stretch(double& range, double by) const {
+        range = std::clamp(range * elementary::exp(by), kShortest * diagonal_ / 4,
+                           kLongest * diagonal_);
+    }
+
+    static void turn(Anisotropy& anisotropy, double steps) {
+        anisotropy.azimuth += steps * kAzimuthStep;
+        if (anisotropy.azimuth < 0) anisotropy.azimuth += 180;
+        if (anisotropy.azimuth >= 180) anisotropy.azimuth -= 180;
+    }
+
+    /// Step k of so many from one length to another, whose ratios are equal.
+    static double between(double first, double last, int k, int steps) {
+        return first * elementary::pow(last / first, static_cast<double>(k) / (steps - 1));
+    }
+
+    double range(int k) const { return diagonal_ * between(kShortest, kLongest, k, kRanges); }
 
     std::vector<Likelihood> parts_;
     Progress* progress_;
@@ -205,14 +295,6 @@ private:
     Shape shape_;
     double thickness_ = 0;  // of sheets, from which a search begins
 };
-
-constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
-                             VariogramModel::kMatern52, VariogramModel::kMatern32};
-
-std::span<const VariogramModel> models_for(bool has_dips) {
-    if (has_dips) return kSmooth;
-    return kAllVariogramModels;
-}
 
 /// One point at each position of sheets, less the constant of its sheet.
 std::vector<std::array<double, 3>> one_surface(std::span<const std::array<double, 3>> points,
@@ -241,7 +323,7 @@ std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 
     const Likelihood likelihood(points, options.dips, options.drift);
     if (!is_enough(likelihood)) return std::nullopt;
     LikelihoodSearch search({likelihood}, progress);
-    search.run(models_for(!options.dips.positions.empty()), given, options.finds_anisotropy);
+    search.run(!options.dips.positions.empty(), given, options.finds_anisotropy);
     if (!search.has_found()) return std::nullopt;
     return search.variogram();
 }
@@ -259,14 +341,13 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
     }
     if (enough.empty()) return {};
     LikelihoodSearch search(std::move(enough), execution.progress);
-    search.run(models_for(has_dips), anisotropy, options.finds_anisotropy);
+    search.run(has_dips, anisotropy, options.finds_anisotropy);
     if (!search.has_found()) return {};
     const Variogram shared = search.variogram();
     std::vector<FittedVariogram> found;
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         Variogram own = shared;
-        own.sill = search.sill_of(all[k]);
-        own.nugget *= own.sill / shared.sill;
+        scale(own, search.sill_of(all[k]) / shared.sill);
         found.push_back({own, experimental_variogram(surfaces[k].points, own.anisotropy)});
     }
     return found;
@@ -285,8 +366,7 @@ std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> po
     if (given) {
         search.thicknesses_of(*given);
     } else {
-        search.run(models_for(!options.dips.positions.empty()), anisotropy,
-                   options.finds_anisotropy);
+        search.run(!options.dips.positions.empty(), anisotropy, options.finds_anisotropy);
     }
     if (!search.has_found()) return std::nullopt;
     FittedSheets found = given ? search.sheets_of(*given) : search.sheets();

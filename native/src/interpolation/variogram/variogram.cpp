@@ -16,10 +16,13 @@ struct NamedModel {
     VariogramModel model;
     std::string_view name;
 };
-constexpr NamedModel kNamedModels[] = {
-    {VariogramModel::kSpherical, "spherical"}, {VariogramModel::kExponential, "exponential"},
-    {VariogramModel::kGaussian, "gaussian"},   {VariogramModel::kCubic, "cubic"},
-    {VariogramModel::kMatern32, "matern32"},   {VariogramModel::kMatern52, "matern52"}};
+constexpr NamedModel kNamedModels[] = {{VariogramModel::kSpherical, "spherical"},
+                                       {VariogramModel::kExponential, "exponential"},
+                                       {VariogramModel::kGaussian, "gaussian"},
+                                       {VariogramModel::kCubic, "cubic"},
+                                       {VariogramModel::kMatern32, "matern32"},
+                                       {VariogramModel::kMatern52, "matern52"},
+                                       {VariogramModel::kWave, "wave"}};
 
 std::string number_text(double number) {
     char text[40];
@@ -58,6 +61,7 @@ double structure(VariogramModel model, double t) {
         case VariogramModel::kExponential:
             return -elementary::expm1(-3 * t);
         case VariogramModel::kGaussian:
+        case VariogramModel::kWave:
             return -elementary::expm1(-3 * t * t);
         case VariogramModel::kCubic:
             return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;

@@ -52,7 +52,7 @@ public:
     void make(FittedVariogram& out) {
         const bool finds =
             options_.finds_anisotropy && all_.size() >= kLeastForAnisotropy && spread_in_plan(all_);
-        std::vector<Candidate> all = search(out, kAllVariogramModels, 0, finds ? 0.35 : 0.7);
+        std::vector<Candidate> all = search(out, kRisingModels, 0, finds ? 0.35 : 0.7);
         if (all.empty()) return;
         if (finds) {
             const CurveFit best = best_of(all).fit;
@@ -206,6 +206,7 @@ private:
             case VariogramModel::kMatern52:
                 return 5;
             case VariogramModel::kGaussian:
+            case VariogramModel::kWave:
                 return 8;
         }
         return 1;

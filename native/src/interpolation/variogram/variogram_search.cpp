@@ -95,7 +95,7 @@ const Candidate& best_of(const std::vector<Candidate>& candidates) {
 std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates) {
     const double enough = kHopeful * best_of(candidates).square;
     std::vector<VariogramModel> out;
-    for (const VariogramModel model : kAllVariogramModels) {
+    for (const VariogramModel model : kRisingModels) {
         const auto is_good = [&](const Candidate& candidate) {
             return candidate.fit.curve.model == model && candidate.square <= enough;
         };
