@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders the rock looks and weathering in background Blender: docs/images/looks.jpg and weathering.jpg, and
-the previews of the asset library.
+"""Renders the rock looks and weathering in background Blender: docs/images/looks.jpg, looks_close.jpg and
+weathering.jpg, and the previews of the asset library.
 
-    build/venv/bin/python scripts/draw_looks.py [LOOK|weathering ...]      (default: all; it needs Pillow)
+    build/venv/bin/python scripts/draw_looks.py [LOOK|close|weathering ...]   (default: all; it needs Pillow)
 
 BLENDER is the Blender that renders (default: blender), or a Python that has the module bpy. With a denoiser,
 which Debian's Blender lacks, pictures have no grain. Each look is drawn on the same block of folded beds, 30
@@ -20,7 +20,9 @@ SHEET = ROOT / "docs" / "images" / "looks.jpg"
 PREVIEWS = ROOT / "addon" / "realmodel" / "previews" / "looks.jpg"
 WEATHERED = ROOT / "docs" / "images" / "weathering.jpg"
 PICTURES = ROOT / "build" / "looks"  # one for each
-WEATHERING = "weathering"
+CLOSE = ROOT / "docs" / "images" / "looks_close.jpg"
+NEAR, WEATHERING = "close", "weathering"
+NEAR_SIZE, AWAY = (600, 400), 2.0  # of the picture of a close-up, taken from so many meters
 HALF = (800, 620)  # of the pictures before and after
 SIZE = (400, 325)  # of the picture of a look
 SMALL = (320, 260)  # in the sheet
@@ -61,6 +63,11 @@ def put_together():
 
     if (pictures := pictures_of(LOOKS)) is not None:
         make_sheet(pictures, [look.label for look in LOOKS.values()])
+    if (pictures := pictures_of([f"{NEAR}_{name}" for name in ("rock", "ground")])) is not None:
+        pair = Image.new("RGB", (2 * NEAR_SIZE[0], NEAR_SIZE[1]))
+        for number, picture in enumerate(pictures):
+            pair.paste(picture, (number * NEAR_SIZE[0], 0))
+        pair.save(CLOSE, quality=80, optimize=True)
     if (pictures := pictures_of([f"{WEATHERING}_{name}" for name in ("before", "after")])) is not None:
         pair = Image.new("RGB", (2 * HALF[0], HALF[1]))
         pen, font = ImageDraw.Draw(pair), ImageFont.load_default(26)
@@ -217,6 +224,66 @@ def draw_weathering(folder):
     render(folder, "weathering_after")
 
 
+def draw_close(folder):
+    """Haut-Barr, weathered, from two meters away: conglomerate in a wall, and the bench."""
+    import math
+
+    import bpy
+    import gallery_picture
+    import numpy as np
+    from mathutils import Vector
+    from realmodel.bl import batch, picture, weathering
+    from realmodel.bl.viewports import towards
+
+    scene = bpy.context.scene
+    model, shown = gallery_picture.sample("haut_barr", Path(folder))
+    batch.write_scene(model)
+    scene.realmodel.view.show_legend = False
+    blocks = [row.object for row in scene.realmodel.results if row.object is not None]
+    for item in scene.objects:
+        item.hide_render = item not in blocks
+    slopes = math.radians(34.0), math.radians(44.0)
+    weathering.put_on(scene, blocks, weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, wear=0.5))
+    corners = np.array([item.matrix_world @ Vector(c) for item in blocks for c in item.bound_box])
+    shown.points = [corners]
+    azimuth, elevation = math.radians(205.0), math.radians(42.0)
+    shown.landscape(sun=(azimuth, elevation))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    from_south = [
+        (x, low[1] - 5.0, z) for x in np.arange(low[0], high[0], 1.5) for z in np.arange(low[2], high[2])
+    ]
+    across, along = np.arange(low[0], high[0], 4.0), np.arange(low[1], high[1], 3.0)
+    from_above = [(x, y, high[2] + 5.0) for x in across for y in along]
+    sun = towards(azimuth, elevation)
+    for name, block, starts, way, back in (
+        ("rock", "Upper conglomerate", from_south, (0.0, 1.0, 0.0), (0.45, -0.85, 0.2)),
+        ("ground", "Bench", from_above, (0.0, 0.0, -1.0), (0.1, -0.85, 0.5)),
+    ):
+        target = lit_place(block, starts, way, sun)
+        shown.look(target + AWAY * Vector(back).normalized(), target, lens=30.0)
+        scene.camera.data.clip_start = 0.01
+        picture.set_renderer(scene, "", NEAR_SIZE, RAYS, SECONDS)
+        scene.view_settings.exposure = EXPOSURE
+        render(folder, f"{NEAR}_{name}")
+
+
+def lit_place(block, starts, way, sun):
+    """The middle one of the places in the sun where rays meet blocks of a name about at right angles."""
+    import bpy
+    from mathutils import Vector
+
+    scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
+    places = []
+    for start in starts:
+        found, place, normal, _, item, _ = scene.ray_cast(depsgraph, Vector(start), Vector(way))
+        if not found or not item.name.startswith(block):
+            continue
+        is_open = normal.dot(way) < -0.95 and normal.dot(sun) > 0.3
+        if is_open and not scene.ray_cast(depsgraph, place + 0.5 * normal, sun)[0]:
+            places.append(place.copy())
+    return places[len(places) // 2]
+
+
 def in_blender(folder, *names):
     import bpy
 
@@ -227,13 +294,15 @@ def in_blender(folder, *names):
     realmodel.register_for_batch()
     for draw, chosen in (
         (draw_looks, [key for key in names or LOOKS if key in LOOKS]),
-        (draw_weathering, None),
+        (draw_close, NEAR),
+        (draw_weathering, WEATHERING),
     ):
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-        if chosen:
+        if isinstance(chosen, str):
+            if not names or chosen in names:
+                draw(folder)
+        elif chosen:
             draw(folder, chosen)
-        elif chosen is None and (not names or WEATHERING in names):
-            draw(folder)
     sys.stdout.flush()
     os._exit(0)  # the module bpy may hang as it ends
 

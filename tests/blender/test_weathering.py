@@ -6,7 +6,20 @@ import math
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import meshes, versions, weathering
+from realmodel.bl import edge_wear, looks, meshes, versions, weathering
+
+
+class Counting(bpy.types.RenderEngine):
+    """A renderer that counts the instances that it is to render."""
+
+    bl_idname, bl_label = "COUNTING", "Counting"
+    counts = {}
+
+    def render(self, depsgraph):
+        for each in depsgraph.object_instances:
+            if each.is_instance:
+                name = each.object.data.name
+                self.counts[name] = self.counts.get(name, 0) + 1
 
 
 class Weathering(PanelCase):
@@ -124,6 +137,19 @@ class Weathering(PanelCase):
                 found.setdefault(each.object.data.name, []).append(tuple(each.matrix_world.translation))
         return found
 
+    def rendered_instances(self):
+        """{name: count} of the instances that a render has."""
+        bpy.utils.register_class(Counting)
+        try:
+            self.scene.render.engine = Counting.bl_idname
+            self.scene.render.resolution_x = self.scene.render.resolution_y = 8
+            self.scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+            Counting.counts.clear()
+            bpy.ops.render.render()
+        finally:
+            bpy.utils.unregister_class(Counting)
+        return dict(Counting.counts)
+
     def test_plants_and_stones_stand_on_the_ground(self):
         ops.weathering(strength=0.2, plants=2.0, scree_slope=math.radians(60.0))
         found = self.scattered(self.block(2))
@@ -136,6 +162,9 @@ class Weathering(PanelCase):
                 self.assertLess(np.linalg.norm(points - place, axis=1).min(), 8.0)
         self.assertEqual(self.scattered(self.block(1)), {})  # which no ground is of
         self.assertFalse(any(item.get("realmodel_scatter") for item in self.scene.objects))
+        counted = self.rendered_instances()
+        self.assertEqual(counted["Stone"], len(found["Stone"]))
+        self.assertGreater(counted["Grass Tuft"], 3 * len(found["Grass Tuft"]))  # the viewport shows fewer
         ops.weathering(strength=0.2)
         self.assertEqual(self.scattered(self.block(2)), {})
 
@@ -157,6 +186,70 @@ class Weathering(PanelCase):
         np.testing.assert_allclose(hard, [weathering.LOOKS[look].hardness for look in looks], rtol=1e-6)
         ops.weathering_remove()
         self.assertFalse(any(bed.modifiers for bed in beds))
+
+    def test_edges_are_worn_in_materials_without_a_finer_mesh(self):
+        materials = [self.block(n).data.materials[0] for n in (1, 2)]
+        plain, corners = [self.evaluated(n)[0] for n in (1, 2)], len(self.block(2).data.vertices)
+        select(self.block(2))
+        ops.weathering(strength=0.0, detail=0, wear=2.0, grass_slope=0.0, scree_slope=0.0)
+        np.testing.assert_allclose(self.evaluated(2)[0], plain[1], atol=1e-5)
+        self.assertEqual(len(plain[1]), corners)
+        worn = self.block(2).evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        values = np.array([v.value for v in worn.attributes[edge_wear.ATTRIBUTE].data])
+        unit = looks.diagonal(self.scene) / looks.UNITS
+        np.testing.assert_allclose(values, 2.0 * 0.3 * unit, rtol=1e-5)
+        self.assertNotIn(edge_wear.ATTRIBUTE, self.block(2).data.attributes)
+        self.assertEqual([edge_wear.has(material) for material in materials], [False, True])
+        ops.rock_looks(look="GRANITE")
+        self.assertEqual([edge_wear.has(material) for material in materials], [False, True])
+        tree = materials[1].node_tree
+        mixed = next(link.from_node for link in tree.links if link.to_socket.name == "Base Color")
+        self.assertIn(edge_wear.KEY, [link.from_node.name for link in tree.links if link.to_node == mixed])
+        count = len(tree.nodes)
+        ops.weathering(strength=0.0, detail=0, wear=1.0)
+        self.assertEqual(len(tree.nodes), count)
+        ops.weathering_remove()
+        self.assertFalse(edge_wear.has(materials[1]))
+        seen = next(node for node in tree.nodes if node.type == "MIX")
+        self.assertTrue(all(s.is_linked for s in seen.inputs if s.name in "AB" and s.enabled))
+
+    def rendered(self, item):
+        """(48, 48, 3) of the western end of a block's southern wall; its edge is at column 8."""
+        side, seen = 48, 24.0
+        low = meshes.mesh_coordinates(item.data).min(axis=0)
+        if self.scene.camera is None:
+            camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+            camera.data.type, camera.data.ortho_scale = "ORTHO", seen
+            camera.location = low + np.array([8.0, -50.0, 10.0])
+            camera.rotation_euler.x = math.pi / 2
+            lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "SUN"))
+            lamp.rotation_euler, lamp.data.energy = (math.pi / 2 - 0.4, 0.0, 0.3), 3.0
+            for each in (camera, lamp):
+                self.scene.collection.objects.link(each)
+            self.scene.camera, self.scene.world = camera, None
+        render = self.scene.render
+        render.engine = "CYCLES"
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 4, False
+        render.resolution_x = render.resolution_y = side
+        render.resolution_percentage = 100
+        render.filepath, render.image_settings.file_format = str(self.folder / "worn.png"), "PNG"
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(render.filepath)
+        pixels = np.array(image.pixels[:], np.float32).reshape(side, side, -1)[:, :, :3]
+        bpy.data.images.remove(image)
+        return pixels
+
+    def test_worn_edges_are_seen_and_faces_stay(self):
+        ops.rock_looks(look="LIMESTONE")
+        item = self.block(2)
+        given = {"strength": 0.0, "detail": 0, "grass_slope": 0.0, "scree_slope": 0.0}
+        ops.weathering(wear=0.0, **given)
+        sharp = self.rendered(item)
+        ops.weathering(wear=12.0, **given)
+        changed = np.abs(self.rendered(item) - sharp).max(axis=2)[18:30]
+        self.assertGreater(sharp[18:30, 8:].min(), 0.02)
+        self.assertLess(changed[:, 20:44].max(), 0.004)
+        self.assertGreater(changed[:, 8:10].mean(), 0.015)
 
     def test_one_undo_step(self):
         bpy.ops.ed.undo_push(message="before")

@@ -10,12 +10,15 @@ that of USD would take the first attribute on the way, so attributes are in a gr
 Textures themselves have to be baked (scene_export.py).
 """
 
+import math
+from dataclasses import dataclass, field
+
 import bpy
 import numpy as np
 
 from ..core.project.library import AUTO_LOOK
 from ..core.project.looks import LOOKS, look_of
-from . import library_rows, materials, meshes, versions
+from . import edge_wear, library_rows, materials, meshes, versions
 from .display import explosion
 from .nodes import Nodes
 
@@ -40,7 +43,14 @@ _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
 _GROOVE = 0.07  # texture units: half the width of a groove or a crack
 _BENT = 0.9  # texture units: how far joints wind
 _JOINT_SETS = (((0.93, 0.35, 0.09), 1.9), ((-0.46, 0.88, -0.14), 1.0))  # normals, and how far apart
-_CRYSTAL = 0.3  # clasts smaller than this touch one another
+_CRYSTAL = 0.4  # clasts of this size and smaller touch one another
+_CLAST_SIZES, _CLAST_SHARES = (1.0, 0.36), (0.5, 0.8)  # large and small clasts; how far crystals differ
+_RADII = 0.34, 0.22  # of pebbles, of the size of a cell: how much they differ, and the least
+_UNEVEN = 0.08  # texture units: how uneven the outlines of pebbles are
+_OCTAVES = 7.0  # of the relief: a hundredth of its size, so that it is rough at two meters, too
+_WAVY = 0.16  # texture units: how far laminae are from straight
+_BLADE, _BENT_BLADES = 0.012, 14.0  # texture units: how wide a blade of grass is; blades: how far they wind
+_BLADES = ((0.5, 0.15), (2.2, 0.12))  # directions, and how long they are
 _NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
 
@@ -49,6 +59,7 @@ def apply(material, look, scale, seed, diagonal):
     model of this diagonal. seed: shifts it."""
     color = tuple(material.diffuse_color)
     tree = material.node_tree
+    is_worn = edge_wear.has(material)
     tree.nodes.clear()
     nodes = _Nodes(tree)
     shader = _new_shader(nodes)
@@ -57,6 +68,8 @@ def apply(material, look, scale, seed, diagonal):
     shader.inputs["Base Color"].default_value = color
     if look != "FLAT":
         _fill(nodes, shader, recipe, color, diagonal / UNITS * scale, seed)
+    if is_worn:
+        edge_wear.put_on(material)
     material[KEY] = look
 
 
@@ -94,63 +107,29 @@ def _set_gloss(shader, roughness):
         versions.make_glossy(shader)
 
 
+@dataclass
+class _Texture:
+    """What a recipe adds up to: how bright, how high (texture units), how far in hue, and how pale."""
+
+    tones: list = field(default_factory=list)
+    heights: list = field(default_factory=list)
+    hues: list = field(default_factory=list)
+    pale: list = field(default_factory=list)
+
+
 def _fill(nodes, shader, look, color, unit, seed):
-    """Nodes of all that a recipe has: `tones` add up to how bright, `heights` to how high (texture units).
+    """Nodes of all that a recipe has.
 
     Renderers compute heights three times, for their slope, so few nodes that are slow (three-dimensional
-    noise above all) may be in them: Eevee's shaders take long to compile otherwise."""
+    noise above all) may be in them: Eevee's shaders take long to compile otherwise. Octaves of a noise take
+    it no longer: they are what close-ups live on."""
     size = nodes.new("ShaderNodeValue")
     size.name = size.label = SIZE
     size = size.outputs[0]
     size.default_value = unit
-    place = nodes.of("ShaderNodeTexCoord", "Object")
-    rng = np.random.default_rng(seed)
-    place = nodes.vector("SCALE", place, nodes.math("DIVIDE", 1.0, size))
-    place = nodes.vector("ADD", place, tuple(rng.uniform(-50.0, 50.0, 3)))
-    above = _above(nodes, place, size)
-    large = nodes.noise(place, 0.12, 2.0)
-    rough = nodes.noise(place, 1.0 / look.relief_size, 4.0) if look.relief else None
-    worn = nodes.ramp(large, 0.35, 0.6, 0.15, 1.0)  # cracks are filled here, open there
-    on_wall = nodes.math("MULTIPLY_ADD", nodes.attribute("is_top"), -0.7, 1.0)  # and hardly seen on top
-    tones, heights, hues = [], [], []
-    if look.stain:
-        tones.append(nodes.about(large, 2.0 * look.stain))
-    if look.grain:
-        tones.append(nodes.about(nodes.noise(place, 1.0 / look.grain_size, 1.0), 2.0 * look.grain))
-    if look.relief:
-        heights.append(nodes.about(rough, 2.0 * look.relief))
-        tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
-    if look.lamination:
-        lamina = nodes.about(_laminae(nodes, place, above, look.lamina), 1.0)
-        heights.append(nodes.math("MULTIPLY", lamina, look.lamination))
-        patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
-        tones.append(nodes.math("MULTIPLY", nodes.math("MULTIPLY", lamina, patchy), 2.0 * look.lamination))
-    bed = None
-    if look.bed:
-        bed, groove = _beds(nodes, above, rough, look.bed)
-        tones.append(nodes.about(bed[0], 0.22))
-        hues.append(bed[1])
-        _groove(nodes, look, nodes.math("MULTIPLY", groove, on_wall), worn, tones, heights)
-    if look.joint and look.cells:
-        crack, tone = _cells(nodes, place, rough, look)
-        shown = nodes.attribute("is_top") if look.on_top else on_wall
-        _groove(
-            nodes, look, nodes.math("MULTIPLY", crack, shown), None if look.on_top else worn, tones, heights
-        )
-        if not look.on_top:
-            tones.append(nodes.about(tone, 0.15))
-    elif look.joint:
-        joints = _joints(nodes, place, rough, bed, look.joint)
-        _groove(nodes, look, nodes.math("MULTIPLY", joints, on_wall), worn, tones, heights)
-    if look.clasts:
-        tone, height, hue = _clasts(nodes, place, look)
-        tones.append(tone)
-        hues.append(hue)
-        if height is not None:
-            heights.append(height)
-    elif look.grassy:
-        hues.append(large)
-    tone = nodes.math("MULTIPLY", nodes.total(tones), 1.6)
+    texture = _Texture()
+    _fill_texture(nodes, look, _place(nodes, size, seed), size, texture)
+    tone = nodes.math("MULTIPLY", nodes.total(texture.tones), 1.6)
     tint = nodes.new("ShaderNodeHueSaturation")
     given = nodes.new("ShaderNodeRGB")
     given.name = given.label = materials.COLOR
@@ -158,16 +137,74 @@ def _fill(nodes, shader, look, color, unit, seed):
     given.default_value = color
     nodes.link(_brown_below(nodes, given) if look.grassy else given, tint.inputs["Color"])
     nodes.link(nodes.math("MAXIMUM", nodes.math("ADD", tone, 1.0), 0.15), tint.inputs["Value"])
-    nodes.link(nodes.math("SUBTRACT", 0.95, nodes.math("MULTIPLY", tone, 0.3)), tint.inputs["Saturation"])
-    if look.hue and hues:
-        hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in hues])
+    pale = nodes.total([nodes.math("MULTIPLY", tone, 0.3), *texture.pale])
+    nodes.link(nodes.math("SUBTRACT", 0.95, pale), tint.inputs["Saturation"])
+    if look.hue and texture.hues:
+        hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in texture.hues])
         nodes.link(nodes.math("ADD", hue, 0.5), tint.inputs["Hue"])
     _multiply(nodes, given, tint.outputs["Color"], shader.inputs["Base Color"])
-    if heights:
+    if texture.heights:
         bump = nodes.new("ShaderNodeBump")
         nodes.link(size, bump.inputs["Distance"])
-        nodes.link(nodes.total(heights), bump.inputs["Height"])
+        nodes.link(nodes.total(texture.heights), bump.inputs["Height"])
         nodes.link(bump.outputs["Normal"], shader.inputs["Normal"])
+
+
+def _place(nodes, size, seed):
+    """The position in the object, in texture units, shifted by a seed."""
+    place = nodes.of("ShaderNodeTexCoord", "Object")
+    rng = np.random.default_rng(seed)
+    place = nodes.vector("SCALE", place, nodes.math("DIVIDE", 1.0, size))
+    return nodes.vector("ADD", place, tuple(rng.uniform(-50.0, 50.0, 3)))
+
+
+def _fill_texture(nodes, look, place, size, texture):
+    large = nodes.noise(place, 0.12, 2.0)
+    rough = nodes.noise(place, 1.0 / look.relief_size, _OCTAVES) if look.relief else None
+    if look.stain:
+        texture.tones.append(nodes.about(large, 2.0 * look.stain))
+    if look.grain:
+        grain = nodes.noise(place, 1.0 / look.grain_size, 3.0)
+        texture.tones.append(nodes.about(grain, 2.5 * look.grain))
+    if look.relief:
+        texture.heights.append(nodes.about(rough, 2.0 * look.relief))
+        texture.tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
+    _fill_bedding(nodes, look, place, _above(nodes, place, size), (large, rough), texture)
+    if look.clasts and look.clast_size <= _CRYSTAL:
+        _add_crystals(nodes, place, look, texture)
+    elif look.clasts:
+        _add_pebbles(nodes, place, look, rough, texture)
+    if look.grassy:
+        _add_blades(nodes, place, rough, texture)
+        texture.hues.append(large)
+
+
+def _fill_bedding(nodes, look, place, above, noises, texture):
+    """Laminae, beds, joints and cracks. noises: large ones and those of the relief."""
+    large, rough = noises
+    worn = nodes.ramp(large, 0.35, 0.6, 0.15, 1.0)  # cracks are filled here, open there
+    on_wall = nodes.math("MULTIPLY_ADD", nodes.attribute("is_top"), -0.7, 1.0)  # and hardly seen on top
+    if look.lamination:
+        lamina = nodes.about(_laminae(nodes, place, above, rough, look.lamina), 1.0)
+        texture.heights.append(nodes.math("MULTIPLY", lamina, look.lamination))
+        patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
+        tone = nodes.math("MULTIPLY", nodes.math("MULTIPLY", lamina, patchy), 2.0 * look.lamination)
+        texture.tones.append(tone)
+    bed = None
+    if look.bed:
+        bed, groove = _beds(nodes, above, rough, look.bed)
+        texture.tones.append(nodes.about(bed[0], 0.22))
+        texture.hues.append(bed[1])
+        _groove(nodes, look, nodes.math("MULTIPLY", groove, on_wall), worn, texture)
+    if look.joint and look.cells:
+        crack, tone = _cells(nodes, place, rough, look)
+        shown = nodes.attribute("is_top") if look.on_top else on_wall
+        _groove(nodes, look, nodes.math("MULTIPLY", crack, shown), None if look.on_top else worn, texture)
+        if not look.on_top:
+            texture.tones.append(nodes.about(tone, 0.15))
+    elif look.joint:
+        joints = _joints(nodes, place, rough, bed, look.joint)
+        _groove(nodes, look, nodes.math("MULTIPLY", joints, on_wall), worn, texture)
 
 
 def _multiply(nodes, color, seen, socket):
@@ -193,14 +230,17 @@ def _above(nodes, place, size):
     return nodes.math("ADD", above, without)
 
 
-def _laminae(nodes, place, above, lamina):
-    """Noise from 0 to 1 for laminae, which are parallel to the layer and of limited length."""
+def _laminae(nodes, place, above, rough, lamina):
+    """Noise from 0 to 1 for laminae, which are parallel to the layer, of limited length, and a little wavy:
+    that hides where large triangles meet."""
+    if rough is not None:
+        above = nodes.math("ADD", above, nodes.about(rough, _WAVY))
     joined = nodes.new("ShaderNodeCombineXYZ")
     nodes.link(
         nodes.vector("DOT_PRODUCT", place, (0.8 * _FLAT_LAMINAE, 0.6 * _FLAT_LAMINAE, 0.0)), joined.inputs[0]
     )
     nodes.link(nodes.math("MULTIPLY", above, 1.0 / lamina), joined.inputs[1])
-    return nodes.noise(joined.outputs[0], 1.0, 3.0, "2D")
+    return nodes.noise(joined.outputs[0], 1.0, 5.0, "2D")
 
 
 def _bands(nodes, along):
@@ -266,29 +306,70 @@ def _cells(nodes, place, rough, look):
     return crack, nodes.part(first.outputs["Color"], 0)
 
 
-def _groove(nodes, look, groove, worn, tones, heights):
+def _groove(nodes, look, groove, worn, texture):
     """worn: how much of its color is there, or None."""
-    heights.append(nodes.math("MULTIPLY", groove, -0.5 * look.crack))
+    texture.heights.append(nodes.math("MULTIPLY", groove, -0.5 * look.crack))
     seen = groove if worn is None else nodes.math("MULTIPLY", groove, worn)
-    tones.append(nodes.math("MULTIPLY", seen, -look.crack))
+    texture.tones.append(nodes.math("MULTIPLY", seen, -look.crack))
 
 
-def _clasts(nodes, place, look):
-    """Tone, height (None: flat) and a number from 0 to 1 for each pebble or crystal."""
-    place = nodes.vector("SCALE", place, 1.0 / look.clast_size)
-    if look.clast_size <= _CRYSTAL:
-        first = nodes.part(nodes.cells("3D", place, 1.0, "F1").outputs["Color"], 0)
-        return nodes.about(first, 2.0 * look.clasts), None, first
-    bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", place, (1.9, 2.3, -2.6)))  # not round
-    cell = nodes.cells("3D", nodes.vector("ADD", place, nodes.vector("SCALE", bent, 0.14)), 1.0, "F1")
-    first, second = nodes.part(cell.outputs["Color"], 0), nodes.part(cell.outputs["Color"], 1)
-    inside = nodes.ramp(cell.outputs["Distance"], 0.38, 0.66, 1.0, 0.0)
-    if look.packing < 1.0:
-        inside = nodes.math("MULTIPLY", inside, nodes.math("LESS_THAN", second, look.packing))
-    tone = nodes.math("MULTIPLY", nodes.about(first, 2.0 * look.clasts), inside)
-    # between pebbles it is dark
-    tone = nodes.math("ADD", tone, nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, 1.0), 0.15))
-    return tone, nodes.math("MULTIPLY", inside, 0.6 * look.clast_size * look.clasts), first
+def _add_crystals(nodes, place, look, texture):
+    """Crystals that touch one another, large ones and between them small ones."""
+    for share, size in zip(_CLAST_SHARES, _CLAST_SIZES, strict=True):
+        cell = nodes.cells("3D", nodes.vector("SCALE", place, 1.0 / (look.clast_size * size)), 1.0, "F1")
+        first, second = nodes.part(cell.outputs["Color"], 0), nodes.part(cell.outputs["Color"], 1)
+        texture.tones.append(nodes.about(first, 2.0 * look.clasts * share))
+        texture.hues.append(nodes.math("MULTIPLY_ADD", nodes.math("SUBTRACT", second, 0.5), share, 0.5))
+
+
+def _add_pebbles(nodes, place, look, rough, texture):
+    """Pebbles of many sizes: a large kind, and a small one in the matrix between them. In each cell is one of
+    random radius, or none; the relief makes their outlines uneven."""
+    free = 1.0  # of larger pebbles
+    for number, size in enumerate(_CLAST_SIZES):
+        size *= look.clast_size
+        near = nodes.vector("SCALE", nodes.vector("ADD", place, (3.1 * number, 0.0, 0.0)), 1.0 / size)
+        bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", near, (1.9, 2.3, -2.6)))  # not round
+        cell = nodes.cells("3D", nodes.vector("ADD", near, nodes.vector("SCALE", bent, 0.14)), 0.9, "F1")
+        first, second, third = (nodes.part(cell.outputs["Color"], axis) for axis in range(3))
+        away = cell.outputs["Distance"]
+        if rough is not None:
+            away = nodes.math("ADD", away, nodes.about(rough, _UNEVEN / size))
+        radius = nodes.math("MULTIPLY_ADD", second, *_RADII)
+        away = nodes.math("DIVIDE", away, radius)  # 1 on the outline
+        here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", third, look.packing), free)
+        inside = nodes.math("MULTIPLY", nodes.ramp(away, 0.92, 1.0, 1.0, 0.0), here)
+        seam = nodes.math("MULTIPLY", nodes.ramp(away, 1.0, 1.25, 1.0, 0.0), here)
+        tone = nodes.math("MULTIPLY", nodes.about(first, 2.0 * look.clasts), inside)
+        between = nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, seam), 0.3)  # around them it is dark
+        texture.tones.append(nodes.math("ADD", tone, between))
+        texture.pale.append(nodes.math("MULTIPLY", nodes.about(second, 1.6 * look.clasts), inside))
+        texture.hues.append(nodes.math("MULTIPLY_ADD", nodes.math("SUBTRACT", third, 0.5), inside, 0.5))
+        dome = nodes.math("SUBTRACT", 1.0, nodes.math("MULTIPLY", away, away))
+        dome = nodes.math("SQRT", nodes.math("MAXIMUM", dome, 0.0))
+        high = nodes.math("MULTIPLY", nodes.math("MULTIPLY", dome, radius), 0.9 * size)
+        texture.heights.append(nodes.math("MULTIPLY", high, here))
+        free = nodes.math("SUBTRACT", 1.0, nodes.math("MAXIMUM", inside, seam))
+
+
+def _add_blades(nodes, place, rough, texture):
+    """Blades of grass that lie across one another, some of them dry, on faces that are ground."""
+    bent, highest = nodes.about(rough, _BENT_BLADES), None
+    for turn, long in _BLADES:
+        across = (math.cos(turn) / _BLADE, math.sin(turn) / _BLADE, 0.0)
+        along = (-math.sin(turn) / long, math.cos(turn) / long, 0.0)
+        flat = nodes.new("ShaderNodeCombineXYZ")
+        nodes.link(nodes.math("ADD", nodes.vector("DOT_PRODUCT", place, across), bent), flat.inputs[0])
+        nodes.link(nodes.vector("DOT_PRODUCT", place, along), flat.inputs[1])
+        blade = nodes.noise(flat.outputs[0], 1.0, 1.0, "2D")
+        highest = blade if highest is None else nodes.math("MAXIMUM", highest, blade)
+    is_top = nodes.attribute("is_top")
+    highest = nodes.math("MULTIPLY", highest, is_top)
+    deep = nodes.ramp(highest, 0.4, 0.75, 0.0, 1.0)
+    tone = nodes.math("MULTIPLY", nodes.math("SUBTRACT", deep, 0.4), 0.6)
+    texture.tones.append(nodes.math("MULTIPLY", tone, is_top))
+    texture.heights.append(nodes.math("MULTIPLY", deep, 2.2 * _BLADE))
+    texture.pale.append(nodes.ramp(highest, 0.7, 0.85, 0.0, 0.35))
 
 
 def _brown_below(nodes, color):

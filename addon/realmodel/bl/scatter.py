@@ -9,11 +9,13 @@ import bpy
 import numpy as np
 
 from . import materials
+from .nodes import Nodes
 
 KEY = "realmodel_scatter"  # on an object: what it is
 TUFT, STONE = "Grass Tuft", "Stone"
-_BLADES, _LEAN = 26, 0.55  # of a tuft; how far blades lean, of their height
-_PER_UNIT = {TUFT: 2.2, STONE: 0.25}  # on a square texture unit, at density 1
+_BLADES, _LEAN, _WIDTH = 70, 0.9, 0.016  # of a tuft; how far blades lean, of their height; half their width
+_PER_UNIT = {TUFT: 6.0, STONE: 0.25}  # on a square texture unit, at density 1
+_IN_VIEWPORT = {TUFT: 0.25, STONE: 1.0}  # the share of them that viewports show, to stay fast
 _HIGH = {TUFT: (0.16, 0.42), STONE: (0.05, 0.3)}  # texture units: least and greatest size
 _GRASS = "#7d9440"
 
@@ -35,25 +37,41 @@ def item(name, material=None):
 
 
 def _grass():
+    """Blades from fresh to dry, each tuft of its own, darker at the foot and lighter at the tip."""
     material = materials.new_material("Grass Blades", materials.NO_PROPERTY, _GRASS)
     del material[materials.KEY]
+    nodes = Nodes(material.node_tree)
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    own = nodes.of("ShaderNodeObjectInfo", "Random")
+    place = nodes.of("ShaderNodeTexCoord", "Object")
+    blade = nodes.noise(place, 9.0, 0.0)
+    tint = nodes.new("ShaderNodeHueSaturation")
+    tint.inputs["Color"].default_value = shader.inputs["Base Color"].default_value
+    dry = nodes.math("MULTIPLY", nodes.math("ADD", own, nodes.about(blade, 1.6)), 0.09)
+    nodes.link(nodes.math("SUBTRACT", 0.52, dry), tint.inputs["Hue"])
+    high = nodes.ramp(nodes.part(place, 2), 0.0, 0.9, 0.45, 1.25)
+    nodes.link(nodes.math("MULTIPLY_ADD", blade, 0.5, high), tint.inputs["Value"])
+    nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
     return material
 
 
 def _tuft():
-    """Blades that lean outward from one place, each two triangles bent in the middle."""
+    """Blades that lean outward from one place and bend, tapering in three steps to a point."""
     random = np.random.default_rng(4)
     vertices, faces = [], []
     for azimuth in 2.0 * np.pi * (np.arange(_BLADES) + random.random(_BLADES)) / _BLADES:
         out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        across = np.array([-out[1], out[0], 0.0]) * 0.035
-        foot = out * 0.28 * random.random() ** 0.5
-        high, lean = 0.45 + 0.55 * random.random(), _LEAN * random.random()
-        knee = foot + out * 0.3 * lean * high + (0.0, 0.0, 0.6 * high)
-        tip = foot + out * lean * high + (0.0, 0.0, high)
+        turned = azimuth + random.normal(0.0, 0.6)
+        across = np.array([-np.sin(turned), np.cos(turned), 0.0]) * _WIDTH * (0.6 + 0.8 * random.random())
+        foot = out * 0.6 * random.random() ** 0.7
+        high, lean = 0.3 + 0.7 * random.random() ** 1.5, _LEAN * random.random()
         first = len(vertices)
-        vertices += [foot - across, foot + across, knee + 0.7 * across, knee - 0.7 * across, tip]
-        faces += [(first, first + 1, first + 2, first + 3), (first + 3, first + 2, first + 4)]
+        for share, width in ((0.0, 0.8), (0.4, 1.0), (0.75, 0.65)):
+            place = foot + out * lean * high * share**2 + (0.0, 0.0, high * (share - 0.3 * lean * share**3))
+            vertices += [place - width * across, place + width * across]
+        vertices.append(foot + out * lean * high + (0.0, 0.0, high * (1.0 - 0.3 * lean)))
+        faces += [(first + k, first + k + 1, first + k + 3, first + k + 2) for k in (0, 2)]
+        faces.append((first + 4, first + 5, first + 6))
     return np.array(vertices), faces
 
 
@@ -91,6 +109,9 @@ def on(nodes, given, geometry, name, here):
     nodes.link(geometry, made.inputs["Mesh"])
     nodes.link(here, made.inputs["Selection"])
     density = nodes.math("MULTIPLY", given["Plants and Stones"], _PER_UNIT[name])
+    in_viewport = nodes.of("GeometryNodeIsViewport", "Is Viewport")
+    shown = nodes.math("MULTIPLY_ADD", in_viewport, _IN_VIEWPORT[name] - 1.0, 1.0)
+    density = nodes.math("MULTIPLY", density, shown)
     density = nodes.math("DIVIDE", density, nodes.math("MULTIPLY", size, size))
     nodes.link(density, next(s for s in made.inputs if s.name == "Density" and s.enabled))
     nodes.link(nodes.math("ADD", given["Seed"], float(len(name))), made.inputs["Seed"])

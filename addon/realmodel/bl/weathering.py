@@ -14,22 +14,24 @@ import bpy
 import numpy as np
 
 from ..core.project.looks import DEFAULT, LOOKS
-from . import filled_beds, library_rows, looks, materials, meshes, scatter, versions
+from . import edge_wear, filled_beds, library_rows, looks, materials, meshes, scatter, versions
 from .nodes import Nodes
 
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 2
+_VERSION = 3
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
-_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6}  # texture units (looks) at 1
+# texture units (looks) at 1
+_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 0.3}
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
 _INPUTS = {
     "Strength": ("NodeSocketFloatDistance", 0.5, 0.0),
     "Edge Rounding": ("NodeSocketFloatFactor", 0.6, 0.0, 1.0),
+    "Edge Wear": ("NodeSocketFloatDistance", 0.0, 0.0),
     "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6),
     "Bed Thickness": ("NodeSocketFloatDistance", 0.5, 1e-6),
     "Seed": ("NodeSocketInt", 0, 0),
@@ -62,7 +64,8 @@ def modifier_of(item):
 @dataclass(frozen=True)
 class Weathering:
     """strength, noise: 1 suits the model. grass, scree: radians, the steepest ground that has them, 0: none.
-    detail: the number of subdivisions of polygons. plants: how many tufts and stones, 1 suits; 0: none."""
+    detail: the number of subdivisions of polygons; without any, edges do not move. plants: how many tufts and
+    stones, 1 suits; 0: none. wear: how far materials show edges worn, 1 suits; 0: not."""
 
     strength: float
     rounding: float
@@ -72,6 +75,7 @@ class Weathering:
     scree: float
     detail: int
     plants: float = 0.0
+    wear: float = 0.0
 
 
 def put_on(scene, items, given):
@@ -90,7 +94,14 @@ def put_on(scene, items, given):
         if is_bed:
             versions.set_group_input(modifier, "Hardness", _hardness_of_bed(item))
         item.pop(HARDNESS, None)
+    for material in _rocks(items):
+        edge_wear.put_on(material)
     follow(scene)
+
+
+def _rocks(items):
+    """The materials of blocks and beds."""
+    return {slot.material for item in items for slot in item.material_slots if slot.material is not None}
 
 
 def _values(given, unit):
@@ -100,6 +111,7 @@ def _values(given, unit):
         "Edge Rounding": given.rounding,
         "Noise Scale": given.noise * _UNITS["Noise Scale"] * unit,
         "Bed Thickness": given.noise * _UNITS["Bed Thickness"] * unit,
+        "Edge Wear": given.wear * _UNITS["Edge Wear"] * unit,
         "Seed": given.seed,
         "Grass Slope": given.grass,
         "Scree Slope": given.scree,
@@ -119,12 +131,15 @@ def _hardness_of_bed(item):
 
 
 def take_off(items):
-    """Removes the weathering of blocks."""
+    """Removes the weathering of blocks, and worn edges from materials that no weathered block has."""
     for item in items:
         modifier = modifier_of(item)
         if modifier is not None:
             item.modifiers.remove(modifier)
             item.pop(HARDNESS, None)
+    worn = (item for item in bpy.data.objects if item.type == "MESH" and modifier_of(item) is not None)
+    for material in _rocks(items) - _rocks(worn):
+        edge_wear.take_off(material)
 
 
 def follow(scene):
@@ -192,10 +207,14 @@ def _fill(nodes):
     reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
     push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
     geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", inward, push))
+    is_fine = nodes.math("GREATER_THAN", given["Detail"], 0.5)  # coarse polygons would lose their shape
+    rounding = nodes.math("MULTIPLY", given["Edge Rounding"], is_fine)
     for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
         middle = nodes.on("POINT", nodes.on("EDGE", position))
-        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
+        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), rounding)
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
+    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry, Selection=is_fine)
+    geometry = nodes.stored(geometry, edge_wear.ATTRIBUTE, given["Edge Wear"])
     geometry = _covered(nodes, given, geometry, is_top, position)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
 
@@ -233,7 +252,6 @@ def _covered(nodes, given, geometry, is_top, position):
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", steepest, 0.0))
         geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=given[name])
         scattered.append((thing, here))
-    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
     joined = nodes.new("GeometryNodeJoinGeometry")
     for thing, here in scattered:
         nodes.link(scatter.on(nodes, given, geometry, thing, here), joined.inputs[0])
@@ -258,6 +276,15 @@ class _Nodes(Nodes):
         node.data_type = kind
         node.inputs["Name"].default_value = meshes.PREFIX + name
         return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
+
+    def stored(self, geometry, name, value):
+        """The geometry with a number for each of its points."""
+        node = self.new("GeometryNodeStoreNamedAttribute")
+        node.data_type, node.domain = "FLOAT", "POINT"
+        node.inputs["Name"].default_value = name
+        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
+        self.link(value, _of_type(node.inputs, "VALUE"))
+        return next(s for s in node.outputs if s.type == "GEOMETRY")
 
     def nearest(self, geometry, place, values):
         """The values of fields at the point of a geometry that is nearest to a position."""

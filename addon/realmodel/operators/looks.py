@@ -81,6 +81,14 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         min=0.0,
         max=1.0,
     )
+    wear: FloatProperty(
+        name="Edge Wear",
+        description="How far materials show edges worn, in Cycles also round, without a finer mesh; 1 suits "
+        "the model",
+        default=0.5,
+        min=0.0,
+        soft_max=3.0,
+    )
     noise_scale: FloatProperty(
         name="Noise Scale",
         description="Size of hollows and of eroded beds; 1 suits the model",
@@ -126,7 +134,7 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = _blocks(context)
-        given = weathering.Weathering(*values, *covers, self.detail, self.plants)
+        given = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
         weathering.put_on(context.scene, items, given)
         self.report({"INFO"}, f"Weathered {len(items)} blocks; the modifier of each has all settings")
 

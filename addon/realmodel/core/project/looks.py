@@ -19,10 +19,10 @@ class Look:
     thick beds are (0: none), which differ in tone and are parted by grooves. joint: how far steep joints are
     apart (0: none); cells: how large are what upright cracks enclose, instead: columns, or on_top: only on
     faces that are ground. crack: how dark and deep cracks and grooves are. stain, grain: of large and of fine
-    mottling; grain_size. clasts: of pebbles or crystals that differ from one another; clast_size; packing:
-    the share of the rock that they take. hue: by how much beds and clasts differ in hue. relief: how high the
-    surface is rough; relief_size. roughness: how matt. grassy: on faces that are ground, other faces are
-    brown.
+    mottling; grain_size. clasts: of pebbles or crystals that differ from one another; clast_size, of the
+    largest; packing: the share of the places that pebbles take. hue: by how much beds and clasts differ in
+    hue. relief: how high the surface is rough; relief_size. roughness: how matt. grassy: blades on faces that
+    are ground, other faces are brown.
     hardness: from 0 to 1, how well the rock withstands weathering.
     """
 
@@ -102,8 +102,8 @@ LOOKS = {
         lamination=0.08,
         bed=4.0,
         clasts=0.3,
-        clast_size=0.9,
-        packing=0.6,
+        clast_size=0.5,
+        packing=0.8,
         hue=0.012,
         relief=0.5,
         crack=0.2,
@@ -118,7 +118,7 @@ LOOKS = {
         stain=0.14,
         grain=0.05,
         clasts=0.36,
-        clast_size=0.14,
+        clast_size=0.1,
         hue=0.012,
         relief=0.9,
         relief_size=4.0,
@@ -143,8 +143,9 @@ LOOKS = {
         "#a39a8c",
         ("gravel", "pebble", "debris", "scree", "till", "moraine"),
         0.3,
+        grain=0.2,
         clasts=0.34,
-        clast_size=0.8,
+        clast_size=0.45,
         packing=0.95,
         hue=0.012,
         relief=0.4,
