@@ -31,6 +31,7 @@ from gallery_picture import (
     SAMPLES,
     SECONDS,
     SIZE,
+    WHITE,
     Picture,
     aim,
     apply_looks,
@@ -340,7 +341,9 @@ def quarry(folder):
     picture.finish(
         "quarry",
         "Quarry",
-        "Benches of twelve meters with their ramps, cut exactly; on the board what they take of each layer.",
+        "Benches of twelve meters with their ramps, cut exactly; on the board what they remove from each "
+        "layer.",
+        color=WHITE,
         exposure=0.15,
     )
 

@@ -49,11 +49,11 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_compile_options(realmodel_loaded_late INTERFACE -ftls-model=initial-exec)
 endif()
 
-# What users build has the sources of each folder in one unit: half of the processor time, because most of a
-# file's is for headers. What developers build (assertions, sanitizers) has a unit for each file: a change of one
-# compiles one, and it is seen that each includes what it needs. Sources with options of their own stay alone.
+# The sources of each folder are one unit: half of the processor time, because most of a file's is for headers.
+# In `dev` there is a unit for each file: a change of one compiles one, and it is seen that each includes what it
+# needs. Sources with options of their own stay alone.
 function(build_by_folder target)
-    if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+    if(CMAKE_BUILD_TYPE STREQUAL "Debug")
         return()
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP

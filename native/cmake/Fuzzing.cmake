@@ -6,6 +6,7 @@ if(WIN32) # the fuzzers give every case a process of its own, by fork()
     list(FILTER fuzzing_sources EXCLUDE REGEX own_process)
 endif()
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
+build_by_folder(realmodel_fuzzing)
 target_include_directories(realmodel_fuzzing PUBLIC fuzz PRIVATE src)
 # Debian's property_tree includes a header that asks every reader to say so.
 set_source_files_properties(fuzz/case_file.cpp PROPERTIES COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)

@@ -262,7 +262,7 @@ Mesh second_surface(RandomSource& random, const Mesh& first, std::string& label)
     }
 }
 
-void mutate(RandomSource& random, StackCase& pair) {
+void mutate_pair(RandomSource& random, StackCase& pair) {
     auto& surfaces = pair.rocks[0].surfaces;
     Mesh &mesh = surfaces[random.below(2)], &other = surfaces[random.below(2)];
     Point& p = mesh.vertices[random.below(mesh.vertices.size())];
@@ -318,7 +318,7 @@ StackCase boolean_case(std::uint64_t seed, std::uint64_t number,
         pair.rocks[0].surfaces = {first, second};
     }
     for (int i = random.with(0.4) ? random.between(1, 4) : 0; i > 0; --i)
-        mutate(random, pair);
+        mutate_pair(random, pair);
     if (random.with(0.2)) {  // elsewhere in the world
         const Point far{random.uniform(0, 1e6), random.uniform(0, 6e6), random.uniform(-1e3, 1e3)};
         const double scale = random.one_of({1.0, 0.1, 100.0});

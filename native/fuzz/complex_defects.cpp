@@ -9,16 +9,13 @@
 #include <set>
 #include <tuple>
 
+#include "base/ulp.hpp"
+
 namespace realmodel::fuzz {
 
 namespace {
 
 using strata::CellComplex;
-
-double spacing(double value) {
-    value = std::abs(value);
-    return std::nextafter(value, HUGE_VAL) - value;
-}
 
 Point minus(const Point& a, const Point& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -82,7 +79,7 @@ public:
         double largest = 0;
         for (const Point& p : c.vertices)
             largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
-        return spacing(largest);
+        return ulp(largest);
     }
 
     const CellComplex& c;
@@ -201,7 +198,7 @@ void check_volumes(const View& view, Findings& findings) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             largest = std::max({largest, std::abs(low[i][axis]), std::abs(high[i][axis])});
         const Point size = minus(high[i], low[i]);
-        const double step = spacing(largest);
+        const double step = ulp(largest);
         const double rounding =
             16 * step * (size[0] * size[1] + size[1] * size[2] + size[0] * size[2] + step * step);
         if (volume[i] < -rounding)
@@ -228,7 +225,7 @@ void check_faces(const View& view, Findings& findings) {
     double largest = 0;
     for (const Point& p : view.c.vertices)
         largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    const double small = 1e6 * spacing(largest);
+    const double small = 1e6 * ulp(largest);
     for (std::size_t f = 0; f < view.faces(); ++f) {
         const auto v = view.corners(f);
         const Point normal = view.normal(f);
@@ -314,7 +311,7 @@ std::vector<Defect> boundary_differences(const CellComplex& columns, const CellC
         }
         for (const Point& p : c.vertices) {
             for (const double x : p)
-                step = std::max(step, spacing(x));
+                step = std::max(step, ulp(x));
         }
         return area;
     };

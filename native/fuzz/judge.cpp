@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/ulp.hpp"
 #include "digest.hpp"
 #include "exact_volumes.hpp"
 #include "realmodel/base/errors.hpp"
@@ -17,11 +18,6 @@ namespace {
 
 using strata::CellComplex;
 using strata::CellKind;
-
-double spacing(double value) {
-    value = std::abs(value);
-    return std::nextafter(value, HUGE_VAL) - value;
-}
 
 CellComplex built(const StackCase& stack, int threads, strata::CellKind cells) {
     return strata::build_rock_masses(views_of(stack), {threads, nullptr}, cells);
@@ -151,7 +147,7 @@ std::vector<double> volume_allowance(const StackCase& stack, const std::vector<d
     Point extent{}, step{};
     for (std::size_t axis = 0; axis < 3 && low[axis] <= high[axis]; ++axis) {
         extent[axis] = high[axis] - low[axis];
-        step[axis] = spacing(std::max(std::abs(low[axis]), std::abs(high[axis])));
+        step[axis] = ulp(std::max(std::abs(low[axis]), std::abs(high[axis])));
     }
     const double rounding = 64 * (step[2] * extent[0] * extent[1] +
                                   (step[0] * extent[1] + step[1] * extent[0]) * extent[2]);

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ulp.hpp"
 #include "complex_defects.hpp"
 
 namespace realmodel::fuzz {
 
 namespace {
-
-double spacing(double value) {
-    value = std::abs(value);
-    return std::nextafter(value, HUGE_VAL) - value;
-}
 
 struct PlaneAt {
     double z, slope;
@@ -58,7 +54,7 @@ bool on_some_plane(const Mesh& surface, const Point& point, double reach) {
         if (!plane) continue;
         const double size = std::max(std::abs(lowest), std::abs(highest));
         if (std::abs(plane->z - point[2]) <=
-            1e-6 * (highest - lowest) + 64 * spacing(size) + plane->slope * reach)
+            1e-6 * (highest - lowest) + 64 * ulp(size) + plane->slope * reach)
             return true;
     }
     return false;
@@ -77,7 +73,7 @@ std::vector<Defect> surface_defects(const strata::CellComplex& c, const StackCas
                 largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
         }
     }
-    const double reach = 64 * spacing(largest);
+    const double reach = 64 * ulp(largest);
     std::vector<Defect> defects;
     for (std::size_t f = 0; f < c.face_cells.size(); ++f) {
         const std::int32_t s = c.face_surface[f];

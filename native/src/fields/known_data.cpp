@@ -260,18 +260,17 @@ Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) co
 }
 
 std::vector<Inequality> KnownData::inequalities() const {
-    using Kind = Inequality::Kind;
     std::vector<Inequality> out;
     for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
         const std::size_t younger = reference(k + 1);
         out.push_back({difference(younger, reference(k)), kLeastRise * total_gap() / data_.surfaces,
-                       Kind::kOrder, k, contacts_[younger]});
+                       Inequality::Kind::kOrder, k, contacts_[younger]});
     }
     for (std::size_t n = 0; n < data_.dips.size(); ++n) {
         const Vec3 at = frame_.to_local(data_.dips[n]);
         out.push_back({{{}, {slope(n, data_.normals[n])}, 0, false},
                        kLeastRise,
-                       Kind::kPolarity,
+                       Inequality::Kind::kPolarity,
                        static_cast<std::int64_t>(n),
                        at});
     }
@@ -279,9 +278,11 @@ std::vector<Inequality> KnownData::inequalities() const {
         const auto item = static_cast<std::int64_t>(n);
         const Vec3 at = frame_.to_local(data_.bounds[n]);
         if (data_.bound_below[n] >= 0)
-            out.push_back({bound(n, data_.bound_below[n], 1), 0, Kind::kBound, item, at});
+            out.push_back(
+                {bound(n, data_.bound_below[n], 1), 0, Inequality::Kind::kBound, item, at});
         if (data_.bound_above[n] >= 0)
-            out.push_back({bound(n, data_.bound_above[n], -1), 0, Kind::kBound, item, at});
+            out.push_back(
+                {bound(n, data_.bound_above[n], -1), 0, Inequality::Kind::kBound, item, at});
     }
     return out;
 }

@@ -35,9 +35,7 @@ ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& level
     for (std::size_t t = 0; t < plan.triangles(); ++t) {
         poll(progress, t);
         for (std::size_t i = 0; i < 3; ++i) {
-            // elsewhere neighbors share all their sides
-            const std::int32_t n = plan.neighbor(t, i);
-            if (n >= 0 && !plan.is_inner_step(t, i) && columns.elements(index(n)) > 0) continue;
+            if (shares_sides(t, i)) continue;
             for_sides(t, i, [&](std::size_t element, bool is_shared, std::size_t) {
                 if (!is_shared)
                     open_sides_[element] =
@@ -45,6 +43,12 @@ ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& level
             });
         }
     }
+}
+
+/// Whether the columns beside an edge have all their sides there in common.
+bool ElementQuality::shares_sides(std::size_t t, std::size_t edge) const {
+    const std::int32_t n = plan_.neighbor(t, edge);
+    return n >= 0 && !plan_.is_inner_step(t, edge) && columns_.elements(index(n)) > 0;
 }
 
 /// Both columns beside an edge have the heights of its ends in ascending order, so one pass over
@@ -85,6 +89,7 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
         for (std::size_t i = 0; i < 3; ++i)
             border |= plan_.neighbor(t, i) < 0 ? 1U << i : 0U;
         const std::size_t first = columns_.offset[t], count = columns_.elements(t);
+        const Corners at = corners(t);
         for (std::size_t e = first; e < first + count; ++e) {
             const bool is_first = e == first, is_last = e + 1 == first + count;
             const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
@@ -94,19 +99,19 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
                 if (is_first == is_last || count < 3 ||
                     columns_.blocks[e] != columns_.blocks[is_first ? e + 1 : e - 1])
                     continue;
+                if (is_tall(at, e)) continue;
             }
-            if (is_tall(t, e) && moved_corners(e) == 3) continue;
-            const double independence = determinant(t, e, is_first, is_last, border);
+            const double independence = determinant(at, e, is_first, is_last, border);
             const bool is_weak = independence < kWeakDeterminant,
                        leans = moved_corners(e) < 3 &&
-                               ((!is_first && leans_at(t, e - 1, kSteepFace, false)) ||
-                                (!is_last && leans_at(t, e, kSteepFace, false)));
+                               ((!is_first && leans_at(at, e - 1, kSteepFace, false)) ||
+                                (!is_last && leans_at(at, e, kSteepFace, false)));
             if (!is_weak && !leans) continue;
             for (std::size_t i = 0; i < 3; ++i) {
                 if (low[i] == high[i]) continue;
                 const bool upper = is_first && !is_last;  // which of its heights goes
                 const std::int32_t gone = upper ? high[i] : low[i];
-                const double rise = position(t, i, high[i])[2] - position(t, i, low[i])[2];
+                const double rise = at.z(i, high[i]) - at.z(i, low[i]);
                 // one alone in its column would only make its neighbor the end
                 if ((independence > kNoDeterminant || (is_first && is_last)) &&
                     divides_blocks(t, i, gone) && rise >= kThickEnd * minimum_thickness_)
@@ -131,7 +136,8 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
 /// The neighbor within takes the volume, but what stands out of the top goes.
 bool ElementQuality::gives_upward(std::size_t t, std::size_t element) const {
     const std::size_t first = columns_.offset[t], count = columns_.elements(t);
-    return count > 1 && (element == first || (element + 1 == first + count && is_tall(t, element)));
+    return count > 1 &&
+           (element == first || (element + 1 == first + count && is_tall(corners(t), element)));
 }
 
 /// Gives up an element: its upper heights, or its lower ones.
@@ -148,8 +154,9 @@ std::vector<ElementBody> ElementQuality::bodies() const {
     std::vector<ElementBody> made(columns_.fronts.size());
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
+        const Corners at = corners(t);
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t] + columns_.elements(t); ++e)
-            made[e] = body(t, e);
+            made[e] = body(at, e);
     }
     return made;
 }
@@ -162,12 +169,12 @@ void ElementQuality::for_faces(const Visit& visit) const {
         poll(progress_, t);
         if (columns_.elements(t) == 0) continue;
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
-        const auto& nodes = plan_.corners(t);
+        const Corners at = corners(t);
         for (std::size_t e = first; e <= end; ++e) {
             const Front& front = columns_.fronts[e];
-            Face face{{}, flat_area(t, front), {}};
+            Face face{{}, at.flat_area(front), {}};
             for (std::size_t i = 0; i < 4; ++i)
-                face.corners[i] = position(t, i % 3, front[i % 3]);
+                face.corners[i] = at.at(i % 3, front[i % 3]);
             for (std::size_t k = 0; k < 3; ++k)
                 face.center[k] = (face.corners[0][k] + face.corners[1][k] + face.corners[2][k]) / 3;
             const Place below{t, e == first ? kNone : e - 1}, above{t, e == end ? kNone : e};
@@ -179,13 +186,13 @@ void ElementQuality::for_faces(const Visit& visit) const {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t n = plan_.neighbor(t, i);
             const std::size_t j = (i + 1) % 3;
-            const auto a = levels_.heights(nodes[i]), b = levels_.heights(nodes[j]);
+            if (shares_sides(t, i) && index(n) < t) continue;
             for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
                 if (is_shared && index(n) < t) return;
                 const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
-                const Face face = side_face(plan_.point(nodes[i]), plan_.point(nodes[j]),
-                                            {a[index(low[i])], b[index(low[j])]},
-                                            {a[index(high[i])], b[index(high[j])]});
+                const Face face =
+                    side_face(at.plan[i], at.plan[j], {at.z(i, low[i]), at.z(j, low[j])},
+                              {at.z(i, high[i]), at.z(j, high[j])});
                 visit(face, Place{t, e}, is_shared ? Place{index(n), beyond} : Place{t, kNone});
             });
         }
@@ -200,9 +207,10 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
         const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
         if (columns_.elements(t) == 1) {
             // a thick one alone in its column stays: without it its neighbor would be the end
+            const Corners at = corners(t);
             double rise = 0;
             for (std::size_t i = 0; i < 3; ++i)
-                rise = std::max(rise, position(t, i, high[i])[2] - position(t, i, low[i])[2]);
+                rise = std::max(rise, at.z(i, high[i]) - at.z(i, low[i]));
             if (is_narrow[t] == 0 || rise >= kThickEnd * minimum_thickness_) return;
         }
         this->give_up(t, e, upper, found);
@@ -210,8 +218,9 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
+        const Corners at = corners(t);
         for (std::size_t e = first; e < end; ++e) {
-            if (determinant(t, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
+            if (determinant(at, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
                 give_up({t, e}, gives_upward(t, e));
         }
     }
@@ -223,8 +232,9 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
         const bool is_own = a.volume < b.volume;
         const auto [t, e] = is_own ? own : other;
         const bool is_last = e + 1 == columns_.offset[t] + columns_.elements(t);
-        give_up({t, e}, own.triangle != other.triangle ? gives_upward(t, e)
-                                                       : is_own || (is_last && is_tall(t, e)));
+        give_up({t, e}, own.triangle != other.triangle
+                            ? gives_upward(t, e)
+                            : is_own || (is_last && is_tall(corners(t), e)));
     });
     return found;
 }
@@ -298,8 +308,8 @@ void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const st
         }
         if (is_outer && !is_side) return;  // too tall rather than too thin
         const std::size_t next = is_outer ? e : whole_of(other.element);
-        const bool is_own =
-            e == next || body(own.triangle, e).volume < body(other.triangle, next).volume;
+        const bool is_own = e == next || body(corners(own.triangle), e).volume <
+                                             body(corners(other.triangle), next).volume;
         const std::size_t t = is_own ? own.triangle : other.triangle, smaller = is_own ? e : next;
         if (columns_.elements(t) == 1) return;
         const bool upper = is_side || e == next ? joins_upward(t, smaller) : is_own;
@@ -314,7 +324,9 @@ bool ElementQuality::joins_upward(std::size_t t, std::size_t e) const {
     if (e + 1 == columns_.offset[t] + columns_.elements(t)) return false;
     const bool below = columns_.blocks[e - 1] == columns_.blocks[e],
                above = columns_.blocks[e + 1] == columns_.blocks[e];
-    return below == above ? body(t, e + 1).volume < body(t, e - 1).volume : above;
+    if (below != above) return above;
+    const Corners at = corners(t);
+    return body(at, e + 1).volume < body(at, e - 1).volume;
 }
 
 std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t> is_asked) const {
@@ -326,15 +338,15 @@ std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t
                          [&](std::int32_t n) { return is_asked[index(n)] != 0; }))
             continue;
         const std::size_t first = columns_.offset[t];
+        const Corners at = corners(t);
         for (std::size_t e = first; e + 1 < first + columns_.elements(t); ++e) {
-            if (!leans_at(t, e, kEasedFace, true)) continue;
+            if (!leans_at(at, e, kEasedFace, true)) continue;
             const Front& face = columns_.fronts[e + 1];
             double mean = 0;
             for (std::size_t i = 0; i < 3; ++i)
-                mean += position(t, i, face[i])[2] / 3;
+                mean += at.z(i, face[i]) / 3;
             for (std::size_t i = 0; i < 3; ++i)
-                moves.push_back(
-                    {nodes[i], face[i], kEasedShare * (mean - position(t, i, face[i])[2])});
+                moves.push_back({nodes[i], face[i], kEasedShare * (mean - at.z(i, face[i]))});
         }
     }
     return moves;
@@ -371,9 +383,9 @@ void ElementQuality::add_spare(Removals& last, Removals& found) const {
 
 /// Whether an element is higher than its triangle is wide: it would only get worse if it became one
 /// with the next.
-bool ElementQuality::is_tall(std::size_t t, std::size_t element) const {
-    const ElementBody own = body(t, element);
-    const double area = flat_area(t, columns_.fronts[element])[2];
+bool ElementQuality::is_tall(const Corners& at, std::size_t element) const {
+    const ElementBody own = body(at, element);
+    const double area = at.flat_area(columns_.fronts[element])[2];
     return own.volume > area * std::sqrt(2 * area);
 }
 
@@ -401,23 +413,23 @@ std::size_t ElementQuality::moved_corners(std::size_t element) const {
 /// Whether the line between the centers of an element and the next one leans by more than kMostLean
 /// from the direction across the face between them. Asked of faces that are steeper, or flatter,
 /// than an angle of this cosine.
-bool ElementQuality::leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const {
-    const Vec3 area = flat_area(t, columns_.fronts[below + 1]);
+bool ElementQuality::leans_at(const Corners& at, std::size_t below, double cosine,
+                              bool steeper) const {
+    const Vec3 area = at.flat_area(columns_.fronts[below + 1]);
     const double across = dot(area, area);
     if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
-    const Vec3 line = minus(body(t, below + 1).center, body(t, below).center);
+    const Vec3 line = minus(body(at, below + 1).center, body(at, below).center);
     return dot(line, area) < kMostLean * std::sqrt(dot(line, line) * across);
 }
 
 /// The center of an element's volume: its upright edges weigh as they are long.
-ElementBody ElementQuality::body(std::size_t t, std::size_t element) const {
-    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+ElementBody ElementQuality::Corners::body(const Front& low, const Front& high) const {
     std::array<Vec3, 3> from;
     std::array<double, 3> rise;
     double total = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        from[i] = position(t, i, low[i]);
-        rise[i] = position(t, i, high[i])[2] - from[i][2];
+        from[i] = at(i, low[i]);
+        rise[i] = z(i, high[i]) - from[i][2];
         total += rise[i];
     }
     // integrals over a triangle of two linear functions: 1/12 of their products at different
@@ -428,6 +440,7 @@ ElementBody ElementQuality::body(std::size_t t, std::size_t element) const {
         share[j] = rise[j] / (4 * total);
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
+            if (rise[j] == 0) continue;  // two of three in tetrahedra
             const double weight = (i == j ? 2 : 1) * share[j];
             made.center[0] += weight * from[i][0];
             made.center[1] += weight * from[i][1];
@@ -439,30 +452,32 @@ ElementBody ElementQuality::body(std::size_t t, std::size_t element) const {
     return made;
 }
 
-Vec3 ElementQuality::flat_area(std::size_t t, const Front& front) const {
-    return times(0.5, triangle_normal(position(t, 0, front[0]), position(t, 1, front[1]),
-                                      position(t, 2, front[2])));
+Vec3 ElementQuality::Corners::flat_area(const Front& front) const {
+    return times(0.5, triangle_normal(at(0, front[0]), at(1, front[1]), at(2, front[2])));
 }
 
-Vec3 ElementQuality::position(std::size_t t, std::size_t corner, std::int32_t at) const {
-    const std::int32_t node = plan_.corners(t)[corner];
-    const PlanPoint& p = plan_.point(node);
-    return {p[0], p[1], levels_.heights(node)[index(at)]};
+ElementQuality::Corners ElementQuality::corners(std::size_t t) const {
+    Corners at;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::int32_t node = plan_.corners(t)[i];
+        at.plan[i] = plan_.point(node);
+        at.heights[i] = levels_.heights(node);
+    }
+    return at;
 }
 
-double ElementQuality::determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
-                                   unsigned open_sides) const {
+double ElementQuality::determinant(const Corners& at, std::size_t element, bool is_first,
+                                   bool is_last, unsigned open_sides) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     std::array<Vec3, 5> areas;
     std::size_t count = 0;
-    if (!is_first) areas[count++] = flat_area(t, low);
-    if (!is_last) areas[count++] = flat_area(t, high);
+    if (!is_first) areas[count++] = at.flat_area(low);
+    if (!is_last) areas[count++] = at.flat_area(high);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         if ((open_sides >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
-        const Vec3 a = position(t, i, low[i]), b = position(t, j, low[j]);
-        const double rise =
-            (position(t, i, high[i])[2] - a[2] + position(t, j, high[j])[2] - b[2]) / 2;
+        const Vec3 a = at.at(i, low[i]), b = at.at(j, low[j]);
+        const double rise = (at.z(i, high[i]) - a[2] + at.z(j, high[j]) - b[2]) / 2;
         areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
     }
     return determinant_of(std::span(areas).first(count));

@@ -65,10 +65,26 @@ private:
         std::size_t triangle, element;
     };
 
+    /// Where the corners of the elements over one triangle are, looked up once for all of them.
+    struct Corners {
+        std::array<Vec2, 3> plan;
+        std::array<std::span<const double>, 3> heights;  ///< of each node
+
+        Vec3 at(std::size_t corner, std::int32_t height) const {
+            return {plan[corner][0], plan[corner][1], z(corner, height)};
+        }
+        double z(std::size_t corner, std::int32_t height) const {
+            return heights[corner][static_cast<std::size_t>(height)];
+        }
+        Vec3 flat_area(const Front& front) const;
+        ElementBody body(const Front& low, const Front& high) const;
+    };
+
+    Corners corners(std::size_t t) const;
     std::size_t moved_corners(std::size_t element) const;
-    Vec3 position(std::size_t t, std::size_t corner, std::int32_t at) const;
-    Vec3 flat_area(std::size_t t, const Front& front) const;
-    ElementBody body(std::size_t t, std::size_t element) const;
+    ElementBody body(const Corners& at, std::size_t element) const {
+        return at.body(columns_.fronts[element], columns_.fronts[element + 1]);
+    }
     std::vector<ElementBody> bodies() const;
     bool gives_upward(std::size_t t, std::size_t element) const;
     bool joins_upward(std::size_t t, std::size_t e) const;
@@ -79,10 +95,11 @@ private:
     ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
     void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
                      Skewed& found) const;
-    bool leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const;
-    double determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
+    bool leans_at(const Corners& at, std::size_t below, double cosine, bool steeper) const;
+    double determinant(const Corners& at, std::size_t element, bool is_first, bool is_last,
                        unsigned open_sides) const;
-    bool is_tall(std::size_t t, std::size_t element) const;
+    bool is_tall(const Corners& at, std::size_t element) const;
+    bool shares_sides(std::size_t t, std::size_t edge) const;
     bool divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const;
     void add_spare(Removals& last, Removals& found) const;
     /// Calls visit(element, is_shared, beyond) for each upright side at one edge of a triangle:

@@ -89,7 +89,7 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
     parallel_ranges(
         of_parts.size(), 1 << 6, parts.execution,
         [&](std::size_t begin, std::size_t end) {
-            std::vector<Edge> uses;
+            std::vector<std::uint64_t> uses;
             for (std::size_t part = begin; part < end; ++part) {
                 uses.clear();
                 for (const std::int32_t p : parts.pieces_of[part]) {
@@ -97,12 +97,13 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
                     for (std::size_t i = 0; i < nodes.size(); ++i) {
                         const NodeId a = nodes[i], b = nodes[i + 1 < nodes.size() ? i + 1 : 0];
                         if (parts.is_near[index(a)] != 0 && parts.is_near[index(b)] != 0)
-                            uses.push_back(unordered(a, b));
+                            uses.push_back(cutting::edge_number(a, b));
                     }
                 }
                 std::ranges::sort(uses);
                 for (std::size_t i = 2; i < uses.size(); ++i) {
-                    if (uses[i] == uses[i - 2]) of_parts[part].push_back(uses[i]);
+                    if (uses[i] == uses[i - 2])
+                        of_parts[part].push_back(cutting::ends_of_edge(uses[i]));
                 }
             }
         },

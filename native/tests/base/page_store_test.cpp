@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "realmodel/base/array.hpp"
 
 namespace realmodel {
@@ -141,7 +142,7 @@ TEST(PageStore, ThreadsTakeAndDropAtOnce) {
     std::vector<int> wrong(4);
     for (std::size_t t = 0; t < wrong.size(); ++t) {
         threads.emplace_back([t, &wrong] {
-            for (std::uint64_t round = 0; round < 40; ++round) {
+            for (std::uint64_t round = 0; round < (kSanitized ? 10 : 40); ++round) {
                 Array<std::uint64_t> flat((2 + (round * (t + 3)) % 5) * kLarge / 5);
                 fill(flat, round);
                 Array<std::uint64_t> growing(kLarge / 5 * 2);

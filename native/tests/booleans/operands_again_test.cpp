@@ -48,8 +48,9 @@ struct Moved {
 std::vector<Moved> copies(const Mesh& mesh) {
     std::vector<Moved> made;
     for (const double by : {1e-12, 1e-9, 1e-6, 1e-3, 0.02}) {
-        if (kSanitized && by != 1e-9 && by != 1e-3) continue;
-        made.push_back({"jittered by " + std::to_string(by), jittered(mesh, by)});
+        if (!kSanitized || by == 1e-9)
+            made.push_back({"jittered by " + std::to_string(by), jittered(mesh, by)});
+        if (kSanitized && by != 1e-3) continue;
         Mesh turned = mesh;
         rotate(turned, by, 2);
         made.push_back({"turned by " + std::to_string(by), std::move(turned)});

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <span>
 
 #include "../sanitized.hpp"
 #include "plan_mesh_checks.hpp"
@@ -247,7 +248,7 @@ TEST(CloseOutlines, VeryShortEdgesBesideLongOnes) {
 TEST(CloseOutlines, RandomRingsOnAFewDoubles) {
     std::mt19937 random(3);
     int meshed = 0;
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < (kSanitized ? 100 : 300); ++round) {
         const Frame& frame = frames[round % 3];
         std::vector<Ring> rings(1 + random() % 3);
         for (Ring& ring : rings) {
@@ -268,11 +269,11 @@ TEST(CloseOutlines, RandomRingsOnAFewDoubles) {
         ++meshed;
         expect_meshed(rings, frame.unit);
     }
-    EXPECT_GT(meshed, 40);
+    EXPECT_GT(meshed, kSanitized ? 12 : 40);
 }
 
 TEST(CloseOutlines, LinesAndPointsThatComeClose) {
-    for (const Frame& frame : frames) {
+    for (const Frame& frame : std::span(frames).first(kSanitized ? 1 : 3)) {
         const PlanPoint a = frame(0, 0), b = frame(10, 0), c = frame(10, 10), d = frame(0, 10);
         const double gap = above(frame(5, 0)[0]);
         const std::vector<Ring> rings{{a, {frame(5, 0)[0], a[1]}, {frame(5, 0)[0], d[1]}, d},

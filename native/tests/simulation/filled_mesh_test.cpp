@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/corner_tetrahedra.hpp"
 #include "simulation/flat_tetrahedra.hpp"
@@ -145,8 +146,10 @@ TEST(FilledMeshTest, EveryLocalLengthEnds) {
     const DividedBox box;
     for (const double local : {0.3, 0.8})
         for (const double distance : {0.0, 2.0})
-            for (const double share : {0.25, 1.0})
+            for (const double share : {0.25, 1.0}) {
+                if (kSanitized && (distance == 0) == (local == 0.3)) continue;
                 expect_valid(box.filled(2, share * local, {0, 1}, {{{{5, 2}}, local, distance}}));
+            }
 }
 
 /// The mean length of the edges whose middles lie nearer to a line along z than `reach`, or

@@ -88,8 +88,7 @@ std::optional<Contraction::Shape> Contraction::shape(std::span<const std::int32_
         ++found.count;
         const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            const auto [a, b] = unordered(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]);
-            uses.push_back(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b));
+            uses.push_back(edge_number(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]));
             found.box.include(parts_.at(loop[k]));
         }
     }
