@@ -46,6 +46,7 @@ _JOINT_SETS = (((0.93, 0.35, 0.09), 1.9), ((-0.46, 0.88, -0.14), 1.0))  # normal
 _CRYSTAL = 0.4  # clasts of this size and smaller touch one another
 _CLAST_SIZES, _CLAST_SHARES = (1.0, 0.36), (0.5, 0.8)  # large and small clasts; how far crystals differ
 _RADII = 0.34, 0.22  # of pebbles, of the size of a cell: how much they differ, and the least
+_ROUND = -3.0, 1.08  # how pebbles end at the border of their cell
 _UNEVEN = 0.08  # texture units: how uneven the outlines of pebbles are
 _OCTAVES = 7.0  # of the relief: a hundredth of its size, so that it is rough at two meters, too
 _WAVY = 0.16  # texture units: how far laminae are from straight
@@ -330,13 +331,16 @@ def _add_pebbles(nodes, place, look, rough, texture):
         size *= look.clast_size
         near = nodes.vector("SCALE", nodes.vector("ADD", place, (3.1 * number, 0.0, 0.0)), 1.0 / size)
         bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", near, (1.9, 2.3, -2.6)))  # not round
-        cell = nodes.cells("3D", nodes.vector("ADD", near, nodes.vector("SCALE", bent, 0.14)), 0.9, "F1")
+        near = nodes.vector("ADD", near, nodes.vector("SCALE", bent, 0.14))
+        cell, border = (nodes.cells("3D", near, 0.9, feature) for feature in ("F1", "DISTANCE_TO_EDGE"))
         first, second, third = (nodes.part(cell.outputs["Color"], axis) for axis in range(3))
         away = cell.outputs["Distance"]
         if rough is not None:
             away = nodes.math("ADD", away, nodes.about(rough, _UNEVEN / size))
         radius = nodes.math("MULTIPLY_ADD", second, *_RADII)
         away = nodes.math("DIVIDE", away, radius)  # 1 on the outline
+        # rounded off where they come near the border of their cell, so that none is cut there
+        away = nodes.math("MAXIMUM", away, nodes.math("MULTIPLY_ADD", border.outputs["Distance"], *_ROUND))
         here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", third, look.packing), free)
         inside = nodes.math("MULTIPLY", nodes.ramp(away, 0.92, 1.0, 1.0, 0.0), here)
         seam = nodes.math("MULTIPLY", nodes.ramp(away, 1.0, 1.25, 1.0, 0.0), here)
@@ -344,7 +348,8 @@ def _add_pebbles(nodes, place, look, rough, texture):
         between = nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, seam), 0.3)  # around them it is dark
         texture.tones.append(nodes.math("ADD", tone, between))
         texture.pale.append(nodes.math("MULTIPLY", nodes.about(second, 1.6 * look.clasts), inside))
-        texture.hues.append(nodes.math("MULTIPLY_ADD", nodes.math("SUBTRACT", third, 0.5), inside, 0.5))
+        hue = nodes.math("MULTIPLY", nodes.math("SUBTRACT", third, 0.5), 0.5)
+        texture.hues.append(nodes.math("MULTIPLY_ADD", hue, inside, 0.5))
         dome = nodes.math("SUBTRACT", 1.0, nodes.math("MULTIPLY", away, away))
         dome = nodes.math("SQRT", nodes.math("MAXIMUM", dome, 0.0))
         high = nodes.math("MULTIPLY", nodes.math("MULTIPLY", dome, radius), 0.9 * size)
