@@ -145,8 +145,9 @@ TEST(Spline, BesideASlitBothSidesAreMet) {
     for (const Spline& spline :
          {Spline(known, {kStretched, {}, 3, 2}, {}), Spline(differences, second, {})}) {
         for (const Functional& functional : known) {
-            if (functional.slopes.empty())
+            if (functional.slopes.empty()) {
                 EXPECT_NEAR(spline.of(functional), functional.right, 1e-8);
+            }
         }
         // across the open part it jumps, between data, too
         const double jump =
