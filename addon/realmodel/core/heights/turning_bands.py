@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.algebra import norm
+from ..base.algebra import dot, norm
 from ..base.elementary import cos, exp, hypot, sin
 from ..base.work import Work, native_module
 from ..settings.variogram import NO_ANISOTROPY, Structure, Variogram
@@ -106,7 +106,7 @@ class GaussianField:
         crests = part.anisotropy or self.anisotropy or NO_ANISOTROPY
         ratio = max(crests["ratio"], 1 / crests["ratio"])
         azimuth = math.radians(crests["azimuth"])
-        across = local @ np.array([cos(azimuth), -sin(azimuth)])
+        across = dot(local, np.array([cos(azimuth), -sin(azimuth)]))
         turn = 2 * math.pi * ratio / part.range * across
         plain = Structure("gaussian", part.range, part.sill, NO_ANISOTROPY)
         one, other = (self._of_structure(work, number, plain, local) for number in numbers)
