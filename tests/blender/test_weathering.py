@@ -247,7 +247,7 @@ class Weathering(PanelCase):
         sharp = self.rendered(item)
         ops.weathering(wear=12.0, **given)
         changed = np.abs(self.rendered(item) - sharp).max(axis=2)[18:30]
-        self.assertGreater(sharp[18:30, 8:].min(), 0.02)
+        self.assertGreater(sharp[18:30, 8:].mean(), 0.02)  # the wall is seen
         self.assertLess(changed[:, 20:44].max(), 0.004)
         self.assertGreater(changed[:, 8:10].mean(), 0.015)
 
