@@ -117,7 +117,7 @@ def chapter(walk, draw):
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
     space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
     space.shading.studio_light = LIGHT
-    # an empty viewport where panels alone are kept: a large one is drawn in vain
+    # empty where only panels are kept: drawing its objects takes long, and nobody sees them
     space.show_object_viewport_mesh = draw not in chapters.OF_PANELS
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50

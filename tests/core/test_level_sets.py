@@ -7,10 +7,16 @@ from folded_rocks import contacts, recumbent
 from realmodel.core import Lattice, ScalarField
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run
-from realmodel.core.fields import are_on, level_solids, with_contacts, within_lattice
+from realmodel.core.fields import SharedCorners, are_on, fields_with_contacts, level_solids, within_lattice
 
 LATTICE = Lattice((-0.3, -0.4, -0.2), (0.9, 0.8, 0.85), (13, 14, 13))
 LEVELS = np.array([1.5, 3.0])
+
+
+def with_contacts(field, places, surfaces):
+    """One field through all contacts."""
+    shared = SharedCorners(np.arange(field.lattice.nodes)[None], np.ones((1, len(places)), bool))
+    return run(lambda work: fields_with_contacts(work, [field], places, surfaces, shared))[0]
 
 
 @pytest.fixture
@@ -24,7 +30,7 @@ def through():
 def test_the_field_has_its_levels_at_contacts(through):
     field, places, surfaces = through
     missed = np.abs(field.at(places) - LEVELS[surfaces])
-    own = run(lambda work: with_contacts(work, field, places, surfaces))
+    own = with_contacts(field, places, surfaces)
     assert missed.max() > 0.05
     np.testing.assert_allclose(own.at(places), LEVELS[surfaces], rtol=1e-12)
     # the nodes alone nearly do, too, and have moved no more than they had to
@@ -35,7 +41,7 @@ def test_the_field_has_its_levels_at_contacts(through):
 
 def test_contacts_are_vertices_of_closed_level_sets(through):
     field, places, surfaces = through
-    own = run(lambda work: with_contacts(work, field, places, surfaces))
+    own = with_contacts(field, places, surfaces)
     solids = run(lambda work: level_solids(work, own))
     for surface, solid in enumerate(solids):
         level_set = within_lattice(own, solid)
@@ -55,7 +61,7 @@ def test_contacts_denser_than_nodes_are_vertices_and_bend_it_no_more_than_they_m
     plan = random.uniform([4.625, 5.5], [5.625, 6.5], (40, 2))
     z = 4.9 - plan @ [0.2, 0.1] + 0.1 * np.sin(9 * plan[:, 0]) * np.cos(11 * plan[:, 1])
     places, surfaces = np.column_stack([plan, z]), np.zeros(40, int)
-    own = run(lambda work: with_contacts(work, field, places, surfaces))
+    own = with_contacts(field, places, surfaces)
     assert len(own.points) > 40
     np.testing.assert_array_equal(own.at(places), np.full(40, 4.9))
     level_set = within_lattice(own, run(lambda work: level_solids(work, own))[0])

@@ -6,10 +6,8 @@ attribute that the modifier of each weathered block has, so that others of the s
 edges, at no cost. Materials of which no block is weathered have no such nodes.
 """
 
-import bpy
-
 from . import versions
-from .nodes import Nodes
+from .nodes import Nodes, group_once
 
 ATTRIBUTE = "realmodel_wear"  # of weathered blocks: how far edges are worn, model units
 KEY = "realmodel_edge_wear"  # on the node group, and on the node
@@ -26,7 +24,8 @@ def put_on(material):
     if shader is None:
         return
     node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree, node.name = _group(), KEY
+    node.node_tree = group_once("ShaderNodeTree", "RealModel Edge Wear", KEY, _fill)
+    node.name = KEY
     color, normal = (_source(shader.inputs[name]) for name in ("Base Color", "Normal"))
     if color is not None and color.node.type == "MIX":  # the last factor of a look's color: see looks
         color = next(s for s in color.node.inputs if s.name == "B" and s.enabled)
@@ -68,13 +67,7 @@ def _pass_through(tree, socket, node, name):
     tree.links.new(node.outputs[name], socket)
 
 
-def _group():
-    """The node group, new where there is none."""
-    found = next((group for group in bpy.data.node_groups if KEY in group and not group.library), None)
-    if found is not None:
-        return found
-    group = bpy.data.node_groups.new("RealModel Edge Wear", "ShaderNodeTree")
-    group[KEY] = True
+def _fill(group):
     versions.add_group_socket(group, "Color", "NodeSocketColor")
     for name, kind in (("Color", "NodeSocketColor"), ("Normal", "NodeSocketVector")):
         versions.add_group_socket(group, name, kind, is_output=True)
@@ -95,4 +88,3 @@ def _group():
     nodes.link(radius, edge.inputs["Distance"])
     pale = nodes.ramp(edge.outputs["AO"], 0.6, 1.0, 1.0 + _PALE, 1.0)
     nodes.link(nodes.vector("SCALE", given.outputs["Color"], pale), made.inputs["Color"])
-    return group

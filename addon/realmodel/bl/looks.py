@@ -13,14 +13,13 @@ Textures themselves have to be baked (scene_export.py).
 import math
 from dataclasses import dataclass, field
 
-import bpy
 import numpy as np
 
 from ..core.project.library import AUTO_LOOK
 from ..core.project.looks import LOOKS, look_of
 from . import edge_wear, library_rows, materials, meshes, versions
 from .display import explosion
-from .nodes import Nodes
+from .nodes import Nodes, group_once
 
 KEY = "realmodel_look"  # on a material: its look
 GROUP = "realmodel_bedding"  # on the node group that has the attributes of blocks
@@ -403,17 +402,12 @@ class _Nodes(Nodes):
         found = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
         if found is None:
             found = self.new("ShaderNodeGroup")
-            found.node_tree = _bedding_group()
+            found.node_tree = group_once("ShaderNodeTree", "RealModel Bedding", GROUP, _fill_bedding_group)
         return found.outputs[name]
 
 
-def _bedding_group():
-    """The node group that has the attributes of the bedding, new where there is none."""
-    found = next((group for group in bpy.data.node_groups if GROUP in group and not group.library), None)
-    if found is not None:
-        return found
-    group = bpy.data.node_groups.new("RealModel Bedding", "ShaderNodeTree")
-    group[GROUP] = True
+def _fill_bedding_group(group):
+    """The attributes of the bedding."""
     nodes = Nodes(group)
     output = nodes.new("NodeGroupOutput")
     for name in meshes.BEDDING:
@@ -421,7 +415,6 @@ def _bedding_group():
         node = nodes.new("ShaderNodeAttribute")
         node.attribute_name = meshes.PREFIX + name
         nodes.link(node.outputs["Fac"], output.inputs[name])
-    return group
 
 
 def suiting(row):

@@ -1,6 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes nodes of a tree, of a material or of geometry, one expression after the other."""
 
+import bpy
+
+
+def group_once(kind, name, key, fill, version=True):
+    """The node group whose property `key` is this version, made and filled by `fill` where there is none."""
+    for group in bpy.data.node_groups:
+        if group.get(key) == version and group.library is None:
+            return group
+    group = bpy.data.node_groups.new(name, kind)
+    try:
+        group[key] = version
+        fill(group)
+    except BaseException:
+        bpy.data.node_groups.remove(group)
+        raise
+    return group
+
 
 class Nodes:
     """Makes nodes of a tree, in columns by their number."""

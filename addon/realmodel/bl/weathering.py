@@ -15,7 +15,7 @@ import numpy as np
 
 from ..core.project.looks import DEFAULT, LOOKS
 from . import edge_wear, filled_beds, library_rows, looks, materials, meshes, scatter, versions
-from .nodes import Nodes
+from .nodes import Nodes, group_once
 
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
@@ -171,24 +171,15 @@ def _cover(name, unit):
 
 def _group():
     """The node group, of this version of the add-on."""
-    for group in bpy.data.node_groups:
-        if group.get(KEY) == _VERSION and group.library is None:
-            return group
-    group = bpy.data.node_groups.new(NAME, "GeometryNodeTree")
-    try:
-        group[KEY] = _VERSION
-        versions.add_group_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
-        versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
-        for name, (kind, *values) in _INPUTS.items():
-            versions.add_group_socket(group, name, kind, values)
-        _fill(_Nodes(group))
-    except BaseException:
-        bpy.data.node_groups.remove(group)
-        raise
-    return group
+    return group_once("GeometryNodeTree", NAME, KEY, _fill, _VERSION)
 
 
-def _fill(nodes):
+def _fill(group):
+    versions.add_group_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
+    versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
+    for name, (kind, *values) in _INPUTS.items():
+        versions.add_group_socket(group, name, kind, values)
+    nodes = _Nodes(group)
     given = nodes.new("NodeGroupInput").outputs
     geometry = nodes.to("GeometryNodeSubdivideMesh", given["Geometry"], Level=given["Detail"])
     is_top = nodes.named("is_top", "BOOLEAN")

@@ -141,9 +141,7 @@ public:
             const std::vector<double> smooth = balanced(at_nodes, lattice_, execution_);
             out.values.insert(out.values.end(), smooth.begin(), smooth.end());
         }
-        const std::span<const std::int64_t> same = known_.data().slits.same;
-        for (std::size_t n = 0; n < same.size(); ++n)
-            out.values[n] = out.values[static_cast<std::size_t>(same[n])];
+        make_same(out.values);
         for (const double level : levels())
             out.levels.push_back(unit * level);
         out.anisotropy = likely_.anisotropy;
@@ -155,8 +153,7 @@ public:
         for (const std::int64_t bound : out.bounds_missed)
             kept[static_cast<std::size_t>(bound)] = 0;
         keep_bounds(lattice_, known_.data(), kept, out.levels, out.values);
-        for (std::size_t n = 0; n < same.size(); ++n)
-            out.values[n] = out.values[static_cast<std::size_t>(same[n])];
+        make_same(out.values);
         return out;
     }
 
@@ -179,6 +176,13 @@ private:
 
     void begin(double from, double to, const char* text) const {
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
+    }
+
+    /// Nodes that are one place beyond tips get the value of the first of them.
+    void make_same(std::vector<double>& values) const {
+        const std::span<const std::int64_t> same = known_.data().slits.same;
+        for (std::size_t n = 0; n < same.size(); ++n)
+            values[n] = values[static_cast<std::size_t>(same[n])];
     }
 
     double level_in(const Spline& spline, std::int32_t surface) const {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "base/packed_pair.hpp"
 #include "base/parallel.hpp"
 #include "structures/joined_rounding.hpp"
 
@@ -95,15 +96,15 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
                 for (const std::int32_t p : parts.pieces_of[part]) {
                     const auto nodes = parts.pieces.polygons[index(p)];
                     for (std::size_t i = 0; i < nodes.size(); ++i) {
-                        const NodeId a = nodes[i], b = nodes[i + 1 < nodes.size() ? i + 1 : 0];
+                        const auto [a, b] =
+                            unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
                         if (parts.is_near[index(a)] != 0 && parts.is_near[index(b)] != 0)
-                            uses.push_back(cutting::edge_number(a, b));
+                            uses.push_back(packed_pair(a, b));
                     }
                 }
                 std::ranges::sort(uses);
                 for (std::size_t i = 2; i < uses.size(); ++i) {
-                    if (uses[i] == uses[i - 2])
-                        of_parts[part].push_back(cutting::ends_of_edge(uses[i]));
+                    if (uses[i] == uses[i - 2]) of_parts[part].push_back(unpacked_pair(uses[i]));
                 }
             }
         },

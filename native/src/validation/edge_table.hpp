@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/packed_pair.hpp"
+
 namespace realmodel::validation {
 
 /// An edge of a cell and how often its faces run along it: from `low` to `high`, and back.
@@ -37,9 +39,7 @@ public:
     /// A face runs along the edge from one vertex to another.
     void use(std::int32_t from, std::int32_t to) {
         const std::uint64_t way = from < to ? kAhead : kBack;
-        const auto key =
-            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(from, to))) << 32) |
-            static_cast<std::uint32_t>(std::max(from, to));
+        const std::uint64_t key = packed_pair(std::min(from, to), std::max(from, to));
         auto i = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> shift_);
         while (keys_[i] != key && keys_[i] != kFree)
             i = (i + 1) & mask_;
@@ -66,9 +66,8 @@ public:
         std::optional<EdgeUse> lowest;
         std::uint64_t lowest_key = kFree;
         for (std::size_t i = 0; i <= mask_; ++i) {
-            const EdgeUse edge{static_cast<std::int32_t>(keys_[i] >> 32),
-                               static_cast<std::int32_t>(keys_[i] & 0xffffffffu),
-                               static_cast<std::int64_t>(uses_[i] & kAheadMask),
+            const auto [low, high] = unpacked_pair(keys_[i]);
+            const EdgeUse edge{low, high, static_cast<std::int64_t>(uses_[i] & kAheadMask),
                                static_cast<std::int64_t>(uses_[i] >> 32)};
             const bool fine = edge.ahead == edge.back && (several_ || edge.ahead <= 1);
             if (fine || keys_[i] >= lowest_key) continue;

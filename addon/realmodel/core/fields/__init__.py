@@ -11,7 +11,6 @@ from .level_sets import (
     are_on,
     fields_with_contacts,
     level_solids,
-    with_contacts,
     within_lattice,
 )
 from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
@@ -29,6 +28,5 @@ __all__ = [
     "level_solids",
     "rises",
     "solve_field",
-    "with_contacts",
     "within_lattice",
 ]

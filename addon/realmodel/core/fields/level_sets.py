@@ -36,11 +36,6 @@ class SharedCorners:
     same: np.ndarray
     has: np.ndarray
 
-    @classmethod
-    def of_one(cls, nodes: int, contacts: int) -> SharedCorners:
-        """There is one field."""
-        return cls(np.arange(nodes)[None], np.ones((1, contacts), bool))
-
     def have(self, corners: np.ndarray, middles: np.ndarray) -> np.ndarray:
         """(F, N) bool: the fields that have corners (N,): nodes as `same` counts them, then the middles of
         edges, which the fields (F, M) have."""
@@ -50,12 +45,6 @@ class SharedCorners:
         of_middles = np.zeros_like(of_nodes)
         of_middles[:, ~is_node] = middles[:, corners[~is_node] - nodes]
         return np.where(is_node, of_nodes, of_middles)
-
-
-def with_contacts(work: Work, field: _Field, contacts: np.ndarray, surfaces: np.ndarray) -> _Field:
-    """One field through all contacts: see `fields_with_contacts`."""
-    shared = SharedCorners.of_one(field.lattice.nodes, len(contacts))
-    return fields_with_contacts(work, [field], contacts, surfaces, shared)[0]
 
 
 def fields_with_contacts(

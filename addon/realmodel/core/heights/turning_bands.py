@@ -104,10 +104,7 @@ class GaussianField:
         """cos(v) A + sin(v) B, v turning as the wave does: A and B, fields of these numbers, have the
         covariance along its crests, and the sum has its own."""
         crests = part.anisotropy or self.anisotropy or NO_ANISOTROPY
-        ratio = max(crests["ratio"], 1 / crests["ratio"])
-        azimuth = math.radians(crests["azimuth"])
-        across = dot(local, np.array([cos(azimuth), -sin(azimuth)]))
-        turn = 2 * math.pi * ratio / part.range * across
+        turn = 2 * math.pi / part.range * dot(local, _to_isotropic(crests)[1])
         plain = Structure("gaussian", part.range, part.sill, NO_ANISOTROPY)
         one, other = (self._of_structure(work, number, plain, local) for number in numbers)
         return cos(turn) * one + sin(turn) * other

@@ -10,6 +10,7 @@ these nodes are the same for both sides, to the bit, and so are the level sets b
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -101,9 +102,9 @@ class Slits:
     def shared(self, points: np.ndarray, numbers: np.ndarray) -> SharedCorners:
         """What the fields have in common, with points (C, 3) on combinations (C,): one beyond tips is a
         corner of the fields on both sides."""
-        beyond = np.column_stack([np.empty((len(points), 0)), *(self._meets(s, points) for s in self.slits)])
+        beyond = self._columns([self._meets(slit, points) for slit in self.slits], len(points))
         alike = self.combinations[:, None] == self.combinations[numbers]
-        return SharedCorners(self._same(), (alike | (beyond > 0)).all(axis=2))
+        return SharedCorners(self._same, (alike | (beyond > 0)).all(axis=2))
 
     def data(self, work: Work, parts: list[np.ndarray], numbers: np.ndarray) -> SlitData | None:
         """For the solver. parts: positions of contacts, dips and bounds, of all these the combinations
@@ -113,8 +114,9 @@ class Slits:
         every = np.concatenate(parts)
         own = self.combinations[numbers]
         mouths = self._columns([slit.mouth(work, every) for slit in self.slits], len(every))
-        contacts, dips, bounds = np.split(0.5 * own * mouths, np.cumsum([len(part) for part in parts])[:2])
-        of_dips, of_bounds = np.split(numbers, np.cumsum([len(part) for part in parts])[:2])[1:]
+        ends = np.cumsum([len(part) for part in parts])[:2]
+        contacts, dips, bounds = np.split(0.5 * own * mouths, ends)
+        _, of_dips, of_bounds = np.split(numbers, ends)
         slopes = np.empty((len(dips), len(self.slits), 3))
         step = _STEP * self.lattice.spacing[0]
         for axis in range(3):
@@ -124,7 +126,7 @@ class Slits:
         positions = self.lattice.positions()
         mouths = self._columns([slit.mouth(work, positions) for slit in self.slits], len(positions))
         nodes = 0.5 * self.of_nodes * mouths
-        return SlitData(contacts, dips, bounds, slopes, nodes, self._same(), of_bounds.astype(np.int32))
+        return SlitData(contacts, dips, bounds, slopes, nodes, self._same, of_bounds.astype(np.int32))
 
     def _beside(self, work: Work, points: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """(N, F) the coordinates at points beside places on combinations (N,): beyond tips by their own
@@ -136,6 +138,7 @@ class Slits:
             found[:, n] *= 0.5 * slit.mouth(work, points)
         return found
 
+    @cached_property
     def _same(self) -> np.ndarray:
         """(S, nodes) int64, as SlitData has it."""
         sides, nodes, _ = self.of_nodes.shape

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/packed_pair.hpp"
 #include "cutting/rounding/equal_pieces.hpp"
 
 namespace realmodel::cutting {
@@ -88,7 +89,8 @@ std::optional<Contraction::Shape> Contraction::shape(std::span<const std::int32_
         ++found.count;
         const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            uses.push_back(edge_number(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]));
+            const auto [a, b] = unordered(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]);
+            uses.push_back(packed_pair(a, b));
             found.box.include(parts_.at(loop[k]));
         }
     }

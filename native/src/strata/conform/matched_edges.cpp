@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/packed_pair.hpp"
+
 namespace realmodel::strata {
 
-namespace {
-
-std::uint64_t packed(std::int32_t high, std::int32_t low) {
-    return std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 EdgeMatching::Name EdgeMatching::name(const LineEdge& edge, const exact::Line& line) const {
     const PlaneId plane = plane_of(edge);
@@ -63,7 +59,7 @@ bool EdgeMatching::find_matches(std::span<const LineEdge> edges, LineId line_id)
     for (const LineEdge& edge : edges) {
         const bool is_right = edge.from > edge.to;
         const auto [low, high] = std::minmax(edge.from, edge.to);
-        segments_.push_back({packed(low, high) << 1 | (is_right ? 1 : 0), &edge});
+        segments_.push_back({packed_pair(low, high) << 1 | (is_right ? 1 : 0), &edge});
     }
     std::sort(segments_.begin(), segments_.end(),
               [](const Segment& a, const Segment& b) { return a.ends_and_side < b.ends_and_side; });
@@ -98,7 +94,7 @@ void EdgeMatching::find_bounds() {
             l = cell_of(l);
             r = cell_of(r);
             if (l == r) return;
-            to.push_back({packed(l, r), packed(is_beneath, pair.left->from), pair.left});
+            to.push_back({packed_pair(l, r), packed_pair(is_beneath, pair.left->from), pair.left});
             const Bound& first = bounds_.empty() ? beneath_[0] : bounds_[0];
             one_wall = one_wall && to.back().cells == first.cells;
         };
