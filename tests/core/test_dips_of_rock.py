@@ -111,7 +111,7 @@ def test_dips_of_blocks_and_surfaces_count_for_these():
     dips = dips_of(["B0", "B1", "S2", "B3", ""], ["", "", "", "", "S3"])
     found, warnings = counted(rock_of(rules, dips))
     assert found == [[], ["S0", "S1"], ["S1", "S2"], ["S2"], ["S3"]]
-    assert any("1 dips count for no surface" in text and "'B0'" in text for text in warnings)
+    assert any("dips count for no surface" in text and "'B0'" in text for text in warnings)
 
 
 def test_surfaces_have_the_slopes_of_the_dips():
@@ -170,7 +170,7 @@ def test_methods_without_dips():
 
 def test_dips_of_nothing_that_is_there_are_listed():
     _, warnings = counted(rock_of(CONFORMABLE, dips_of(["B9", "B1"])))
-    assert any("1 dips are of no surface or block" in text and "'B9'" in text for text in warnings)
+    assert any("dips are of no surface or block" in text and "'B9'" in text for text in warnings)
 
 
 UNITS = UnitNames(["S0", "S1"], ["B0", "B1"], ["dike"], {"sst": "B1", "top": "S1", "water": ""})

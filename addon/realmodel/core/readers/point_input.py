@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, counted
 from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factor
@@ -107,7 +107,7 @@ def read_point_file(
                 'is wrong, set columns = ["X", "Y", "Z"]'
             )
         if rows.missing:
-            warnings.append(f"{file}: {rows.missing} points have no value and are left out")
+            warnings.append(f"{file}: left out: {counted(rows.missing, 'point')} without a value")
     warnings += [f"{file}: {text}" for text in kept.heights.like_no_value()]
     return points, warnings
 
