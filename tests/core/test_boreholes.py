@@ -94,6 +94,29 @@ def test_units(write):
 
 
 @pytest.mark.parametrize(
+    ("units", "said"),
+    [
+        ({}, {"c.csv": "ft for 'Z (FT)'", "p.csv": "ft for 'depth [feet]'"}),
+        ({"units": {"z": "ft"}}, {}),
+        ({"units": {"z": "us-ft"}}, {}),
+        ({"units": "ft"}, {"c.csv": "m for 'X (m)'"}),
+    ],
+)
+def test_other_units_in_headers_are_a_warning(write, units, said):
+    collars = COLLARS.replace("x,y,z", "X (m),y (plan),Z (FT)")
+    files = {
+        "picks": write("p.csv", PICKS.replace("depth", "depth [feet]")),
+        "collars": write("c.csv", collars),
+    }
+    warnings = [
+        text for text in read_boreholes(Boreholes(**files, **units)).warnings if "the header says" in text
+    ]
+    assert len(warnings) == len(said)
+    for text, (file, words) in zip(warnings, said.items(), strict=True):
+        assert file in text and f"the header says {words}, but the unit is" in text
+
+
+@pytest.mark.parametrize(
     ("collars", "picks", "file", "line", "words"),
     [
         (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "hole 'C1': it has no collar in"),
