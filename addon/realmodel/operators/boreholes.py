@@ -4,24 +4,20 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ..bl import (
+from ..bl.field import field_tables, interval_values, map_settings
+from ..bl.host import caches
+from ..bl.objects import stored_arrays
+from ..bl.project import (
     borehole_picks,
-    borehole_points,
-    caches,
-    data_objects,
-    field_tables,
-    interval_values,
-    live,
-    map_settings,
     method_settings,
     observed_blocks,
     project_settings,
     reading_text,
     series_settings,
     settings,
-    stored_arrays,
     surface_dips,
 )
+from ..bl.scene import borehole_points, data_objects, live
 from ..core import InputRefused, RealModelError
 from ..core.base.errors import counted
 from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
