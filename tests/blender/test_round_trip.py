@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
-from realmodel.bl import choices, plan_mesh, project_settings, reading_text
+from realmodel.bl.project import choices, plan_mesh, project_settings, reading_text
 from realmodel.core import InputRefused, load_project
 from realmodel.core.base.work import run
 from realmodel.core.settings.schema import BODY, FAULT, READING, ROCK, SURFACE

@@ -8,18 +8,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 from panel_case import PanelCase, ops, raise_by, select, sheet
-from realmodel.bl import (
-    choices,
-    compartments,
-    data_objects,
-    meshes,
-    model_tree,
-    project_settings,
-    settings,
-    surface_statistics,
-    viewports,
-)
 from realmodel.bl.display import bodies, colors, coordinates, modes, sections, viewpoints
+from realmodel.bl.objects import meshes, model_tree, viewports
+from realmodel.bl.project import choices, compartments, project_settings, settings, surface_statistics
+from realmodel.bl.scene import data_objects
 from realmodel.core import load_project
 
 THROW = 4.0
