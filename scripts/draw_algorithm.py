@@ -276,7 +276,7 @@ def draw_bounds(d):
     d.text(2, 144, "decided: below, stays whole", 11, fill=BLUE)
     d.text(150, 160, "unclear: overlaid exactly", 11, fill=RED)
     d.path([(200, 148), (200, 100)], RED, 1, end="red")
-    d.text(228, 54, "decided: removed", 11, fill=GREY)
+    d.text(300, 54, "decided: removed", 11, fill=GREY, anchor="end")
 
 
 def draw_nodes(d):

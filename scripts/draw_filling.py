@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
 import gallery_picture  # noqa: E402
 import realmodel  # noqa: E402
 import sculptures  # noqa: E402
-from realmodel.bl import versions  # noqa: E402
+from realmodel.bl.host import versions  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images" / "guide"
 THUMBNAILS, SIDE = ROOT / "addon" / "realmodel" / "previews" / "filling.jpg", 128  # pixels

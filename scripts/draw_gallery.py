@@ -275,7 +275,9 @@ def rocks(folder):
     """Haut-Barr at low sun, weathered, with the looks that suit its rocks, in a meadow."""
     import bpy
     import numpy as np
-    from realmodel.bl import batch, project_settings, weathering
+    from realmodel.bl.pictures import batch
+    from realmodel.bl.project import project_settings
+    from realmodel.bl.shading import weathering
 
     model, picture = sample("haut_barr", folder)
     scene = bpy.context.scene
@@ -369,7 +371,7 @@ def overturned(folder):
     """A sculpted arch filled with folds that lie on their side."""
     import bpy
     import numpy as np
-    from realmodel.bl.fill_job import FilledShape
+    from realmodel.bl.jobs.fill_job import FilledShape
     from realmodel.core import Strata, fill_with_strata
 
     item = sculptures.arch()
@@ -397,9 +399,9 @@ def overturned(folder):
 def diagram(folder):
     """A block diagram as geologists draw it: the add-on's own legend, axes and exaggeration."""
     import bpy
-    from realmodel.bl import batch, picture
     from realmodel.bl.display import viewpoints
     from realmodel.bl.overlay import legend_shares, rendered
+    from realmodel.bl.pictures import batch, picture
     from realmodel.core import build, load_project
 
     model = build(load_project(SAMPLES / "block_diagram" / "project.toml"), cells="blocks")

@@ -162,7 +162,7 @@ def cliff():
 def set_up(points, azimuth, elevation, size):
     import bpy
     import gallery_picture
-    from realmodel.bl import picture
+    from realmodel.bl.pictures import picture
 
     scene = bpy.context.scene
     camera = picture.set_up(scene, points, size)
@@ -182,7 +182,8 @@ def draw_looks(folder, keys):
     import bpy
     import gallery_picture
     import numpy as np
-    from realmodel.bl import looks, materials, meshes
+    from realmodel.bl.objects import materials, meshes
+    from realmodel.bl.shading import looks
     from realmodel.core.display import polygon_mesh
     from realmodel.core.project.looks import LOOKS
 
@@ -208,7 +209,9 @@ def draw_weathering(folder):
 
     import bpy
     import numpy as np
-    from realmodel.bl import built_scene, meshes, weathering
+    from realmodel.bl.objects import meshes
+    from realmodel.bl.scene import built_scene
+    from realmodel.bl.shading import weathering
 
     scene = bpy.context.scene
     built_scene.write_model(scene, cliff())
@@ -232,8 +235,9 @@ def draw_close(folder):
     import gallery_picture
     import numpy as np
     from mathutils import Vector
-    from realmodel.bl import batch, picture, weathering
-    from realmodel.bl.viewports import towards
+    from realmodel.bl.objects.viewports import towards
+    from realmodel.bl.pictures import batch, picture
+    from realmodel.bl.shading import weathering
 
     scene = bpy.context.scene
     model, shown = gallery_picture.sample("haut_barr", Path(folder))

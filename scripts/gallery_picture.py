@@ -35,7 +35,7 @@ class Picture:
         only_outside: without what other blocks hide, which saves most of the time and memory of a render."""
         import bpy
         import numpy as np
-        from realmodel.bl import materials, meshes
+        from realmodel.bl.objects import materials, meshes
         from realmodel.core.display import polygon_mesh
 
         for block, shape in zip(model.blocks, shapes, strict=True):
@@ -91,7 +91,9 @@ class Picture:
         """Sun and sky of a landscape. sun: azimuth and elevation, radians. haze: how far one sees clearly."""
         import bpy
         import numpy as np
-        from realmodel.bl import materials, picture, weathering
+        from realmodel.bl.objects import materials
+        from realmodel.bl.pictures import picture
+        from realmodel.bl.shading import weathering
 
         scene = bpy.context.scene
         picture.set_up(scene, np.concatenate(self.points), SIZE, sun=sun)
@@ -120,7 +122,7 @@ class Picture:
     def finish(self, name, title, subtitle, color=None, exposure=-0.3):
         """Renders and writes the picture as the camera stands, with a title. color: of the title."""
         import bpy
-        from realmodel.bl import picture
+        from realmodel.bl.pictures import picture
 
         scene = bpy.context.scene
         file = self.folder / f"{name}.png"
@@ -135,8 +137,8 @@ class Picture:
         """Writes a picture of so many pixels without texts. Returns the camera."""
         import bpy
         import numpy as np
-        from realmodel.bl import picture
-        from realmodel.bl.viewports import towards
+        from realmodel.bl.objects.viewports import towards
+        from realmodel.bl.pictures import picture
 
         scene = bpy.context.scene
         points = np.concatenate(self.points)
@@ -186,7 +188,7 @@ def aim(camera, points, size, azimuth, elevation, room):
 
     import numpy as np
     from mathutils import Matrix, Vector
-    from realmodel.bl.viewports import towards
+    from realmodel.bl.objects.viewports import towards
 
     back = towards(math.radians(azimuth), math.radians(elevation))
     right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
@@ -302,7 +304,8 @@ def apply_looks(model, scale):
     Rock Looks."""
     import bpy
     import numpy as np
-    from realmodel.bl import looks, materials
+    from realmodel.bl.objects import materials
+    from realmodel.bl.shading import looks
     from realmodel.core.project.looks import look_of
 
     diagonal = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
@@ -397,7 +400,7 @@ def around(made, origin, like, reach, step):
 
 def painted(name, color, roughness=0.7):
     import bpy
-    from realmodel.bl import materials
+    from realmodel.bl.objects import materials
 
     material = bpy.data.materials.get(name)
     if material is None:
@@ -410,7 +413,7 @@ def painted(name, color, roughness=0.7):
 def cuboid(name, low, high, color, parent):
     import bpy
     import numpy as np
-    from realmodel.bl import meshes
+    from realmodel.bl.objects import meshes
 
     mesh = meshes.triangle_mesh(name, *box(np.array(low, float), np.array(high, float)))
     mesh.materials.append(painted(f"{name} paint", color))
@@ -568,7 +571,7 @@ def ground(name, points, triangles, like):
     """An object that is ground, in the material of another one."""
     import bpy
     import numpy as np
-    from realmodel.bl import meshes
+    from realmodel.bl.objects import meshes
 
     mesh = meshes.triangle_mesh(name, points, triangles, smooth=True)
     top = mesh.attributes.new(meshes.PREFIX + "is_top", "BOOLEAN", "FACE")

@@ -102,7 +102,7 @@ def line(points):
 def ghost(items):
     """The box around objects as thin lines, the object BOX."""
     import bpy
-    from realmodel.bl import viewports
+    from realmodel.bl.objects import viewports
 
     bpy.context.view_layer.update()
     around = viewports.corners(items)
@@ -147,7 +147,8 @@ def graben():
     """A model of points and two faults in the scene, not built yet."""
     import bpy
     import numpy as np
-    from realmodel.bl import library_rows, meshes
+    from realmodel.bl.objects import meshes
+    from realmodel.bl.project import library_rows
 
     def added(name, places, triangles=()):
         if len(triangles):

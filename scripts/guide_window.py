@@ -168,7 +168,7 @@ def fill_view(walk, items, share=0.92, elevation=ELEVATION):
     import numpy as np
     from gallery_picture import seen_from
     from mathutils import Vector
-    from realmodel.bl import viewports
+    from realmodel.bl.objects import viewports
 
     bpy.context.view_layer.update()
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]

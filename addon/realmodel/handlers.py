@@ -9,10 +9,14 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from .bl import caches, display, live, quality, region_size, settings, viewports
+from .bl import display
 from .bl.display import replacing
 from .bl.field import handle
+from .bl.host import caches
+from .bl.objects import viewports
 from .bl.overlay import rendered
+from .bl.project import region_size, settings
+from .bl.scene import live, quality
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
 _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"

@@ -30,7 +30,10 @@ from . import (
     props_surface,
     props_view,
 )
-from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
+from .bl import changes, display
+from .bl.project import library_rows, results, units
+from .bl.scene import data_objects, quality
+from .bl.shading import looks
 from .core.base.units import MODEL_UNIT
 from .core.settings.schema import PROJECT
 from .registration import classes
@@ -337,7 +340,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
     is_outdated: BoolProperty(options={"HIDDEN"})  # something was changed since the blocks were built
-    is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/live.py
+    is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/scene/live.py
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
     ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)

@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import FloatProperty, StringProperty
 
-from .bl import changes, planned_holes
+from .bl import changes
+from .bl.scene import planned_holes
 from .props_coordinates import coordinate_field
 
 
@@ -55,5 +56,5 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
         update=changes.planned_hole,
     )
     exact: StringProperty(options={"HIDDEN"})
-    result: StringProperty(options={"HIDDEN"})  # JSON: what it meets, as bl/planned_holes.py keeps it
+    result: StringProperty(options={"HIDDEN"})  # JSON: what it meets, as bl/scene/planned_holes.py keeps it
     shares: StringProperty(options={"HIDDEN"})  # arrays: the probability of each block along it

@@ -12,7 +12,8 @@ from bpy.props import (
 )
 
 from . import props_series, props_surface
-from .bl import changes, plan_mesh, settings
+from .bl import changes
+from .bl.project import plan_mesh, settings
 from .core.settings.schema import ROCK, SIZE
 from .props_schema import settings_of
 

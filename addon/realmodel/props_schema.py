@@ -3,7 +3,8 @@
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .bl import changes, choices
+from .bl import changes
+from .bl.project import choices
 from .core.settings.setting import property_name, switch_name
 
 _SEARCH = {

@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import StringProperty
 
-from .bl import changes, choices, series_settings, settings
+from .bl import changes
+from .bl.project import choices, series_settings, settings
 from .core.settings.schema import SERIES
 from .props_schema import settings_of
 

@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerProperty, StringProperty
 
-from .bl import changes, choices, settings
+from .bl import changes
+from .bl.project import choices, settings
 from .core.readers.meshes.mesh_file import MESH_FORMATS
 from .core.settings.methods import STRUCTURE
 from .core.settings.schema import READING, SURFACE

@@ -244,7 +244,7 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.overlay,
     )
-    compartments: StringProperty(options={"HIDDEN"})  # JSON, see bl/compartments.py
+    compartments: StringProperty(options={"HIDDEN"})  # JSON, see bl/project/compartments.py
     shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(

@@ -36,10 +36,53 @@ using SlitsTuple = std::tuple<std::size_t, std::size_t, Array<double>, Array<dou
                               Array<double>, Array<double>, Array<std::int64_t>, Indices>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
+/// Anisotropy, order, errors of values and of slopes, lift, scale; gaps, centers, left out.
+using KindTuple =
+    std::tuple<AnisotropyTuple, int, double, double, double, double, std::vector<double>,
+               std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
+/// A kind; numbers of directions, of steps and of errors of dips.
+using DrawTuple = std::tuple<KindTuple, Array<double>, Array<double>, Array<double>>;
+
+KindTuple tuple_of(const fields::FunctionKind& kind) {
+    return {{kind.anisotropy.axes, kind.anisotropy.ratios},
+            kind.order,
+            kind.value_error,
+            kind.slope_error,
+            kind.lift,
+            kind.scale,
+            kind.gaps,
+            kind.centers,
+            kind.left_out};
+}
+
+/// Of each bound the kind and the row of each datum.
+std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
+    const std::vector<std::vector<fields::Datum>>& data) {
+    std::vector<std::vector<std::pair<std::string, std::int64_t>>> out;
+    for (const std::vector<fields::Datum>& each : data) {
+        out.emplace_back();
+        for (const auto& [kind, row] : each) {
+            out.back().emplace_back(kind == fields::Datum::Kind::kContact ? "contact"
+                                    : kind == fields::Datum::Kind::kDip   ? "dip"
+                                                                          : "bound",
+                                    row);
+        }
+    }
+    return out;
+}
+
+fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
+    const auto& [kind, directions, steps, errors] = given;
+    const auto& [anisotropy, order, value, slope, lift, scale, gaps, centers, left_out] = kind;
+    return {{std::make_from_tuple<fields::Anisotropy>(anisotropy), order, value, slope, lift, scale,
+             gaps, centers, left_out},
+            {3 + slits, view(directions), view(steps), view(errors)}};
+}
 
 py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                const DipsAndNormals& dips, const BoundsTuple& bounds, const OptionsTuple& given,
-               const std::optional<SlitsTuple>& slits, WatchedExecution* execution) {
+               const std::optional<SlitsTuple>& slits, const std::optional<DrawTuple>& drawn,
+               WatchedExecution* execution) {
     fields::FieldData data;
     data.surfaces = std::get<0>(contacts);
     data.contacts = rows<3>(std::get<1>(contacts), "contacts");
@@ -58,7 +101,10 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     const auto& [tolerance, most_centers, anisotropy] = given;
     std::optional<fields::Anisotropy> known;
     if (anisotropy) known = std::make_from_tuple<fields::Anisotropy>(*anisotropy);
-    const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr};
+    std::optional<fields::FieldDraw> draw;
+    if (drawn) draw = draw_of(*drawn, data.slits.count);
+    const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr,
+                                       draw ? &*draw : nullptr};
     fields::Field made;
     {
         const py::gil_scoped_release unlocked;
@@ -67,8 +113,8 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     py::dict out;
     out["values"] = to_array(std::move(made.values));
     out["levels"] = to_array(std::move(made.levels));
-    out["anisotropy"] = AnisotropyTuple(made.anisotropy.axes, made.anisotropy.ratios);
-    out["order"] = made.order;
+    out["contradicted"] = listed(made.contradicted);
+    out["kind"] = tuple_of(made.kind);
     out["centers"] = made.centers;
     out["misfit"] = made.misfit;
     out["dips_missed"] = to_array(std::move(made.dips_missed));
@@ -100,7 +146,7 @@ std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeT
 void bind_fields(py::module_& module) {
     module.def("solve_field", &solve, py::arg("lattice"), py::arg("contacts"), py::arg("dips"),
                py::arg("bounds"), py::arg("options"), py::arg("slits") = py::none(),
-               py::arg("execution") = py::none(),
+               py::arg("draw") = py::none(), py::arg("execution") = py::none(),
                R"(The smoothest field in space that honors the data, and the level of each surface.
 
 lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), and the surface of
@@ -110,8 +156,11 @@ at most how many contacts carry the field; (axes, ratios) of an anisotropy as it
 one. slits: of faults that die out how many, and the combinations of their sides; the further coordinates that these
 give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3), those of nodes (S, nodes, F) on each
 combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
-Returns a dict: values (S * nodes,), levels (surfaces,), anisotropy, order, centers, misfit, dips_missed,
-bounds_missed. Raises InputError.)");
+draw: None, or of a field that is drawn at random its kind, as it is returned of the same data, and normal numbers:
+(lines, 3 + F), (lines, steps) and (M, 2).
+Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed, of each of the latter
+the data that it contradicts ("contact", "dip" or "bound", and the row), and the kind of random function: (axes, ratios), order, errors of values and slopes, scale of further coordinates, variance, gaps,
+centers, inequalities that are left out. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),
         py::arg("execution") = py::none(),

@@ -44,7 +44,7 @@ def project(count, size):
 
 
 def build(count, size):
-    from realmodel.bl import project_settings
+    from realmodel.bl.project import project_settings
 
     scene = bpy.context.scene
     bpy.ops.realmodel.new()

@@ -19,7 +19,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 
 import realmodel
-from realmodel.bl import live, meshes
+from realmodel.bl.objects import meshes
+from realmodel.bl.scene import live
 
 from benchmarks.made_stacks import StackSpec
 

@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 
 import realmodel
-from realmodel.bl import built_models, meshes
+from realmodel.bl.objects import built_models, meshes
 
 from benchmarks.made_stacks import StackSpec
 from benchmarks.process import resident

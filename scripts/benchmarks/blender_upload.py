@@ -31,7 +31,7 @@ def quads(size):
 def ours(coordinates, offsets, corners, surfaces):
     """As the blocks come in: flat shaded, with edges, and each face knows its surface. The edges, which are
     found in the thread that builds, count here too."""
-    from realmodel.bl import meshes
+    from realmodel.bl.objects import meshes
     from realmodel.core.base.work import native_module
     from realmodel.core.display.polygon_mesh import PolygonMesh
 

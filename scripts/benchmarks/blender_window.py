@@ -37,7 +37,8 @@ class Watch:
     """
 
     def __init__(self):
-        from realmodel.bl import build_job, display
+        from realmodel.bl import display
+        from realmodel.bl.scene import build_job
 
         build_job.BuildJob._put = self._timed(build_job.BuildJob._put)
         display._show = self._timed(display._show)
@@ -87,7 +88,7 @@ def large(quads):
         for n, (vertices, triangles) in enumerate(StackSpec(4, quads, "shared").make())
     ]
     library = Library([Property(n + 1, f"Rock {n}") for n in range(4)])
-    from realmodel.bl import project_settings
+    from realmodel.bl.project import project_settings
 
     bpy.ops.realmodel.new()
     project_settings.fill(scene(), Project("Layers", [Rock("rock", layers)], library))

@@ -18,7 +18,7 @@ FOLDER = Path(__file__).resolve().parent
 sys.path[:0] = [str(FOLDER.parents[1] / "addon"), str(FOLDER)]
 
 import realmodel  # noqa: E402
-from realmodel.bl import settings  # noqa: E402
+from realmodel.bl.project import settings  # noqa: E402
 
 VERSIONS = FOLDER.parent / "data" / "versions"
 SAMPLE = FOLDER.parents[1] / "blend_samples" / "two_layers"

@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 import realmodel
 from blender_state import empty_file
-from realmodel.bl import live, meshes
+from realmodel.bl.objects import meshes
+from realmodel.bl.scene import live
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 ops = bpy.ops.realmodel

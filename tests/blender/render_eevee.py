@@ -56,7 +56,8 @@ def _light_and_camera(scene, rows):
 
 def _tile(scene, column, row, key):
     """An upright square, the wall of a layer."""
-    from realmodel.bl import looks, materials, meshes
+    from realmodel.bl.objects import materials, meshes
+    from realmodel.bl.shading import looks
 
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]], float) + np.array([column, 0.0, row])
     mesh = meshes.triangle_mesh(key, corners, [[0, 1, 2], [0, 2, 3]])

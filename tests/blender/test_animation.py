@@ -10,7 +10,8 @@ import realmodel
 from blender_state import pixels, volume
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
-from realmodel.bl import picture, versions
+from realmodel.bl.host import versions
+from realmodel.bl.pictures import picture
 from view_case import Case
 
 ops = bpy.ops.realmodel

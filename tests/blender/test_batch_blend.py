@@ -13,8 +13,8 @@ import realmodel
 from blender_state import coordinates, empty_file
 from made_projects import interpolated, one_rock, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch
 from realmodel.bl.display import shown_models
+from realmodel.bl.pictures import batch
 from realmodel.core import build, load_project
 from test_build_model import build_model
 

@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, raise_by, stack
-from realmodel.bl import meshes
+from realmodel.bl.objects import meshes
 
 NAMES = [meshes.PREFIX + name for name in meshes.BEDDING]
 

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from blender_state import coordinates, corners, volume
 from boolean_case import BooleanCase, attribute, ball, corner_uvs, cube, material, world
-from realmodel.bl import versions
+from realmodel.bl.host import versions
 
 
 class Layers(BooleanCase):

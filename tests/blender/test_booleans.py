@@ -9,7 +9,7 @@ import numpy as np
 from blender_state import coordinates, corners, inventory, volume
 from boolean_case import BooleanCase, ball, cube, solid, world
 from panel_case import ops, select, sheet, stack
-from realmodel.bl.boolean_job import BooleanJob
+from realmodel.bl.objects.boolean_job import BooleanJob
 from realmodel.core import Cancelled
 
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import borehole_picks, project_settings
+from realmodel.bl.project import borehole_picks, project_settings
 
 
 class BoreholesShown(PanelCase):

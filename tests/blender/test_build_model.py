@@ -10,7 +10,8 @@ from pathlib import Path
 import bpy
 import realmodel
 from blender_state import empty_file, open_edges, pixels
-from realmodel.bl import compartments, model_tree
+from realmodel.bl.objects import model_tree
+from realmodel.bl.project import compartments
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "two_layers" / "project.toml"

@@ -4,15 +4,10 @@
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import (
-    compartments,
-    data_objects,
-    drawn_data,
-    exaggeration,
-    placed_images,
-    project_settings,
-    settings,
-)
+from realmodel.bl.field import drawn_data, placed_images
+from realmodel.bl.objects import exaggeration
+from realmodel.bl.project import compartments, project_settings, settings
+from realmodel.bl.scene import data_objects
 from recording_layout import draw_tab
 
 

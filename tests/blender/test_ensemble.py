@@ -5,8 +5,9 @@ import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import PanelCase, ops, outline, select
-from realmodel.bl import ensemble_job, stored_arrays
 from realmodel.bl.display import ensembles, shown_models
+from realmodel.bl.jobs import ensemble_job
+from realmodel.bl.objects import stored_arrays
 from realmodel.core import Cancelled
 from realmodel.core.ensembles import Realizer, blocks_at
 

@@ -6,9 +6,9 @@ import numpy as np
 import realmodel
 from blender_state import coordinates
 from panel_case import raise_by
-from realmodel.bl import exaggeration
 from realmodel.bl.display import coordinates as places
 from realmodel.bl.display import cuts
+from realmodel.bl.objects import exaggeration
 from view_case import Case
 
 

@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops
-from realmodel.bl import batch, library_rows, materials, project_settings
+from realmodel.bl.objects import materials
+from realmodel.bl.pictures import batch
+from realmodel.bl.project import library_rows, project_settings
 from realmodel.core import build, load_project
 from realmodel.core.results.automatic_library import PALETTE
 

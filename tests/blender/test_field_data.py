@@ -5,8 +5,9 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl import borehole_points, observed_blocks, project_settings, surface_dips
 from realmodel.bl.field import data, edits, handle
+from realmodel.bl.project import observed_blocks, project_settings, surface_dips
+from realmodel.bl.scene import borehole_points
 
 POINTS = [(10, 10, 20), (90, 10, 20), (90, 90, 20), (10, 90, 20), (50, 50, 40)]
 LOGS = "hole,x,y,z,from,to,block\n" + "".join(

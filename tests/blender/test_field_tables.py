@@ -5,15 +5,14 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops, outline
-from realmodel.bl import (
+from realmodel.bl.project import (
     borehole_picks,
-    borehole_points,
-    data_objects,
     method_settings,
     observed_blocks,
     project_settings,
     surface_dips,
 )
+from realmodel.bl.scene import borehole_points, data_objects
 from realmodel.operators import boreholes
 
 COLLARS = "hole,x,y,z\n" + "".join(

@@ -11,8 +11,8 @@ from boolean_case import ball, cube
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from panel_case import PanelCase, ops, select, sheet
-from realmodel.bl.fill_job import FilledShape, FillJob
-from realmodel.bl.fill_preview import FillPreview
+from realmodel.bl.jobs.fill_job import FilledShape, FillJob
+from realmodel.bl.jobs.fill_preview import FillPreview
 from realmodel.core import Cancelled, Strata
 
 

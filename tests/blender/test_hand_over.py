@@ -8,8 +8,8 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import meshes
-from realmodel.bl.build_job import BuildJob
+from realmodel.bl.objects import meshes
+from realmodel.bl.scene.build_job import BuildJob
 from realmodel.core import Cancelled
 from realmodel.core.display.polygon_mesh import of_triangles
 
@@ -110,7 +110,7 @@ class Arrays(PanelCase):
         shape = of_triangles(at, triangles, smooth=True)
         given = meshes.new_mesh("given", shape)
         found = meshes.triangle_mesh("found", at, triangles, smooth=True)
-        with mock.patch("realmodel.bl.mesh_memory.is_known", lambda: False):
+        with mock.patch("realmodel.bl.host.mesh_memory.is_known", lambda: False):
             slow = meshes.new_mesh("slow", shape)
             self.assertTrue(meshes.holds(given, shape))
         for mesh in (given, found, slow):

@@ -3,7 +3,8 @@
 
 import bpy
 from panel_case import PanelCase, ops
-from realmodel.bl import built_models, hole_validation
+from realmodel.bl.field import hole_validation
+from realmodel.bl.objects import built_models
 from recording_layout import draw_tab
 
 _HOLES = [(n, 20.0 * (n % 3), 20.0 * (n // 3)) for n in range(9)]

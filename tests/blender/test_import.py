@@ -5,8 +5,11 @@ viewport, a region around them."""
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import data_objects, library_rows, notices, origin, project_settings
 from realmodel.bl.display import shown_models
+from realmodel.bl.host import notices
+from realmodel.bl.objects import origin
+from realmodel.bl.project import library_rows, project_settings
+from realmodel.bl.scene import data_objects
 from realmodel.core.base.build_warning import BuildWarning
 from realmodel.core.results.automatic_library import PALETTE, palette
 

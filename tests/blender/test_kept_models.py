@@ -6,7 +6,8 @@ from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
-from realmodel.bl import built_models, caches, stored_arrays
+from realmodel.bl.host import caches
+from realmodel.bl.objects import built_models, stored_arrays
 from realmodel.core import Project, Rock, Surface, build
 
 

@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops
-from realmodel.bl import look_assets, looks
+from realmodel.bl.shading import look_assets, looks
 from realmodel.core.project.looks import LOOKS
 
 

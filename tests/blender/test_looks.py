@@ -11,7 +11,8 @@ import numpy as np
 import render_eevee
 from blender_state import empty_file
 from panel_case import PanelCase, ops, stack
-from realmodel.bl import looks, materials
+from realmodel.bl.objects import materials
+from realmodel.bl.shading import looks
 from realmodel.core.project.looks import LOOKS
 
 PIXELS = 64

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import map_settings, observed_blocks, project_settings
+from realmodel.bl.field import map_settings
+from realmodel.bl.project import observed_blocks, project_settings
 from realmodel.operators import boreholes
 
 VALLEY = SAMPLES / "mapped_valley"

@@ -5,8 +5,8 @@ import time
 
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.display import shown_models
-from realmodel.bl.export_job import ExportJob
-from realmodel.bl.mesh_job import MeshJob
+from realmodel.bl.jobs.export_job import ExportJob
+from realmodel.bl.jobs.mesh_job import MeshJob
 from realmodel.core import Cancelled, OutputFailed, UsageError, build, load_project
 from realmodel.core.exporters.mesh_request import MeshRequest
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh

@@ -7,8 +7,8 @@ import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import SAMPLES, PanelCase, ops, stack
-from realmodel.bl import built_models
 from realmodel.bl.display import shown_models
+from realmodel.bl.objects import built_models
 from realmodel.core import build, load_project
 
 OLD = Path(__file__).resolve().parents[1] / "data" / "models" / "0.1.npz"

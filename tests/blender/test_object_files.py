@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, stack
-from realmodel.bl import choices
+from realmodel.bl.project import choices
 from realmodel.core import Project, Rock, Surface, build
 
 VERSION = f"python{sys.version_info.major}.{sys.version_info.minor}"

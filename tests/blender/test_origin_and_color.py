@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from blender_state import empty_file
 from mathutils import Color
-from realmodel.bl import materials, origin
+from realmodel.bl.objects import materials, origin
 
 
 class Origin(unittest.TestCase):

@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import method_settings, region_size, results, surface_statistics
 from realmodel.bl.display import shown_models
+from realmodel.bl.project import method_settings, region_size, results, surface_statistics
 from realmodel.core import load_library, load_project
 from realmodel.core.exporters import FORMATS
 from realmodel.core.project.project_writer import off_text, points_text

@@ -6,8 +6,9 @@ from unittest import mock
 import bpy
 from blender_state import volume
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import built_models, live, viewports
 from realmodel.bl.display import shown_models
+from realmodel.bl.objects import built_models, viewports
+from realmodel.bl.scene import live
 
 
 class Live(PanelCase):

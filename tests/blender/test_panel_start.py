@@ -197,7 +197,7 @@ class Saved(PanelCase):
     def test_numbers_keep_their_digits(self):
         ops.rock_add()
         rock = self.model.rocks[0]
-        from realmodel.bl import settings
+        from realmodel.bl.project import settings
 
         for value in (0.1, 400.1, 1 / 3, 5397900.123456789):
             settings.set_number(rock, "edge_length", value)

@@ -7,8 +7,8 @@ import random
 import bpy
 from blender_state import empty_file, inventory, open_edges, volume
 from panel_case import PanelCase, ops, raise_by, select, sheet, stack
-from realmodel.bl import built_models
 from realmodel.bl.display import colors
+from realmodel.bl.objects import built_models
 
 
 def block(name):
@@ -318,8 +318,9 @@ class Failure(PanelCase):
 
     def test_when_blender_has_no_memory_left(self):
         """At the first and at a later mesh, and at a material: nothing is left of what was made before."""
-        from realmodel.bl import built_scene, materials, meshes
-        from realmodel.bl.build_job import BuildJob
+        from realmodel.bl.objects import materials, meshes
+        from realmodel.bl.scene import built_scene
+        from realmodel.bl.scene.build_job import BuildJob
 
         stack(0.0, 10.0, 20.0)
         ops.library_add(name="Marl")

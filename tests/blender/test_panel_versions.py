@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 from panel_case import PanelCase, ops, raise_by
 from realmodel import handlers
-from realmodel.bl import settings
+from realmodel.bl.project import settings
 
 FILES = Path(__file__).resolve().parents[1] / "data" / "versions"
 CLAY, SAND = 105000.0, 25400.0  # about: methods become better

@@ -12,8 +12,9 @@ from bpy_extras.object_utils import world_to_camera_view
 from made_projects import LIBRARY, other_rock, surface, two_rocks
 from mathutils import Matrix, Vector
 from panel_case import PanelCase, ops
-from realmodel.bl import batch, built_scene, picture
 from realmodel.bl.display import colors, viewpoints
+from realmodel.bl.pictures import batch, picture
+from realmodel.bl.scene import built_scene
 from realmodel.core import OutputFailed, Project, Rock, build
 from realmodel.operators.pictures import set_up_first
 

@@ -6,7 +6,8 @@ import csv
 import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops, raise_by, stack
-from realmodel.bl import built_models, planned_holes
+from realmodel.bl.objects import built_models
+from realmodel.bl.scene import planned_holes
 
 
 class PlannedHoles(PanelCase):

@@ -6,8 +6,8 @@ import os
 import bpy
 from panel_case import PanelCase, sheet, stack
 from realmodel import preferences
-from realmodel.bl import live
-from realmodel.bl.threads import threads
+from realmodel.bl.host.threads import threads
+from realmodel.bl.scene import live
 from realmodel.core.base import work
 
 ops = bpy.ops.realmodel
@@ -45,7 +45,7 @@ class Preferences(PanelCase):
         self.assertEqual(found, [3])
         stack(0.0, 10.0)
         ops.build()
-        from realmodel.bl import built_models
+        from realmodel.bl.objects import built_models
 
         self.assertEqual(built_models.current(self.scene).threads, 3)
 

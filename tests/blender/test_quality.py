@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import PanelCase, ops
-from realmodel.bl import quality
+from realmodel.bl.scene import quality
 from realmodel.core import cross_validate
 
 

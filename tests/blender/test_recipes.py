@@ -10,7 +10,10 @@ import bpy
 import numpy as np
 from blender_state import coordinates, open_edges, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
-from realmodel.bl import compartments, looks, notices, project_settings, quality, weathering
+from realmodel.bl.host import notices
+from realmodel.bl.project import compartments, project_settings
+from realmodel.bl.scene import quality
+from realmodel.bl.shading import looks, weathering
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 import gallery_picture

@@ -11,7 +11,9 @@ import realmodel
 from blender_state import coordinates, corners, drawn_areas, empty_file, inventory, open_edges, volume
 from made_projects import LIBRARY, main_rock, one_rock, other_rock, two_rocks
 from panel_case import PanelCase
-from realmodel.bl import batch, built_scene, meshes, model_tree
+from realmodel.bl.objects import meshes, model_tree
+from realmodel.bl.pictures import batch
+from realmodel.bl.scene import built_scene
 from realmodel.core import Library, Project, Property, build
 
 

@@ -12,9 +12,10 @@ import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import PanelCase, ops, select, stack
-from realmodel.bl import looks, scene_export
-from realmodel.bl.library_rows import hex_color
-from realmodel.bl.materials import linear_color
+from realmodel.bl.objects.materials import linear_color
+from realmodel.bl.project.library_rows import hex_color
+from realmodel.bl.scene import scene_export
+from realmodel.bl.shading import looks
 from realmodel.core import InputRefused
 
 FOLDER = Path(__file__).resolve().parent

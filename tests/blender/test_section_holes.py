@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import project_settings, section_holes
+from realmodel.bl.project import project_settings
+from realmodel.bl.scene import section_holes
 
 
 class SectionHoles(PanelCase):

@@ -258,7 +258,7 @@ class Cuts(Case):
 
 class Viewed(Case):
     def view(self):
-        from realmodel.bl import viewports
+        from realmodel.bl.objects import viewports
 
         return viewports.spaces(bpy.context)[0].region_3d
 
@@ -333,7 +333,7 @@ class Pictures(Viewed):
         return found
 
     def test_each_mode_is_a_picture_of_its_own(self):
-        from realmodel.bl import viewports
+        from realmodel.bl.objects import viewports
 
         self.view().view_rotation = viewports.view_rotation().to_quaternion()
         bpy.ops.realmodel.view_all()

@@ -7,9 +7,12 @@ import time
 import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import built_models, display, live, overlay, series_settings
+from realmodel.bl import display, overlay
 from realmodel.bl.display import cuts
 from realmodel.bl.field import data, edits, handle
+from realmodel.bl.objects import built_models
+from realmodel.bl.project import series_settings
+from realmodel.bl.scene import live
 from realmodel.core import InputRefused, SpaceDips, build, load_project
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab

@@ -6,7 +6,7 @@ import numpy as np
 import realmodel
 from blender_state import coordinates
 from panel_case import ops
-from realmodel.bl import surface_statistics
+from realmodel.bl.project import surface_statistics
 from realmodel.core.display import polygon_mesh
 from view_case import Case
 

@@ -3,7 +3,7 @@
 
 import bpy
 from panel_case import PanelCase
-from realmodel.bl import thumbnails
+from realmodel.bl.host import thumbnails
 
 
 class Thumbnails(PanelCase):

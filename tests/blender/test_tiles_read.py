@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import model_tree, origin
+from realmodel.bl.objects import model_tree, origin
 from realmodel.core import load_project
 from realmodel.distributed import build, tile_folder
 from realmodel.distributed.workers import Workers

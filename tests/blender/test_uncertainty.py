@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch, model_tree, surface_statistics
+from realmodel.bl.objects import model_tree
+from realmodel.bl.pictures import batch
+from realmodel.bl.project import surface_statistics
 from realmodel.core import build
 from realmodel.core.results import layer_values
 

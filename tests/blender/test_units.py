@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import bpy
 from panel_case import PanelCase, ops
-from realmodel.bl import batch, units
+from realmodel.bl.pictures import batch
+from realmodel.bl.project import units
 from realmodel.core import build, load_project
 from realmodel.core.base.units import METERS
 

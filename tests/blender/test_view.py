@@ -82,7 +82,7 @@ class Modes(Case):
 
     def test_interfaces_have_the_colors_of_the_blocks_beneath(self):
         self.settings.display = "SURFACES"
-        from realmodel.bl import materials
+        from realmodel.bl.objects import materials
 
         for name, property_id in (("S1", 2), ("S3", 4), ("S2", 3)):
             color = bpy.data.objects[name].material_slots[0].material.diffuse_color

@@ -6,7 +6,9 @@ import math
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import edge_wear, looks, meshes, versions, weathering
+from realmodel.bl.host import versions
+from realmodel.bl.objects import meshes
+from realmodel.bl.shading import edge_wear, looks, weathering
 
 
 class Counting(bpy.types.RenderEngine):

@@ -9,7 +9,7 @@ import blender_state
 import bpy
 import numpy as np
 from made_projects import LIBRARY, surface
-from realmodel.bl import versions
+from realmodel.bl.host import versions
 from realmodel.core import Project, Rock, build
 from realmodel.core.project.project_writer import save_project
 

@@ -57,7 +57,7 @@ def test_tables(write, collars, picks, keys):
     assert list(met.points) == ["clay", "sand"]
     assert met.points["clay"].tolist() == CLAY
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks have no depth" in text for text in met.warnings) == (
+    assert any("left out: 1 pick without a depth" in text for text in met.warnings) == (
         ",sand,\n" in picks or "sand,\r" in picks or ";sand;\n" in picks or "sand\t\n" in picks
     )
     if collars and "B5" in collars:
@@ -72,7 +72,7 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
     }
     met = read_boreholes(Boreholes(**files))
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks have no depth" in text for text in met.warnings)
+    assert any("left out: 1 pick without a depth" in text for text in met.warnings)
 
 
 def test_inclined_holes_are_a_warning(write):
@@ -94,9 +94,32 @@ def test_units(write):
 
 
 @pytest.mark.parametrize(
+    ("units", "said"),
+    [
+        ({}, {"c.csv": "ft for 'Z (FT)'", "p.csv": "ft for 'depth [feet]'"}),
+        ({"units": {"z": "ft"}}, {}),
+        ({"units": {"z": "us-ft"}}, {}),
+        ({"units": "ft"}, {"c.csv": "m for 'X (m)'"}),
+    ],
+)
+def test_other_units_in_headers_are_a_warning(write, units, said):
+    collars = COLLARS.replace("x,y,z", "X (m),y (plan),Z (FT)")
+    files = {
+        "picks": write("p.csv", PICKS.replace("depth", "depth [feet]")),
+        "collars": write("c.csv", collars),
+    }
+    warnings = [
+        text for text in read_boreholes(Boreholes(**files, **units)).warnings if "the header says" in text
+    ]
+    assert len(warnings) == len(said)
+    for text, (file, words) in zip(warnings, said.items(), strict=True):
+        assert file in text and f"the header says {words}, but the unit is" in text
+
+
+@pytest.mark.parametrize(
     ("collars", "picks", "file", "line", "words"),
     [
-        (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "no hole of it has a collar in"),
+        (COLLARS, PICKS.replace("B", "C"), "p.csv", 2, "hole 'C1': it has no collar in"),
         (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
         (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
         (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
@@ -124,30 +147,36 @@ def test_tables_refused(write, collars, picks, file, line, words):
     assert (raised.value.file.name, raised.value.line) == (file, line)
 
 
-def test_picks_of_holes_without_a_collar_are_listed(write):
-    collars = write("c.csv", COLLARS.replace("B4,0,4,11", "B4,0,,11"))
-    met = read_boreholes(Boreholes(write("p.csv", PICKS + "B9,clay,3\n"), collars))
-    assert met.points["clay"].tolist() == CLAY
-    assert met.points["sand"].tolist() == SAND[:1]
-    assert [(each.kind, each.block, each.hole, each.depth, each.text) for each in met.left_out] == [
-        ("no_collar", "sand", "B4", 2.0, f"line 7, hole 'B4' at 2, 'sand': line 5 of {collars} has no y"),
-        ("no_collar", "clay", "B9", 3.0, f"line 8, hole 'B9' at 3, 'clay': it has no collar in {collars}"),
-    ]
-    assert any(text.endswith("holes without a place, which are not used: B4") for text in met.warnings)
+@pytest.mark.parametrize(
+    ("more", "line", "words"),
+    [("B9,clay,3\n", 8, "hole 'B9': it has no collar in"), ("B5,clay,3\n", 8, "hole 'B5': line 6 of")],
+)
+def test_a_pick_of_a_hole_without_a_collar_is_refused(write, more, line, words):
+    collars = write("c.csv", COLLARS.replace("B5,2,2,11", "B5,2,,11"))
+    met = read_boreholes(Boreholes(write("p.csv", PICKS), collars))
+    assert met.points["sand"].tolist() == SAND
+    assert met.warnings[1:] == [f"{collars}: holes without x, y or z, which are not used: B5"]
+    with pytest.raises(InputRefused, match=words) as raised:
+        read_boreholes(Boreholes(write("p.csv", PICKS + more), collars))
+    assert (raised.value.file.name, raised.value.line) == ("p.csv", line)
+    off = write("p.csv", PICKS.replace("depth\n", "depth,use\n") + more.replace("\n", ",0\n"))
+    assert read_boreholes(Boreholes(off, collars)).points["sand"].tolist() == SAND
 
 
 def test_holes_are_found_however_they_are_written(write):
     collars = COLLARS.replace("B1,", "DH-1,").replace("B2,", "DH 2,").replace("B5,", "dh_2,")
-    picks = PICKS.replace("B1,", "dh 1,").replace("B2,", "DH_2,").replace("B3,", "b3,")
+    picks = PICKS.replace("B1,", "dh 1,").replace("B2,", "DH 2,").replace("B3,", "b3,")
     survey = write("s.csv", "hole,depth,azimuth,inclination\nDh 1,0,90,90\n")
     met = read_boreholes(Boreholes(write("p.csv", picks), write("c.csv", collars), survey=survey))
-    # 'DH_2' may be 'DH 2' or 'dh_2', at another place; 'DH-1' is horizontal
-    np.testing.assert_allclose(met.points["clay"], [[4, 0, 10], CLAY[2]], atol=1e-12)
-    assert [each.hole for each in met.left_out] == ["DH_2"]
-    assert set(met.holes) == {"DH-1", "B3", "B4"}
+    # 'DH-1' is horizontal
+    np.testing.assert_allclose(met.points["clay"], [[4, 0, 10], CLAY[1], CLAY[2]], atol=1e-12)
+    assert set(met.holes) == {"DH-1", "DH 2", "B3", "B4"}
     assert any(
         "are taken for those with collars: 'dh 1' for 'DH-1' and 'b3' for 'B3'" in t for t in met.warnings
     )
+    # 'DH_2' may be 'DH 2' or 'dh_2', at another place
+    with pytest.raises(InputRefused, match="hole 'DH_2': it has no collar"):
+        read_boreholes(Boreholes(write("p.csv", picks.replace("DH 2,", "DH_2,")), write("c.csv", collars)))
 
 
 PROJECT = """format = 1

@@ -452,7 +452,7 @@ def test_triangles_have_their_dips():
 
 def test_dips_that_the_mesh_cannot_have_are_told():
     far = Dips(np.vstack([DIPS.positions, UTM - 100]), np.vstack([DIPS.gradients, [[1.0, 0]]]))
-    assert "1 dips lie outside the mesh and are ignored" in on_mesh(POINTS, far).warnings
+    assert "left out: 1 dip outside the mesh" in on_mesh(POINTS, far).warnings
     place = MESH[0][MESH[1][40]].mean(axis=0)
     both = Dips(np.array([place, place + 0.1]), np.array([[0.1, 0.0], [0.2, 0.0]]))
     assert any("some dips cannot be honored" in text for text in on_mesh(POINTS, both).warnings)

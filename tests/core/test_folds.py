@@ -23,7 +23,6 @@ from realmodel.core import (
 )
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module
-from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.exporters.fields import write_fields
 from realmodel.core.fields import are_on
 from realmodel.core.project.project_writer import save_project
@@ -233,8 +232,6 @@ def test_a_model_without_a_field_says_so(tmp_path):
 def test_what_cannot_be_made_of_fields_yet_is_refused(monkeypatch, tmp_path):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     project = folded_project()
-    with pytest.raises(InputRefused, match="an ensemble cannot have series of fields yet"):
-        Realizer(build(project))
     with pytest.raises(InputRefused, match="a model in tiles cannot have series of fields yet"):
         build_tiles(project, tmp_path / "tiles", (5, 5))
     project.faults = [Fault("F", *plane((5.3, -2), (4.1, 12)), youngest="f")]

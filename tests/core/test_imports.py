@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Who imports whom in the add-on, at the top of a file, inside a function or for types alone: nobody in a
-circle. The folders of core are steps (docs/dev/architecture.md), and each imports from earlier ones only."""
+circle. The folders of core are steps, and so are those of bl (docs/dev/architecture.md): each imports from
+earlier ones only."""
 
 import ast
 import re
@@ -11,6 +12,7 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "addon" / "realmodel"
 CORE = PACKAGE / "core"
+BL = PACKAGE / "bl"
 
 
 def _modules(package):
@@ -61,40 +63,57 @@ def _circle(imports):
     return None
 
 
-def _imports_of_steps(depth):
-    """{step: steps that it imports from} of core."""
+def _imports_of_steps(root, depth):
+    """{step: steps that it imports from} of the package in a folder."""
     modules = _modules(PACKAGE)
     imports = {}
     for name, file in modules.items():
-        if CORE in file.parents:
-            steps = {_step(modules[found], depth) for found in _Imports(name, file, modules).found}
-            imports.setdefault(_step(file, depth), set()).update(steps - {_step(file, depth)})
+        if root in file.parents:
+            steps = {_step(root, modules[found], depth) for found in _Imports(name, file, modules).found}
+            step = _step(root, file, depth)
+            imports.setdefault(step, set()).update(steps - {step})
     return imports
 
 
-def test_each_step_imports_from_steps_above_it_in_the_document():
+def _step(root, file, depth):
+    """The folder of a file below the root; a file that is in none is a step by itself."""
+    parts = file.relative_to(root).parts if root in file.parents else ("..",)
+    return "/".join(parts[:-1][:depth] or parts)
+
+
+def _steps_of_document(heading):
+    """The steps in the first column of the table below a heading, in order."""
     text = (PACKAGE.parents[1] / "docs" / "dev" / "architecture.md").read_text()
-    steps = re.findall(r"^\| `(\w+)`", text.split("| step |")[1].split("\n\n")[0], re.MULTILINE)
-    imports = _imports_of_steps(1)
+    table = text.split(f"\n## {heading}\n")[1].split("\n| ", 1)[1].split("\n\n")[0]
+    return re.findall(r"^\| `(\w+)`", table, re.MULTILINE)
+
+
+def test_each_step_imports_from_steps_above_it_in_the_document():
+    steps = _steps_of_document("The way of a build")
+    imports = _imports_of_steps(CORE, 1)
     assert {step for step in imports if not step.endswith(".py")} == set(steps)
     for n, step in enumerate(steps):
         assert imports[step] <= set(steps[:n]) | {"plots.py"}, step
     assert imports["plots.py"] <= set(steps)
 
 
+def test_each_folder_of_bl_imports_from_folders_above_it_in_the_document():
+    folders = _steps_of_document("From settings to a scene")
+    imports = _imports_of_steps(BL, 1)
+    assert {step for step in imports if not step.endswith(".py")} == set(folders)
+    elsewhere = {"..", "__init__.py"}  # core, and bl itself for the names of its folders
+    for n, folder in enumerate(folders):
+        assert imports[folder] <= set(folders[:n]) | elsewhere, folder
+
+
 def test_folders_within_steps_are_in_no_circle():
-    assert _circle(_imports_of_steps(2)) is None
+    assert _circle(_imports_of_steps(CORE, 2)) is None
 
 
-def _step(file, depth):
-    """The folder of a file in core; a file that is in none is a step by itself."""
-    parts = file.relative_to(CORE).parts if CORE in file.parents else ("..",)
-    return "/".join(parts[:-1][:depth] or parts)
-
-
-def test_a_folder_of_the_core_says_what_comes_in_and_goes_out():
-    folders = {file.parent for file in CORE.rglob("*.py")}
-    for folder in folders - {CORE}:
+@pytest.mark.parametrize("root", [CORE, BL], ids=["core", "bl"])
+def test_a_folder_says_what_comes_in_and_goes_out(root):
+    folders = {file.parent for file in root.rglob("*.py")}
+    for folder in folders - {root}:
         text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
         assert "Comes in: " in text, folder
         assert "Goes out: " in text, folder

@@ -500,3 +500,25 @@ def test_lost_core_within_a_block_parts_two_intervals():
     assert Observations.joined([]).logs() == {}
     with pytest.raises(InputRefused, match="4 places have 3 numbers of intervals"):
         Observations(places, ["clay"] * 4, intervals=[0, 0, 1])
+
+
+def test_a_surface_that_no_hole_meets_does_not_follow_inclined_holes_down():
+    """Holes that lie in the sand alone: the ground is at their collars, not along them."""
+    rows = []
+    for name, x, way in (("B1", 1.0, 6.0), ("B2", 9.0, -6.0), ("B3", 2.0, 5.0)):
+        at = np.linspace(0.0, 1.0, 7)[:, None]
+        y = 2.0 * len(rows)
+        rows.append((name, np.array([x, y, 9.0]) + at * [way, 0.0, -8.0], 10.0 * at.ravel()))
+    seen = Observations(
+        np.concatenate([places for _, places, _ in rows]),
+        np.full(21, "sand"),
+        np.repeat([name for name, *_ in rows], 7),
+        np.concatenate([depths for *_, depths in rows]),
+    )
+    points = np.array([[0, 0, -2.0], [10, 0, -2], [0, 10, -2]])
+    surfaces = [Surface("S0", points=points, method="plane"), Surface("S1", method="spline", block="sand")]
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-5.0, observations=seen)
+    model = build(Project("p", [rock]))
+    ground = model.project.rocks[0].surfaces[1]
+    assert ground.point_array().tolist() == [[1.0, 0.0, 9.0], [2.0, 4.0, 9.0], [9.0, 2.0, 9.0]]
+    assert [(each.block, each.share) for each in model.observed().blocks] == [("sand", 1.0)]

@@ -62,7 +62,7 @@ def test_heights_of_positions(write, tmp_path):
         points, warnings = read_point_file(PointFile(file))
         assert points.tolist() == [list(spot) for spot in SPOTS], file
         assert len(warnings) == count
-        assert not count or "1 points have no value and are left out" in warnings[0]
+        assert not count or "left out: 1 point without a value" in warnings[0]
     measures = write("m.wkt", "LINESTRING M (1 2 7, 3 4 8)")
     with pytest.raises(InputRefused, match=r"no height.*height = "):
         read_point_file(PointFile(measures))
@@ -83,7 +83,7 @@ def test_heights_by_an_attribute(write, tmp_path):
     points, warnings = read_point_file(PointFile(path, height="elev", nodata=99))
     expected = [[*place, 20.0] for place in CONTOUR] + [[0, 5, 25.5], [1, 5, 25.5], [1, 6, 25.5]]
     assert points.tolist() == expected
-    assert "4 points have no value" in warnings[0]
+    assert "left out: 4 points without a value" in warnings[0]
     points, _ = read_point_file(PointFile(path, height="ELEV", where={"kind": "lake"}))
     assert len(points) == 3
 

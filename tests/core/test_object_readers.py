@@ -147,7 +147,7 @@ def test_points_of_omf_have_data_a_grid_and_an_origin(tmp_path):
     assert points.tolist() == [[101, 0, 8], [102, 0, 9]]
     points, said = read_point_file(PointFile(path, layer="p", height="depth", nodata=2.5, z_axis="down"))
     assert points.tolist() == [[100, 0, -1.5]]
-    assert said == [f"{path}: 2 points have no value and are left out"]
+    assert said == [f"{path}: left out: 2 points without a value"]
     assert column_names(path, "p") == ["unit", "depth"]
     assert column_values(path, "unit", "p") == ["sand", "clay"]
     mesh = read_mesh(path)  # the only surface

@@ -219,7 +219,7 @@ def test_points_without_a_value_are_a_warning(write):
     text = KEYS.format(top="", surface="nodata = -9999").replace("all.csv", "p.xyz")
     write("p.xyz", "0 0 1\n4 0 1\n4 4 1\n0 4 1\n2 2 -9999\n")
     warnings = build(load_project(write("p.toml", text))).warnings
-    assert any("1 points have no value and are left out" in str(warning) for warning in warnings)
+    assert any("left out: 1 point without a value" in str(warning) for warning in warnings)
 
 
 @pytest.mark.parametrize(

@@ -39,5 +39,5 @@ def test_the_model_is_what_its_files_were_made_of(made):
         assert volumes[name] == pytest.approx(25 * thickness.sum(), rel=within), name
     assert sum(volumes.values()) == pytest.approx(25 * (ground - 400).sum(), rel=0.002)
     warnings = [str(warning) for warning in model.warnings]
-    assert any("2 picks have no depth" in text for text in warnings)
+    assert any("2 picks without a depth" in text for text in warnings)
     assert not any("range" in text for text in warnings)

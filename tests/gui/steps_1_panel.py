@@ -4,8 +4,8 @@
 import bpy
 import numpy as np
 from driver import hue_differs
-from realmodel.bl import live
 from realmodel.bl.display import viewpoints
+from realmodel.bl.scene import live
 from realmodel.ui import start
 from realmodel.ui.panel import TabPanel
 

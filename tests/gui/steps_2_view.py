@@ -16,8 +16,8 @@ from driver import hue_differs, read_alpha, read_picture
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender"))
 
 from made_projects import surface
-from realmodel.bl import viewports
 from realmodel.bl.display import preparing
+from realmodel.bl.objects import viewports
 from realmodel.core import Library, Project, Property, Rock
 from realmodel.core.project.project_writer import save_project
 

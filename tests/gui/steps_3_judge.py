@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from realmodel.bl import quality
+from realmodel.bl.scene import quality
 from realmodel.ui import judge
 from realmodel.ui.panel import TabPanel
 from steps_2_view import in_the_viewport

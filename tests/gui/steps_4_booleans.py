@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from realmodel.bl import meshes
+from realmodel.bl.objects import meshes
 from steps_1_panel import idle
 from steps_3_import import invoked
 

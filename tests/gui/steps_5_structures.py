@@ -3,8 +3,9 @@
 
 import bpy
 import numpy as np
-from realmodel.bl import compartments, meshes
 from realmodel.bl.display import bodies, shades
+from realmodel.bl.objects import meshes
+from realmodel.bl.project import compartments
 from steps_1_panel import idle, open_the_tab, tab_panels
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked

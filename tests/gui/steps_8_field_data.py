@@ -4,8 +4,9 @@ that is picked and dragged while the model follows, undo, the list of what does 
 
 import bpy
 import numpy as np
-from realmodel.bl import live, project_settings
 from realmodel.bl.field import data, handle
+from realmodel.bl.project import project_settings
+from realmodel.bl.scene import live
 from steps_1_panel import idle, model, volumes
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked

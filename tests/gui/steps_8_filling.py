@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from realmodel.bl import meshes, thumbnails
+from realmodel.bl.host import thumbnails
+from realmodel.bl.objects import meshes
 from steps_1_panel import idle
 from steps_3_import import invoked
 

@@ -5,9 +5,9 @@ with dips, its region and base, and the build; its field, and a dip that is drag
 from pathlib import Path
 
 import bpy
-from realmodel.bl import live
 from realmodel.bl.display import fields
 from realmodel.bl.field import data, handle
+from realmodel.bl.scene import live
 from steps_1_panel import idle, model, volumes
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked

@@ -4,7 +4,7 @@ once; a pit that is added is seen, and so is the place of a refusal."""
 
 import bpy
 import numpy as np
-from realmodel.bl import problems
+from realmodel.bl.scene import problems
 from steps_1_panel import idle, model, open_the_tab, volumes
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked

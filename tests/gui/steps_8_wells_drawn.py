@@ -5,8 +5,11 @@ is planned and its table is read."""
 import bpy
 import numpy as np
 from driver import hue_differs
-from realmodel.bl import data_objects, drawn_data, planned_holes, project_settings, section_holes, viewports
 from realmodel.bl.display import cuts
+from realmodel.bl.field import drawn_data
+from realmodel.bl.objects import viewports
+from realmodel.bl.project import project_settings
+from realmodel.bl.scene import data_objects, planned_holes, section_holes
 from steps_1_panel import idle, model, volumes
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked

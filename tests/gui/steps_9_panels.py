@@ -2,7 +2,7 @@
 """Every panel of the tab, unfolded, drawn by Blender itself; the menus, and the status bar."""
 
 import bpy
-from realmodel.bl import viewports
+from realmodel.bl.objects import viewports
 from realmodel.ui.panel import TabPanel
 from steps_1_panel import idle, model, nothing_left_to_do, open_the_tab, tab_panels
 

@@ -60,7 +60,13 @@ def test_both_ways_to_be_found_by_blender(unpacked):
 
 def test_all_that_a_user_needs_is_there(unpacked):
     folder = unpacked / "realmodel"
-    for name in ("LICENSE", "NOTICE.md", "core/model/build.py", "bl/model_tree.py", "vendor/shapefile.py"):
+    for name in (
+        "LICENSE",
+        "NOTICE.md",
+        "core/model/build.py",
+        "bl/host/versions.py",
+        "vendor/shapefile.py",
+    ):
         assert (folder / name).is_file(), name
     samples = folder / "blend_samples"
     assert {path.parent.name for path in samples.glob("*/project.toml")} >= {

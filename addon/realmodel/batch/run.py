@@ -308,7 +308,7 @@ def _export(options: argparse.Namespace, model, outputs, progress, cells) -> Non
 
 def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:
     from .. import register_for_batch
-    from ..bl import batch
+    from ..bl.pictures import batch
 
     register_for_batch()
     progress(1.0, "making the scene")

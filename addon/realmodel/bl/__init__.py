@@ -1,13 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The only place where arrays meet bpy.
-
-scene           names and tags of a model's collections and objects
-built_scene     a built model as collections and objects of a scene with its settings
-project_settings  from the settings to a project, and back
-meshes          arrays to meshes and back
-materials       one for each property of the library
-origin          what keeps UTM coordinates exact in float32
-batch           scene, .blend file and picture without a window, for build_model.py
-picture         camera and sun; the picture of build_model.py
-versions        every difference between Blender versions
-"""
+"""The only place where arrays meet bpy. Each folder says what comes in and what goes out, and imports from
+those above it in docs/dev/architecture.md; `changes` is what follows when a setting changes."""

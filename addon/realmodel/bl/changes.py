@@ -2,16 +2,13 @@
 """The update callbacks of settings, one function each: called when a setting is changed by hand or by a
 script."""
 
-from . import (
-    data_objects,
-    display,
-    hole_validation,
+from . import display
+from .field import handle, hole_validation
+from .objects import viewports
+from .project import (
     library_rows,
-    live,
-    looks,
     method_settings,
     names,
-    planned_holes,
     project_settings,
     reading_text,
     region_size,
@@ -20,10 +17,9 @@ from . import (
     structure_settings,
     surface_statistics,
     units,
-    viewports,
-    weathering,
 )
-from .field import handle
+from .scene import data_objects, live, planned_holes
+from .shading import looks, weathering
 
 
 def _unless_filling(consequence):

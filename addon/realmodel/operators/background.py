@@ -3,7 +3,9 @@
 
 import bpy
 
-from ..bl import build_job, notices, viewports
+from ..bl.host import notices
+from ..bl.objects import viewports
+from ..bl.scene import build_job
 from ..core import Cancelled, RealModelError
 from .reporting import Reporting
 

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-from ..bl.boolean_job import DIVIDE, OPERATIONS, BooleanJob
+from ..bl.objects.boolean_job import DIVIDE, OPERATIONS, BooleanJob
 from ..core import InputRefused
 from ..core.base.errors import number_list
 from .background import InBackground

@@ -4,25 +4,22 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ..bl import (
+from ..bl.field import field_tables, interval_values, map_settings
+from ..bl.host import caches
+from ..bl.objects import stored_arrays
+from ..bl.project import (
     borehole_picks,
-    borehole_points,
-    caches,
-    data_objects,
-    field_tables,
-    interval_values,
-    live,
-    map_settings,
     method_settings,
     observed_blocks,
     project_settings,
     reading_text,
     series_settings,
     settings,
-    stored_arrays,
     surface_dips,
 )
+from ..bl.scene import borehole_points, data_objects, live
 from ..core import InputRefused, RealModelError
+from ..core.base.errors import counted
 from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
 from ..core.readers.objects.object_file import is_object_file
 from ..core.settings.schema import READING
@@ -292,22 +289,22 @@ def _summary(found, of):
     said = []
     names = dict.fromkeys((*found.picks.points, *found.new))
     if found.picks.points:
-        said.append(f"points for {len(found.picks.points)} surfaces")
+        said.append(f"points for {counted(len(found.picks.points), 'surface')}")
     elif found.new:
-        said.append(f"{len(found.new)} new surfaces")
+        said.append(counted(len(found.new), "new surface"))
     if len(found.observations):
-        said.append(f"{len(found.observations)} observations of blocks")
+        said.append(f"{counted(len(found.observations), 'observation')} of blocks")
     if found.maps:
         said.append(f"{sum(len(draped.triangles) for draped in found.maps)} triangles of a map")
     if found.dips is not None:
-        said.append(f"{len(found.dips)} dips of '{of}'")
+        said.append(f"{counted(len(found.dips), 'dip')} of '{of}'")
     if found.series_dips is not None:
-        said.append(f"{len(found.series_dips)} dips of series '{of}'")
+        said.append(f"{counted(len(found.series_dips), 'dip')} of series '{of}'")
     columns = dict.fromkeys(name for values in found.values for name in values.columns)
     if columns:
         said.append(f"the columns {', '.join(columns)} of intervals")
     if found.rock_dips is not None:
-        said.append(f"{len(found.rock_dips)} dips of the rock mass")
+        said.append(f"{counted(len(found.rock_dips), 'dip')} of the rock mass")
     text = ", ".join(said) or "nothing that could be used"
     text = text[0].upper() + text[1:]
     return f"{text}: {', '.join(names)}" if names else text

@@ -3,7 +3,9 @@
 
 import bpy
 
-from ..bl import build_job, built_scene, live, notices, problems, viewports
+from ..bl.host import notices
+from ..bl.objects import viewports
+from ..bl.scene import build_job, built_scene, live, problems
 from .background import InBackground, running
 from .pictures import by_hand, set_up_first
 from .reporting import Reporting, a_model, building, not_building

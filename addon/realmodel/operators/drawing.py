@@ -9,8 +9,10 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import drawn_data, placed_images, project_settings, settings, viewports
-from ..bl.display import exaggeration_changed, visible
+from ..bl.display import exaggeration_changed
+from ..bl.field import drawn_data, placed_images
+from ..bl.objects import viewports, visible
+from ..bl.project import project_settings, settings
 from ..core import InputRefused
 from .in_viewport import InViewport
 from .reporting import (

@@ -4,8 +4,11 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from ..bl import display, ensemble_job, live
-from ..bl.display import ensembles, visible
+from ..bl import display
+from ..bl.display import ensembles
+from ..bl.jobs import ensemble_job
+from ..bl.objects import visible
+from ..bl.scene import live
 from ..core import InputRefused
 from ..props_ensemble import MOST
 from .background import InBackground

@@ -4,9 +4,11 @@
 import bpy
 import numpy as np
 
-from ..bl import data_objects, live, project_settings, viewports
-from ..bl.display import capture
 from ..bl.field import data, edits, handle, heights
+from ..bl.objects import viewports
+from ..bl.pictures import capture
+from ..bl.project import project_settings
+from ..bl.scene import data_objects, live
 from ..core import InputRefused
 from .in_viewport import Pointing
 from .reporting import Reporting, place_property

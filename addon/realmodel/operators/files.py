@@ -13,10 +13,11 @@ from bpy.props import (
 )
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import results, scene_export
 from ..bl.display import shown_models
-from ..bl.export_job import ExportJob
-from ..bl.mesh_job import MeshJob
+from ..bl.jobs.export_job import ExportJob
+from ..bl.jobs.mesh_job import MeshJob
+from ..bl.project import results
+from ..bl.scene import scene_export
 from ..core import InputRefused, UsageError
 from ..core.base.atomic import Outputs
 from ..core.exporters import FORMATS

@@ -7,10 +7,10 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..bl import thumbnails
-from ..bl.boolean_job import VOLUME
-from ..bl.fill_job import FilledShape, FillJob
-from ..bl.fill_preview import FillPreview
+from ..bl.host import thumbnails
+from ..bl.jobs.fill_job import FilledShape, FillJob
+from ..bl.jobs.fill_preview import FillPreview
+from ..bl.objects.boolean_job import VOLUME
 from ..core import RealModelError, Strata
 from ..core.filling import PALETTES
 from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT

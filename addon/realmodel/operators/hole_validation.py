@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import IntProperty
 
-from ..bl import hole_validation, live
+from ..bl.field import hole_validation
+from ..bl.scene import live
 from ..core import InputRefused
 from .background import InBackground
 from .reporting import Reporting, a_model, not_building

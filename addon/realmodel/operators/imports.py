@@ -11,17 +11,9 @@ import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import (
-    data_objects,
-    library_rows,
-    live,
-    plan_mesh,
-    project_settings,
-    reading_text,
-    settings,
-    shapes,
-    viewports,
-)
+from ..bl.objects import shapes, viewports
+from ..bl.project import library_rows, plan_mesh, project_settings, reading_text, settings
+from ..bl.scene import data_objects, live
 from ..core import InputRefused, MeshFile, PointFile
 from ..core.base.errors import HeightsMissing
 from ..core.base.triangles import open_edges

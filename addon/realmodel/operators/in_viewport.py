@@ -4,8 +4,8 @@
 import bpy
 import numpy as np
 
-from ..bl import viewports
-from ..bl.draw_handler import DrawHandler
+from ..bl.host.draw_handler import DrawHandler
+from ..bl.objects import viewports
 from ..bl.overlay import viewport as overlay
 from ..core import RealModelError
 from ..core.drawing.drawing import Drawing

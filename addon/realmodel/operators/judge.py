@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from ..bl import project_settings, quality
+from ..bl.project import project_settings
+from ..bl.scene import quality
 from ..core import UsageError
 from ..core.drawing import save_drawing
 from .files import DRAWINGS, Exporting, format_filter, format_menu

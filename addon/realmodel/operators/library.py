@@ -5,7 +5,10 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl import display, library_rows, live, looks, properties_of_blocks, settings
+from ..bl import display
+from ..bl.project import library_rows, settings
+from ..bl.scene import live, properties_of_blocks
+from ..bl.shading import looks
 from ..core import Property, load_library
 from ..core.project.project_writer import save_library
 from .reporting import Reporting, a_library, chosen_path, file_filter, selected_blocks

@@ -6,7 +6,9 @@ import math
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..bl import filled_beds, library_rows, look_assets, looks, project_settings, settings, weathering
+from ..bl.objects import filled_beds
+from ..bl.project import library_rows, project_settings, settings
+from ..bl.shading import look_assets, looks, weathering
 from ..core import InputRefused
 from .reporting import Reporting, a_library, a_model_or_beds
 

@@ -5,8 +5,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..bl import built_scene, data_objects, exaggeration, project_settings, settings, shapes, viewports
-from ..bl.origin import KEY, choose_origin
+from ..bl.objects import exaggeration, shapes, viewports
+from ..bl.objects.origin import KEY, choose_origin
+from ..bl.project import project_settings, settings
+from ..bl.scene import built_scene, data_objects
 from ..core import InputRefused
 from .reporting import Reporting, any_surface, not_building
 from .start import invoke

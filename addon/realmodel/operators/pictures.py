@@ -6,9 +6,10 @@ import math
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from ..bl import animation, first_picture, overlay, picture
-from ..bl.display import capture, viewpoints
-from ..bl.viewports import CAMERA_ELEVATION
+from ..bl import overlay
+from ..bl.display import viewpoints
+from ..bl.objects.viewports import CAMERA_ELEVATION
+from ..bl.pictures import animation, capture, first_picture, picture
 from .reporting import Reporting, a_model, a_model_or_beds
 
 

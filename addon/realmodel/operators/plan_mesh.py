@@ -5,7 +5,8 @@ import bpy
 from bpy.props import IntProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import live, plan_mesh, settings
+from ..bl.project import plan_mesh, settings
+from ..bl.scene import live
 from ..core.project.plan_input import read_constraints
 from ..core.readers import MAP_ENDINGS
 from .reporting import (

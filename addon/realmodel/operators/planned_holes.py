@@ -4,8 +4,11 @@
 import bpy
 import numpy as np
 
-from ..bl import exaggeration, planned_holes, planned_job, project_settings, settings
 from ..bl.display import explosion
+from ..bl.jobs import planned_job
+from ..bl.objects import exaggeration
+from ..bl.project import project_settings, settings
+from ..bl.scene import planned_holes
 from ..core import InputRefused
 from .background import InBackground
 from .files import Exporting, format_filter, format_menu

@@ -8,8 +8,10 @@ looked at whenever the panel is drawn, so they read nothing but the scene.
 
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..bl import build_job, filled_beds, model_tree, project_settings, settings, viewports
 from ..bl.display import cuts
+from ..bl.objects import filled_beds, model_tree, viewports
+from ..bl.project import project_settings, settings
+from ..bl.scene import build_job
 from ..core import InputRefused, RealModelError
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import results
+from ..bl.project import results
 from .reporting import Reporting, a_model
 
 

@@ -6,7 +6,9 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 from mathutils.geometry import convex_hull_2d
 
-from ..bl import built_scene, data_objects, live, project_settings, settings, shapes
+from ..bl.objects import shapes
+from ..bl.project import project_settings, settings
+from ..bl.scene import built_scene, data_objects, live
 from ..core import InputRefused
 from .reporting import Reporting, a_rock
 

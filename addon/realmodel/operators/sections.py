@@ -6,15 +6,11 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
 from mathutils import Quaternion, Vector
 
-from ..bl import (
-    display,
-    exaggeration,
-    project_settings,
-    section_holes,
-    settings,
-    viewports,
-)
-from ..bl.display import cuts, sections, visible
+from ..bl import display
+from ..bl.display import cuts, sections
+from ..bl.objects import exaggeration, viewports, visible
+from ..bl.project import project_settings, settings
+from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
 from ..core.results.section_drawing import MOST_EXAGGERATION
 from .files import SECTIONS, Exporting, format_filter, format_menu

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
-from ..bl import data_objects, live, project_settings, series_settings, settings, surface_dips
+from ..bl.project import project_settings, series_settings, settings, surface_dips
+from ..bl.scene import data_objects, live
 from ..core import Dips, InputRefused, SpaceDips
 from ..core.readers import gradient_of, normal_of
 from ..core.settings.schema import SERIES

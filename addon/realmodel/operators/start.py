@@ -10,23 +10,13 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl import (
-    built_scene,
-    data_objects,
-    library_rows,
-    live,
-    map_settings,
-    model_tree,
-    project_settings,
-    region_size,
-    samples,
-    settings,
-    shapes,
-    viewports,
-)
 from ..bl.display import cuts
-from ..bl.origin import KEY as ORIGIN_KEY
-from ..bl.threads import threads
+from ..bl.field import map_settings
+from ..bl.host.threads import threads
+from ..bl.objects import model_tree, shapes, viewports
+from ..bl.objects.origin import KEY as ORIGIN_KEY
+from ..bl.project import library_rows, project_settings, region_size, samples, settings
+from ..bl.scene import built_scene, data_objects, live
 from ..core import BuildFailed, Model, load_project
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays

@@ -6,7 +6,9 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import built_scene, data_objects, library_rows, live, settings, shapes
+from ..bl.objects import shapes
+from ..bl.project import library_rows, settings
+from ..bl.scene import built_scene, data_objects, live
 from ..core import InputRefused, MapLayer, MeshFile
 from ..core.base.errors import HeightsMissing
 from ..core.base.triangles import open_edges

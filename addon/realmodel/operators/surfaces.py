@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import EnumProperty
 
-from ..bl import borehole_picks, built_scene, data_objects, library_rows, live, settings
+from ..bl.project import borehole_picks, library_rows, settings
+from ..bl.scene import built_scene, data_objects, live
 from ..core.surfaces.age_order import age_order
 from .reporting import Reporting, a_surface
 

@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import tile_objects
+from ..bl.objects import tile_objects
 from ..core import InputRefused, open_tiles
 from .reporting import Reporting, chosen_path, file_filter
 

@@ -4,7 +4,9 @@
 import bpy
 from bpy.props import BoolProperty
 
-from ..bl import changes, live, settings
+from ..bl import changes
+from ..bl.project import settings
+from ..bl.scene import live
 from ..core import InputRefused
 from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 

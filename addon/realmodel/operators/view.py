@@ -5,8 +5,11 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, project_settings, series_settings, settings, units, viewports
-from ..bl.display import capture, coordinates, modes, viewpoints, visible
+from ..bl import display
+from ..bl.display import coordinates, modes, viewpoints
+from ..bl.objects import viewports, visible
+from ..bl.pictures import capture
+from ..bl.project import project_settings, series_settings, settings, units
 from ..core import InputRefused, UsageError
 from .in_viewport import Pointing
 from .reporting import (

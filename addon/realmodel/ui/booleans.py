@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.boolean_job import OPERATIONS
+from ..bl.objects.boolean_job import OPERATIONS
 from .panel import FoldedPanel, hint
 
 _ICONS = {

@@ -3,7 +3,9 @@
 
 import bpy
 
-from ..bl import method_settings, notices, problems, settings
+from ..bl.host import notices
+from ..bl.project import method_settings, settings
+from ..bl.scene import problems
 from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded

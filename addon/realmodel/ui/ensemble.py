@@ -5,8 +5,8 @@ import math
 
 import bpy
 
-from ..bl import units
 from ..bl.display import ensembles
+from ..bl.project import units
 from ..props_ensemble import slider_of
 from .panel import FoldedPanel, OfABuiltModel, hint, right_label
 

@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..bl import hole_validation, units
+from ..bl.field import hole_validation
+from ..bl.project import units
 from .lists import OfRows
 from .panel import FoldedPanel, OfABuiltModel, hint, right_label, wrapped
 

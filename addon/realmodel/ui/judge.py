@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..bl import quality, settings, units
+from ..bl.project import settings, units
+from ..bl.scene import quality
 from .panel import FoldedPanel, hint, wrapped
 
 _WORST = 5  # points in the table

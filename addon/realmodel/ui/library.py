@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows
+from ..bl.project import library_rows
 from .panel import FoldedPanel, hint
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows, series_settings, units
+from ..bl.project import library_rows, series_settings, units
 from .panel import right_label
 
 

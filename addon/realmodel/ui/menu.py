@@ -3,8 +3,8 @@
 
 import bpy
 
-from ..bl import samples
-from ..bl.boolean_job import OPERATIONS
+from ..bl.objects.boolean_job import OPERATIONS
+from ..bl.project import samples
 
 # (operator without "realmodel.", text or None for its label, properties); None: a line
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})

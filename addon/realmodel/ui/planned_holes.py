@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..bl import library_rows, planned_holes, units
+from ..bl.project import library_rows, units
+from ..bl.scene import planned_holes
 from ..core import RealModelError
 from .lists import OfRows, draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, hint, right_label

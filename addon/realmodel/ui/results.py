@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..bl import compartments, quality, units
+from ..bl.project import compartments, units
+from ..bl.scene import quality
 from .lists import result_columns
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label
 

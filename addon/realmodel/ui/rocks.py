@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import method_settings, plan_mesh, region_size, settings
+from ..bl.project import method_settings, plan_mesh, region_size, settings
 from ..core.settings.schema import ROCK, SIZE
 from . import setting_rows
 from .panel import FoldedPanel, OfAModel, file_field, hint

@@ -3,7 +3,9 @@
 
 import bpy
 
-from ..bl import notices, problems, series_settings, settings
+from ..bl.host import notices
+from ..bl.project import series_settings, settings
+from ..bl.scene import problems
 from ..core import RealModelError
 from ..core.settings.schema import ROCK, SERIES
 from ..core.settings.series import FIELD, KINDS

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import native
+from ..bl.host import native
 from .panel import FoldedPanel, OfAModel, TabPanel, hint, wrapped
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows, project_settings, settings
+from ..bl.project import library_rows, project_settings, settings
 from ..core.settings.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
 from .lists import OfRows, draw_swatch

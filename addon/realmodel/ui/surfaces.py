@@ -3,10 +3,10 @@
 
 import bpy
 
-from ..bl import (
+from ..bl.objects import model_tree
+from ..bl.project import (
     library_rows,
     method_settings,
-    model_tree,
     project_settings,
     series_settings,
     settings,

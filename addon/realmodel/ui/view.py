@@ -4,8 +4,8 @@
 import bpy
 
 from .. import props_stage
-from ..bl import compartments, library_rows, project_settings, settings, units
 from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals, viewpoints
+from ..bl.project import compartments, library_rows, project_settings, settings, units
 from .lists import draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
 

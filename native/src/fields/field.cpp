@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +17,7 @@
 #include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
 #include "fields/lattice_weights.hpp"
+#include "fields/random_function.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/fields/critical_points.hpp"
@@ -50,6 +52,11 @@ constexpr double kPerCriticalPoint = 20;
 constexpr std::size_t kMostCounted = 50000;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
+// What a bound contradicts: so many data at most, and those that count this much of the first one.
+constexpr std::size_t kMostContradicted = 4;
+constexpr double kCounts = 0.25;
+// Edges of the lattice over which a drawn function is averaged that has no derivatives.
+constexpr double kRough = 4;
 
 /// The cube of some size that a contact lies in, and its surface.
 using Cube = std::array<std::int64_t, 4>;
@@ -100,6 +107,10 @@ public:
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
+        if (options.draw != nullptr) {
+            draw(*options.draw);
+            return;
+        }
         const std::size_t most = static_cast<std::size_t>(std::max(options.most_centers, 1));
         const std::size_t all = known.contacts().size();
         if (all <= std::min<std::size_t>(most, 2 * kFirstCenters)) {
@@ -119,12 +130,16 @@ public:
     /// Rounds until all data are met, but for those that contradict others.
     void solve() {
         fit();
-        refuse_contradictions();
         inequalities_ = known_.inequalities();
         for (Inequality& inequality : inequalities_)
             inequality.functional = for_order(likely_, inequality.functional);
-        refuse_polarities();
         states_.assign(inequalities_.size(), {});
+        if (drawn_) {
+            meet_drawn(options_.draw->kind.left_out);
+            return;
+        }
+        refuse_contradictions();
+        refuse_polarities();
         meet();
         for (int round = 0; round < kMostRounds && leave_out(); ++round) {
         }
@@ -144,8 +159,7 @@ public:
         make_same(out.values);
         for (const double level : levels())
             out.levels.push_back(unit * level);
-        out.anisotropy = likely_.anisotropy;
-        out.order = likely_.order;
+        out.kind = kind();
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
         report_missed(out);
@@ -162,6 +176,65 @@ private:
         bool active = false, was_released = false, stays = false;
         bool left_out = false;  ///< it contradicts other data
     };
+
+    /// A function of the kind that was found, which the data condition.
+    void draw(const FieldDraw& given) {
+        const FunctionKind& kind = given.kind;
+        likely_ = {kind.anisotropy, {kind.value_error, kind.slope_error}, kind.order, kind.lift};
+        gaps_ = kind.gaps;
+        if (kind.centers.size() != is_center_.size())
+            throw InputError("option", "a field is drawn with the contacts that it was found of");
+        is_center_.assign(kind.centers.begin(), kind.centers.end());
+        const DrawnNumbers& numbers = given.numbers;
+        const std::size_t slits = known_.data().slits.count;
+        if (numbers.dimensions != 3 + slits || numbers.directions.empty() ||
+            numbers.directions.size() % numbers.dimensions != 0 || numbers.steps.empty() ||
+            numbers.steps.size() * numbers.dimensions % numbers.directions.size() != 0 ||
+            numbers.dip_errors.size() != 2 * known_.data().dips.size())
+            throw InputError("option", "a function is drawn of numbers for each line and dip");
+        const double rough = kRough * 2 * half_spacing_;
+        drawn_.emplace(likely_.smoothness(), kind.scale, 1 + 2 * rough + farthest_lift(), rough,
+                       numbers);
+        begin(0.0, 0.7, "field through the data");
+    }
+
+    /// How far further coordinates are from 0 at most, as they are scaled.
+    double farthest_lift() const {
+        const Slits& slits = known_.data().slits;
+        double sum = 0;
+        for (const std::span<const double> each :
+             {slits.contacts, slits.dips, slits.bounds, slits.nodes}) {
+            for (const double coordinate : each)
+                sum = std::max(sum, std::abs(coordinate));
+        }
+        return std::abs(likely_.lift) * sum * static_cast<double>(slits.count);
+    }
+
+    /// As meet(), where what the drawn function is at the data is not to be met again.
+    void meet_drawn(std::span<const std::uint8_t> left_out) {
+        if (left_out.size() != inequalities_.size())
+            throw InputError("option", "a field is drawn with the bounds that it was found of");
+        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
+            inequalities_[n].least -= drawn_->of(inequalities_[n].functional);
+            states_[n].left_out = left_out[n] != 0;
+        }
+        meet();
+    }
+
+    FunctionKind kind() const {
+        FunctionKind out{likely_.anisotropy,
+                         likely_.order,
+                         likely_.errors.value,
+                         likely_.errors.slope,
+                         likely_.lift,
+                         spline_->scale(),
+                         gaps_,
+                         {is_center_.begin(), is_center_.end()},
+                         {}};
+        for (const State& state : states_)
+            out.left_out.push_back(state.left_out ? 1 : 0);
+        return out;
+    }
 
     /// Rounds in which contacts and inequalities get into the field, or out of it.
     void meet() {
@@ -193,8 +266,12 @@ private:
 
     std::vector<double> levels() const {
         std::vector<double> out;
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k)
+        for (std::int32_t k = 0; k < known_.data().surfaces; ++k) {
             out.push_back(level_in(*spline_, k));
+            const std::size_t contact = known_.reference(k);
+            if (drawn_)
+                out.back() += drawn_->value(known_.contacts()[contact], known_.lift_of(contact));
+        }
         return out;
     }
 
@@ -309,9 +386,11 @@ private:
                 std::vector<Vec3> local(positions.size());
                 std::transform(positions.begin(), positions.end(), local.begin(),
                                [&](const Vec3& at) { return known_.frame().to_local(at); });
-                spline.values_at(local, lifts_at(positions, side), values);
+                const std::vector<double> lifts = lifts_at(positions, side);
+                spline.values_at(local, lifts, values);
+                if (drawn_) drawn_->add_values(local, lifts, values);
             },
-            execution_, known_.data().slits.count == 0);
+            execution_, known_.data().slits.count == 0 && !drawn_);
     }
 
     /// The further coordinates of positions in the lattice, linear between its nodes.
@@ -389,6 +468,13 @@ private:
 
     void fit() {
         std::vector<Functional> all;
+        std::span<const double> dip_errors;
+        double error = 0;
+        if (drawn_) {
+            const FieldDraw& draw = *options_.draw;
+            dip_errors = draw.numbers.dip_errors;
+            error = std::sqrt(draw.kind.slope_error * draw.kind.scale);
+        }
         for (const Functional& functional : known_.fixed(gaps_))
             all.push_back(for_order(likely_, functional));
         first_contact_ = all.size();
@@ -402,6 +488,10 @@ private:
             all.push_back(inequalities_[n].functional);
             all.back().right = inequalities_[n].least;
         }
+        for (std::size_t row = 0; drawn_ && row < first_active_; ++row) {
+            all[row].right -= drawn_->of(all[row]);
+            if (row < dip_errors.size()) all[row].right -= error * dip_errors[row];
+        }
         spline_.emplace(all, likely_.smoothness(), execution_);
     }
 
@@ -414,9 +504,11 @@ private:
             [&](std::size_t from, std::size_t to) {
                 const std::span<const Vec3> here(at.data() + from, to - from);
                 const std::size_t slits = known_.data().slits.count;
-                spline_->values_at(
-                    here, known_.data().slits.contacts.subspan(slits * from, slits * (to - from)),
-                    std::span<double>(out.data() + from, to - from));
+                const auto lifts =
+                    known_.data().slits.contacts.subspan(slits * from, slits * (to - from));
+                const std::span<double> values(out.data() + from, to - from);
+                spline_->values_at(here, lifts, values);
+                if (drawn_) drawn_->add_values(here, lifts, values);
             },
             0.0);
         const std::vector<double> level_of = levels();
@@ -645,13 +737,53 @@ private:
     }
 
     void report_missed(Field& out) const {
-        for (const Inequality& inequality : inequalities_) {
+        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
+            const Inequality& inequality = inequalities_[n];
             const double lack = inequality.least - spline_->of(inequality.functional);
             if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
-            auto& missed = inequality.kind == Kind::kPolarity ? out.dips_missed : out.bounds_missed;
-            if (missed.empty() || missed.back() != inequality.item)
-                missed.push_back(inequality.item);
+            const bool is_dip = inequality.kind == Kind::kPolarity;
+            auto& missed = is_dip ? out.dips_missed : out.bounds_missed;
+            if (!missed.empty() && missed.back() == inequality.item) continue;
+            missed.push_back(inequality.item);
+            if (!is_dip) out.contradicted.push_back(contradicted(n));
         }
+    }
+
+    /// The data that say where the field is at a bound that is missed.
+    std::vector<Datum> contradicted(std::size_t bound) const {
+        const Functional& of_bound = inequalities_[bound].functional;
+        const std::vector<double> weights = spline_->weights_for(of_bound);
+        std::map<std::pair<Datum::Kind, std::int64_t>, double> counts;
+        for (std::size_t row = 0; row < 2 * known_.data().dips.size(); ++row)
+            counts[{Datum::Kind::kDip, static_cast<std::int64_t>(row / 2)}] +=
+                std::abs(weights[row]);
+        std::size_t row = first_contact_;
+        for (std::size_t n = 0; n < is_center_.size(); ++n) {
+            if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
+                counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
+                    std::abs(weights[row++]);
+        }
+        const auto is_bound = [](const Inequality& each) { return each.kind == Kind::kBound; };
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            if (!states_[n].active) continue;
+            const Inequality& other = inequalities_[n];
+            const double count = std::abs(weights[row++]);
+            if (other.kind == Kind::kPolarity) counts[{Datum::Kind::kDip, other.item}] += count;
+            // one on the same side says the same
+            if (is_bound(other) &&
+                other.functional.values[0].weight * of_bound.values[0].weight < 0)
+                counts[{Datum::Kind::kBound, other.item}] += count;
+        }
+        std::vector<std::pair<double, Datum>> sorted;
+        for (const auto& [datum, count] : counts)
+            sorted.push_back({count, {datum.first, datum.second}});
+        std::ranges::stable_sort(sorted, std::greater{}, &std::pair<double, Datum>::first);
+        std::vector<Datum> out;
+        for (const auto& [count, datum] : sorted) {
+            if (out.size() == kMostContradicted || count < kCounts * sorted[0].first) break;
+            out.push_back(datum);
+        }
+        return out;
     }
 
     Lattice lattice_;
@@ -668,6 +800,7 @@ private:
     std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;
+    std::optional<RandomFunction> drawn_;  // what is drawn: the field is this and the spline
 };
 
 }  // namespace

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The display of a built model: display modes, stage, exploded view, colors, cut.
 
-Each setting calls one function of this module when it changes; the build calls `built` and `cleared`. Nothing
-here changes the model: see docs/guide/tour.md, "View".
+Comes in: a built model, the settings of the view. Goes out: what the viewport shows. Each setting calls one
+function of this module when it changes; the build calls `built` and `cleared`. Nothing here changes the
+model: see docs/guide/tour.md, "View".
 
 shown_models   the model at a stage, from the core
 stages         the blocks' shapes at a stage
 modes          the six display modes
-visible        hiding and showing objects without taking back what the user does
 bodies, cells  objects that are only for viewing
 drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
@@ -17,7 +17,6 @@ fields         the field of a series: on the face of the cut, and as level sets
 cuts, sections the movable plane; sections as mesh objects
 preparing      long work, in a thread
 viewpoints     the view directions of the viewports
-capture        pictures
 coordinates    the block, property and thickness under the cursor
 """
 
@@ -26,8 +25,9 @@ import json
 import bpy
 
 from ...core import RealModelError
-from .. import exaggeration, settings
-from ..model_tree import TAG
+from ..objects import exaggeration
+from ..objects.model_tree import TAG
+from ..project import settings
 from . import (
     bodies,
     colors,

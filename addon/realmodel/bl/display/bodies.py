@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import exaggeration, meshes, model_tree
+from ..objects import exaggeration, meshes, model_tree
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: its purpose

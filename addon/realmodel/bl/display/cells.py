@@ -5,8 +5,10 @@ parts of the blocks in each compartment, which can move apart."""
 import json
 
 from ...core.display import polygon_mesh
-from .. import block_shapes, caches, compartments, project_settings
-from ..threads import threads
+from ..host import caches
+from ..host.threads import threads
+from ..objects import block_shapes
+from ..project import compartments, project_settings
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen

@@ -13,7 +13,8 @@ import numpy as np
 
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
-from .. import compartments, library_rows, materials, settings, viewports
+from ..objects import materials, viewports
+from ..project import compartments, library_rows, settings
 from . import bodies, modes, shades, stages
 
 KEY = "realmodel_colour"  # on a material: the value that it shows; .blend files contain this name

@@ -6,7 +6,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .. import caches, compartments, exaggeration, library_rows, meshes, project_settings, shapes
+from ..host import caches
+from ..objects import exaggeration, meshes, shapes
+from ..project import compartments, library_rows, project_settings
 from . import modes, stages
 
 _soups = caches.new(most=64)  # by the name of a mesh: its triangles, (T, 3, 3) float32

@@ -14,19 +14,11 @@ from ...core import Cancelled, InputRefused, RealModelError
 from ...core.base import work
 from ...core.display import polygon_mesh
 from ...core.display.polygon_mesh import PolygonMesh
-from .. import (
-    block_shapes,
-    caches,
-    compartments,
-    exaggeration,
-    meshes,
-    model_tree,
-    project_settings,
-    settings,
-    viewports,
-)
-from ..debounce import DebouncedJob
-from ..threads import threads
+from ..host import caches
+from ..host.debounce import DebouncedJob
+from ..host.threads import threads
+from ..objects import block_shapes, exaggeration, meshes, model_tree, viewports
+from ..project import compartments, project_settings, settings
 from . import bodies, explosion, replacing, shown_models
 
 REST_SECONDS = 0.08  # pause after a movement of the plane, before it cuts

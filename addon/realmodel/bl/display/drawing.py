@@ -7,8 +7,9 @@ arrays go to the card when they are first drawn, and again when a mesh has chang
 
 import bpy
 
-from .. import caches, exaggeration, meshes, versions
-from ..draw_handler import DrawHandler
+from ..host import caches, versions
+from ..host.draw_handler import DrawHandler
+from ..objects import exaggeration, meshes
 from . import colors, modes
 
 POINT_SIZE = 4.0  # pixels

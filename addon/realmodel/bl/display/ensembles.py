@@ -11,8 +11,9 @@ from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
 from ...core.results import layer_values
-from .. import library_rows, meshes, model_tree, project_settings, stored_arrays
-from ..origin import offsets_from
+from ..objects import meshes, model_tree, stored_arrays
+from ..objects.origin import offsets_from
+from ..project import library_rows, project_settings
 from . import bodies, colors, sections
 
 BLOCKS = "realmodel_ensemble"  # on the object: the blocks (R, N) int16, as stored_arrays.pack has them

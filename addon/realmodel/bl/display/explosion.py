@@ -5,7 +5,8 @@ the objects, stay as they are."""
 import numpy as np
 from mathutils import Vector
 
-from .. import block_shapes, meshes, settings
+from ..objects import block_shapes, meshes
+from ..project import settings
 
 KEY = "realmodel_exploded"  # on an object: by how much it was moved, three numbers
 _LEAST_STEP = 0.25  # of the model's width: thin layers of a wide model come apart too

@@ -13,10 +13,11 @@ from ...core.display.field_shapes import field_levels, field_range, field_sectio
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
-from .. import library_rows, project_settings, viewports
-from ..debounce import DebouncedJob
-from ..origin import offsets_from
-from ..threads import threads
+from ..host.debounce import DebouncedJob
+from ..host.threads import threads
+from ..objects import viewports
+from ..objects.origin import offsets_from
+from ..project import library_rows, project_settings
 from . import bodies, colors, cuts, explosion, replacing, shown_models
 
 SECTION, LEVELS = "field section", "field levels"  # kinds of bodies

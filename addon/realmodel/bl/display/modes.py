@@ -14,9 +14,9 @@ import json
 
 from ...core import RealModelError
 from ...core.display import polygon_mesh
-from .. import compartments, project_settings, settings
+from ..objects.visible import WANTED, want
+from ..project import compartments, project_settings, settings
 from . import bodies, cells, cuts, shown_models, stages
-from .visible import WANTED, want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
 SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are visible

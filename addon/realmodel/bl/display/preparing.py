@@ -6,9 +6,9 @@ import bpy
 
 from ...core import Cancelled, RealModelError
 from ...core.base import work
-from .. import meshes, viewports
-from ..debounce import DebouncedJob
-from ..threads import threads
+from ..host.debounce import DebouncedJob
+from ..host.threads import threads
+from ..objects import meshes, viewports
 from . import cells, modes, replacing, shown_models
 
 

@@ -4,8 +4,9 @@ beside it, as thick as points and lines are on the screen."""
 
 import numpy as np
 
-from .. import exaggeration, meshes, versions
-from . import bodies, colors, marks, modes, viewpoints
+from ..host import versions
+from ..objects import exaggeration, marks, meshes
+from . import bodies, colors, modes, viewpoints
 
 POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
 

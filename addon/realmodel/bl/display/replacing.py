@@ -7,7 +7,8 @@ exchanged instead of refilled, and unused ones are removed when the render has e
 
 import bpy
 
-from .. import caches, meshes, meshes_ahead, model_tree
+from ..host import caches
+from ..objects import meshes, meshes_ahead, model_tree
 
 _rendering = False
 _left_meshes = caches.new(list)  # names

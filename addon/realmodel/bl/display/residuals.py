@@ -8,8 +8,9 @@ import numpy as np
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
 from ...core.results.residuals import residuals
-from .. import exaggeration, library_rows, meshes, project_settings
-from . import bodies, colors, explosion, marks, shown_models
+from ..objects import exaggeration, marks, meshes
+from ..project import library_rows, project_settings
+from . import bodies, colors, explosion, shown_models
 
 _MOST = 20_000  # points shown at most: those farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show

@@ -7,8 +7,9 @@ import numpy as np
 from ...core import InputRefused
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.results.section_drawing import flattened, is_vertical
-from .. import library_rows, meshes, model_tree, project_settings, shapes
-from ..origin import offsets_from
+from ..objects import meshes, model_tree, shapes
+from ..objects.origin import offsets_from
+from ..project import library_rows, project_settings
 from . import bodies, explosion, shown_models
 
 FLAT = "realmodel_flat"  # on the object of a section that lies beside the model

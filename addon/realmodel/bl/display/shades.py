@@ -11,7 +11,9 @@ import bpy
 import numpy as np
 
 from ...core.results import layer_values
-from .. import materials, meshes, project_settings, settings, shapes, uncertainty, versions
+from ..host import versions
+from ..objects import materials, meshes, shapes, uncertainty
+from ..project import project_settings, settings
 from . import bodies
 
 ATTRIBUTE = "realmodel_shade"

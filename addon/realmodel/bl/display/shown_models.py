@@ -10,8 +10,10 @@ import bpy
 from ...core import BuildFailed, build
 from ...core.cells.assembly import build_stage
 from ...core.display import polygon_mesh
-from .. import block_shapes, built_models, caches, compartments, project_settings, settings, viewports
-from ..threads import threads
+from ..host import caches
+from ..host.threads import threads
+from ..objects import block_shapes, built_models, viewports
+from ..project import compartments, project_settings, settings
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
 _stages = caches.new()  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 
 from ...core.display.polygon_mesh import PolygonMesh
-from .. import library_rows, meshes, model_tree
+from ..objects import meshes, model_tree
+from ..project import library_rows
 from . import replacing, shown_models
 
 STAGE_ONLY = "realmodel_stage_only"  # on an object: its block is not in the whole model

@@ -10,7 +10,8 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import caches, exaggeration, filled_beds, meshes, viewports
+from ..host import caches
+from ..objects import exaggeration, filled_beds, meshes, viewports
 from . import bodies, cuts, explosion, modes
 
 _H = 0.5**0.5

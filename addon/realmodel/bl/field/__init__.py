@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Field data of a scene, datum by datum: points of surfaces, dips, observed places, logged intervals.
+"""Field data of a scene, datum by datum: points of surfaces, dips, observed places, logged intervals, maps.
 
-data     what there is: `groups`, and the `Datum` by which one of them is named
-edits    a datum is switched off or on, or moved
-handle   the active datum: an object at its place, which moves it
-heights  where data without a height are shown
-shown    contacts, dips and misfits as bodies
-misfits  the list of data that the built model does not have as they say
+Comes in: tables, maps and images of files, what is drawn, the rows of a rock mass. Goes out: data in the rows
+and as objects that can be moved, and the list of data that the built model does not have as they say.
+`data` has the `Datum` by which one of them is named.
 """

@@ -10,9 +10,11 @@ import numpy as np
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
 from ...core.results.section_holes import near_plane
-from .. import borehole_picks, caches, interval_values, library_rows, observed_blocks, project_settings
-from ..display import bodies, colors, cuts, marks
-from . import heights
+from ..display import bodies, colors, cuts
+from ..host import caches
+from ..objects import marks
+from ..project import borehole_picks, library_rows, observed_blocks, project_settings
+from . import heights, interval_values
 
 BOREHOLES = "boreholes"
 _RADIUS = 0.005  # of the size of all

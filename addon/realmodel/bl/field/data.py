@@ -9,16 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core import Dips, RealModelError
-from .. import (
-    borehole_picks,
-    borehole_points,
-    caches,
-    data_objects,
-    observed_blocks,
-    series_settings,
-    settings,
-    surface_dips,
-)
+from ..host import caches
+from ..project import borehole_picks, observed_blocks, series_settings, settings, surface_dips
+from ..scene import borehole_points, data_objects
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
 ROCK_DIP = "dip of the rock mass"  # that may name a surface or a block

@@ -6,16 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import InputRefused
-from .. import (
-    borehole_picks,
-    borehole_points,
-    observed_blocks,
-    reading_text,
-    series_settings,
-    settings,
-    stored_arrays,
-    surface_dips,
-)
+from ..objects import stored_arrays
+from ..project import borehole_picks, observed_blocks, reading_text, series_settings, settings, surface_dips
+from ..scene import borehole_points
 from . import data
 
 

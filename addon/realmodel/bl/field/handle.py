@@ -8,9 +8,11 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.proof.misfits import attitude_text
-from .. import data_objects, exaggeration, live, model_tree, project_settings, viewports
-from ..debounce import DebouncedJob
-from ..display import bodies, visible
+from ..display import bodies
+from ..host.debounce import DebouncedJob
+from ..objects import exaggeration, model_tree, viewports, visible
+from ..project import project_settings
+from ..scene import data_objects, live
 from . import data, edits, heights, misfits
 
 KIND = "datum"  # of a body

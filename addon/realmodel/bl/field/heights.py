@@ -4,8 +4,9 @@
 import numpy as np
 
 from ...core.results.layer_values import at_places
-from .. import built_models, settings
 from ..display import explosion
+from ..objects import built_models
+from ..project import settings
 from . import data
 
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.proof.misfits import misfits
-from .. import caches, project_settings, settings
 from ..display import shown_models
+from ..host import caches
+from ..project import project_settings, settings
 from . import data
 
 MOST = 500  # rows of the list: the largest of each kind

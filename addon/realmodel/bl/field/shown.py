@@ -8,9 +8,11 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.display.polygon_mesh import PolygonMesh
-from .. import display, exaggeration, map_settings, project_settings, settings
-from ..display import bodies, colors, marks
-from . import boreholes, data, handle, heights, misfits
+from .. import display
+from ..display import bodies, colors
+from ..objects import exaggeration, marks
+from ..project import project_settings, settings
+from . import boreholes, data, handle, heights, map_settings, misfits
 
 MAP, CONTACTS, DIPS, MISFITS = "map", "contacts", "dips", "misfits"
 KINDS = (CONTACTS, DIPS, MISFITS)  # shaped for the exaggeration

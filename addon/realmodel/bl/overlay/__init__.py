@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Legend, north arrow, scale bar and axes over the viewport and in every picture: one drawing of the core
-(`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
-an image."""
+"""Legend, north arrow, scale bar and axes over the viewport and in every picture.
+
+Comes in: the displayed model and a view of it. Goes out: one drawing of the core (`core.drawing.overlay`),
+which `viewport` draws with the graphics card and `rendered` puts before a camera as an image.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
-from .. import caches, exaggeration, project_settings
 from ..display import colors, ensembles, explosion, fields, residuals
 from ..field import boreholes
+from ..host import caches
+from ..objects import exaggeration
+from ..project import project_settings
 
 WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 
 from ...core.drawing.raster import rasterize
-from .. import exaggeration, meshes, versions
+from ..host import versions
+from ..objects import exaggeration, meshes
 from . import WIDTH, View, drawing_for
 
 KEY = "realmodel_overlay"  # on the plane and the image

@@ -11,8 +11,8 @@ from mathutils.geometry import tessellate_polygon
 
 from ...core.drawing.drawing import ANCHORS, Text
 from ...core.drawing.raster import item_shapes
-from .. import caches, versions
-from ..draw_handler import DrawHandler
+from ..host import caches, versions
+from ..host.draw_handler import DrawHandler
 from . import View, drawing_for
 
 _FONT = 0  # Blender's own

@@ -127,6 +127,11 @@ def number_list(numbers, most: int = 6) -> str:
     return f"{', '.join(numbers[:-1])} and {numbers[-1]}"
 
 
+def counted(count: int, noun: str) -> str:
+    """'1 point', '2 points'. noun: with a plural in s."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def place_text(place) -> str:
     """A point in model units, with as many digits as it takes to find it."""
     return "(" + ", ".join(f"{value:.9g}" for value in place) + ")"

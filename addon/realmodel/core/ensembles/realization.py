@@ -11,11 +11,12 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.assembly import assemble, intersect
+from ..fields import FieldDraws
+from ..fields.series_field import SeriesField
 from ..heights.draws import Draw
 from ..heights.sheet_draws import SeriesDraw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
-from ..project.series import refuse_fields
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces
 from ..surfaces.observed.sheet_series import sheets_beside
@@ -40,7 +41,6 @@ class Realizer:
 
     def __post_init__(self):
         self.model.require_project("an ensemble")
-        refuse_fields([entry.rock for entry in self.model.rock_inputs], "an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
             places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
@@ -110,7 +110,9 @@ class Realizer:
         for each, correlation in enumerate(self.correlations(entry)):
             own = Noise((self.seed, number, rock, each), noise, correlation)
             beside = sheets_beside(entry.rock, each)
-            if each in beside[1:]:  # drawn together with the oldest, whose noise is that of all
+            if surfaces[each].is_level_set:
+                noise, of_series = None, None
+            elif each in beside[1:]:  # drawn together with the oldest, whose noise is that of all
                 assert of_series is not None
                 own = Noise((self.seed, number, rock, each))
                 of_series.noises.append(own)
@@ -130,4 +132,11 @@ class Realizer:
             attributes={},
             structure=None,
             draws=draws,
+            field_draws={own.name: self._field_draws(own, rock, number) for own in entry.fields},
+            left_out=list(entry.left_out),
         )
+
+    def _field_draws(self, own: SeriesField, rock: int, number: int) -> FieldDraws:
+        """How the fields of a series of a rock mass are drawn."""
+        noise = Noise((self.seed, number, rock, own.first))
+        return FieldDraws(noise.normal, self._known.setdefault((rock, own.first), {}), own.top)

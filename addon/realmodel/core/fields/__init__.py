@@ -5,6 +5,7 @@ Comes in: a `Lattice` and data of surfaces: contacts, dips, bounds. Goes out: a 
 tetrahedron of the lattice, and the level of each surface.
 """
 
+from .draws import FieldDraws
 from .lattice import Lattice, ScalarField, rises
 from .level_sets import (
     SharedCorners,
@@ -17,6 +18,7 @@ from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
 
 __all__ = [
     "Anisotropy",
+    "FieldDraws",
     "Lattice",
     "LevelSetData",
     "ScalarField",

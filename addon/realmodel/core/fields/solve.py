@@ -9,11 +9,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
+from ..base.stored_objects import NOT_STORED
 from ..base.work import Work, refused_as
 from .lattice import Lattice, ScalarField
 
 _NO_POINTS = np.empty((0, 3))
 _NO_NUMBERS = np.empty(0, np.int32)
+_LINES = 256  # of a random function
+_STEPS = 1024  # of each line
 MOST_CENTERS = 2500  # contacts that carry a field: their system is solved within seconds
 
 
@@ -84,12 +87,29 @@ class Anisotropy:
     ratios: tuple[float, float, float]
 
 
+@dataclass(frozen=True, eq=False)
+class FieldDraw:
+    """How a field is drawn at random, as the data allow. kind: of random function, as of the SolvedField of
+    the same data and lattice. normal: gives so many independent normal numbers (N,), each time others."""
+
+    kind: tuple
+    normal: Callable[[int], np.ndarray]
+
+    def native(self, data: LevelSetData) -> tuple:
+        """The argument of the native module."""
+        slits = 0 if data.slits is None else data.slits.nodes.shape[2]
+        counts = _LINES * (3 + slits), _LINES * _STEPS, 2 * len(data.dips)
+        return (self.kind, *map(self.normal, counts))
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedField(ScalarField):
     """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
     2 where surfaces are rough; how many contacts carry the field; the largest distance of a contact from its
     surface, nearly; rows of the dips and bounds that contradict other data and do not hold; where the field
-    has critical points inside, (C, 3); and the fields on the other combinations of sides of slits."""
+    has critical points inside, (C, 3), none of one that is drawn; the fields on the other combinations of
+    sides of slits; the kind of random function, of which the native module draws others; and of each of the
+    missed bounds what it contradicts: "contact", "dip" or "bound", and the row."""
 
     anisotropy: Anisotropy
     order: int
@@ -99,6 +119,8 @@ class SolvedField(ScalarField):
     bounds_missed: np.ndarray
     critical_points: np.ndarray
     others: tuple[SolvedField, ...] = ()
+    kind: tuple = field(default=(), repr=False, metadata=NOT_STORED)
+    contradicted: list[list[tuple[str, int]]] = field(default_factory=list, repr=False, metadata=NOT_STORED)
 
 
 def solve_field(
@@ -107,8 +129,10 @@ def solve_field(
     work: Work,
     tolerance: float = 0.0,
     anisotropy: Anisotropy | None = None,
+    draw: FieldDraw | None = None,
 ) -> SolvedField:
-    """The smoothest field that honors the data (docs/reference/methods.md#fields).
+    """The smoothest field that honors the data (docs/reference/methods.md#fields), or with `draw` one that is
+    as rough as the data say.
 
     tolerance: the distance by which surfaces may miss contacts where there are too many for all of them to
     carry the field. anisotropy: of another solution; None: the most likely one. Raises InputRefused for data
@@ -130,25 +154,30 @@ def solve_field(
                     None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
                 ),
                 None if data.slits is None else data.slits.native(),
+                None if draw is None else draw.native(data),
             )
         every = found["values"].reshape(-1, lattice.nodes)
         with work.phase(0.95, 1.0, "critical points of the field"):
             points = [
-                lattice.positions()[work.native(native.critical_points, of_lattice, values)[0]]
+                _NO_POINTS
+                if draw is not None
+                else lattice.positions()[work.native(native.critical_points, of_lattice, values)[0]]
                 for values in every
             ]
-    axes, ratios = found["anisotropy"]
+    (axes, ratios), order, *_ = found["kind"]
     first = SolvedField(
         lattice=lattice,
         values=every[0],
         levels=found["levels"],
         anisotropy=Anisotropy(tuple(map(tuple, axes)), tuple(ratios)),
-        order=found["order"],
+        order=order,
         centers=found["centers"],
         misfit=found["misfit"],
         dips_missed=found["dips_missed"],
         bounds_missed=found["bounds_missed"],
         critical_points=points[0],
+        kind=found["kind"],
+        contradicted=found["contradicted"],
     )
     others = zip(every[1:], points[1:], strict=True)
     return replace(

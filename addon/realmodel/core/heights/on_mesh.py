@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.errors import InputRefused, UsageError, place_text
+from ..base.errors import InputRefused, UsageError, counted, place_text
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import checked_options
@@ -95,7 +95,7 @@ def _smoothest(task: Task) -> Result:
             "other methods use them"
         )
     if found["dips_outside"]:
-        warnings.append(f"{found['dips_outside']} dips lie outside the mesh and are ignored")
+        warnings.append(f"left out: {counted(found['dips_outside'], 'dip')} outside the mesh")
     beyond = [*_beyond(task, "above"), *_beyond(task, "below")]
     warnings += beyond
     if found["missed"] and not beyond:

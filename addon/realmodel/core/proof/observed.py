@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.errors import counted
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..readers.tables.observations import LeftOut
@@ -83,10 +84,11 @@ class Observed:
         """A line about all of it."""
         share = "none over the region" if self.share is None else f"{100 * self.share:.1f} % in their blocks"
         worst = max((abs(each.residual) for each in self.contacts if each.residual is not None), default=0.0)
+        used = sum(each.observations for each in self.blocks)
         return (
-            f"{sum(each.observations for each in self.blocks)} observations, {share}; {len(self.contacts)} "
-            f"contacts, the farthest {worst:.3g} off; {len(self.violated)} of {self.bounds} bounds not kept; "
-            f"{len(self.left_out)} observations left out"
+            f"{counted(used, 'observation')}, {share}; {counted(len(self.contacts), 'contact')}, the "
+            f"farthest {worst:.3g} off; {len(self.violated)} of {counted(self.bounds, 'bound')} not kept; "
+            f"{counted(len(self.left_out), 'observation')} left out"
         )
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from ..base.errors import InputRefused
@@ -13,6 +15,7 @@ from .objects.object_file import is_object_file
 from .objects.object_holes import read_hole_objects
 from .point_input import refuse_keys
 from .tables.boreholes import Picks, read_borehole_tables
+from .tables.hole_tables import COLLARS, INTERVALS, SURVEY, other_units_in
 from .tables.unit_names import UnitNames
 
 
@@ -34,7 +37,12 @@ def read_boreholes(
         what = f"it is a table, so it has no object '{given.layer}'"
         raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
     if not of_objects:
-        return read_borehole_tables(given, step, scale, units, plan_step)
+        found = read_borehole_tables(given, step, scale, units, plan_step)
+        files = (given.collars, given.survey, given.picks, given.intervals)
+        for file, columns in zip(files, (COLLARS, SURVEY, COLLARS, INTERVALS), strict=True):
+            if file is not None:
+                found.warnings += other_units_in(given, Path(file), columns, model_unit)
+        return found
     refuse_keys(of_objects[0], "has objects", given.only_for_tables)
     if len(of_objects) < len(given.files):
         advice = "give tables, or files of objects"

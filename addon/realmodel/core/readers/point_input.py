@@ -5,16 +5,16 @@
 from __future__ import annotations
 
 import tokenize
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, counted
 from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ..base.text import Step, no_step
-from ..base.units import MODEL_UNIT, factor
+from ..base.units import MODEL_UNIT, factor, other_units
 from ..settings.point_file import PointFile
 from .maps.map_input import is_map_layer, map_companions
 from .maps.map_points import read_map_points
@@ -99,7 +99,7 @@ def read_point_file(
     else:
         refuse_keys(file, "is a table", given.only_for_shapes)
         rows = read_point_rows(given, step, kept)
-        points, warnings = rows.points, []
+        points, warnings = rows.points, _other_units(given, file, rows.columns, model_unit)
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
             warnings.append(
@@ -107,9 +107,15 @@ def read_point_file(
                 'is wrong, set columns = ["X", "Y", "Z"]'
             )
         if rows.missing:
-            warnings.append(f"{file}: {rows.missing} points have no value and are left out")
+            warnings.append(f"{file}: left out: {counted(rows.missing, 'point')} without a value")
     warnings += [f"{file}: {text}" for text in kept.heights.like_no_value()]
     return points, warnings
+
+
+def _other_units(given: PointFile, file: Path, columns: Sequence[str], model_unit: str) -> list[str]:
+    """The warnings about units in the header of a table. columns: the names of x, y and z, if it has them."""
+    units = (given.plan_unit, given.plan_unit, given.height_unit)
+    return other_units(file, dict(zip(columns, units, strict=True)) if columns else {}, model_unit)
 
 
 class _InModel:

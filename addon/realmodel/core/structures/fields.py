@@ -71,7 +71,7 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
         given = [series for series in entry.rock.series if series.kind == FIELD]
         waiting = [each for each in given if stage is None or members(entry.rock, each)[0] <= stage]
         entry.fields = []
-        top = _top(entry) if waiting else 0.0
+        top = _top_of_fields(entry) if waiting else 0.0
         for series in work.share_out(waiting):
             with work.phase(0.0, 1.0, f"making the field of {series.name}"):
                 entry.fields.append(_field_of(work, entry, series, top))
@@ -80,19 +80,32 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
             _take_level_sets(work, entry, own)
 
 
+def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:
+    """The data and the lattice of each series of a rock mass, which is read, whose surfaces are level sets;
+    as far as they are known before other surfaces are made. Raises InputRefused."""
+    given = [series for series in entry.rock.series if series.kind == FIELD]
+    waiting = [series for series in given if members(entry.rock, series)]
+    top = _top(entry) if waiting else 0.0
+    found = []
+    for series in waiting:
+        data = SeriesData.of(entry, series, members(entry.rock, series))
+        found.append((data, _lattice(entry, series, data.positions(), top)))
+    return found
+
+
 def spacing(entry: RockInput) -> float:
     """The smallest edge length of the lattices of the fields of a rock mass that is read; infinite where it
     has none."""
-    given = [series for series in entry.rock.series if series.kind == FIELD]
-    top = _top(entry) if given else 0.0
-    found = [math.inf]
-    for series in given:
-        places = SeriesData.of(entry, series, members(entry.rock, series)).positions()
-        found.append(_lattice(entry, series, places, top).spacing[0])
-    return min(found)
+    return min((lattice.spacing[0] for _, lattice in lattices(entry)), default=math.inf)
 
 
-def _top(entry: RockInput) -> float:
+def _top_of_fields(entry: RockInput) -> float:
+    """As `_top`; of a realization that of the model, so that lattices stay the same, if that will do."""
+    of_model = max((draws.top for draws in entry.field_draws.values()), default=-math.inf)
+    return of_model if of_model >= _top(entry, 0.5 * _BEYOND) else _top(entry)
+
+
+def _top(entry: RockInput, beyond: float = _BEYOND) -> float:
     """An elevation above all sheets and contacts of a rock mass, as far as these are known."""
     known = []
     for number, surface in enumerate(entry.rock.surfaces):
@@ -103,7 +116,7 @@ def _top(entry: RockInput) -> float:
     base = entry.rock.base_elevation
     assert base is not None  # check_series
     highest = max((float(each.max()) for each in known if len(each)), default=base)
-    return highest + _BEYOND * (highest - base) + 1e-3
+    return highest + beyond * (highest - base) + 1e-3
 
 
 def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> SeriesField:
@@ -114,7 +127,8 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     sides = sides_of(work, data.positions(), structure.faults)
     fields: dict[int, ScalarField] = {}
     critical = [np.empty((0, 3))]
-    for family in work.share_out(_families(entry, series, numbers)):
+    draws = entry.field_draws.get(series.name)
+    for number, family in enumerate(work.share_out(_families(entry, series, numbers))):
         within = Within(work, structure, numbers[-1], family)
         chosen = within.has(sides)
         if lacks := data.some(chosen).missing(data):
@@ -125,13 +139,17 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             slits = Slits.of(entry, family, within, lattice)
             where = slits.numbers(sides[chosen])
             parts = [own.contacts, own.dips, own.bounds]
-            field = solve_field(lattice, own.level_set_data(slits.data(work, parts, where)), work)
-        leave_out(entry, series, own, field.bounds_missed)
+            known = own.level_set_data(slits.data(work, parts, where))
+            if draws is None:
+                field = solve_field(lattice, known, work)
+            else:
+                field = draws.field(lattice, known, work, number)
+        leave_out(entry, series, own, field)
         solved = [field, *field.others]
-        for number, each in enumerate(solved):
+        for side, each in enumerate(solved):
             points = each.critical_points
             own_sides = sides_of(work, points, structure.faults)
-            critical.append(points[within.has(own_sides) & (slits.numbers(own_sides) == number)])
+            critical.append(points[within.has(own_sides) & (slits.numbers(own_sides) == side)])
         kept = own.kept_rows(field.bounds_missed)
         made = _through_data(work, entry, series, own.some(kept), _Solved(solved, slits, where[kept]))
         for each, members_of in zip(made, slits.members, strict=True):

@@ -230,5 +230,5 @@ def left_out_texts(left_out: Sequence[LeftOut]) -> dict[str, str]:
     found = {}
     for kind, says in KINDS.items():
         if listed := [each.text for each in left_out if each.kind == kind]:
-            found[kind] = f"{len(listed)} {says}: {number_list(listed, _LISTED)}"
+            found[kind] = f"{says} ({len(listed)}): {number_list(listed, _LISTED)}"
     return found

@@ -21,6 +21,8 @@ from ..project.plan_input import map_layer, read_constraints, read_rings, read_s
 from ..project.project import Project, Rock, surface_item
 from ..project.series import Series
 from ..readers import read_dips, read_space_dips
+from ..readers.tables.dips import DIPS
+from ..readers.tables.hole_tables import OBSERVED, other_units_in
 from ..settings.mesh_sizes import AUTO
 from ..settings.series import SHEETS
 from .distant_points import require_points_near
@@ -63,7 +65,8 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         all_warnings.append((warnings, _unnamed(rock, field)))
     found = dict(reader(work, asked))
     inputs, first = [], 0
-    for field, (warnings, of_picks) in zip(fields, all_warnings, strict=True):
+    for given, field, (warnings, of_picks) in zip(project.rocks, fields, all_warnings, strict=True):
+        warnings += _other_units(given, project.units)
         rock = field.rock
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
@@ -85,6 +88,22 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         require_points_near(entry.rock, project.units)
         inputs.append(entry)
     return inputs
+
+
+def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
+    """The warnings about units in the headers of the tables of dips and observations of a rock mass."""
+    of_series, of_surfaces = (
+        [each.dip_file for each in rock.series],
+        [each.dip_file for each in rock.surfaces],
+    )
+    dips = [rock.dip_file, *of_series, *of_surfaces]
+    found: list[BuildWarning] = []
+    for given, columns in ((rock.observation_file, OBSERVED), *((each, DIPS) for each in dips)):
+        if given is not None:
+            with naming(rock.item):
+                texts = other_units_in(given, Path(given.file), columns, units)
+            found += [BuildWarning(text, "points", rock.name) for text in texts]
+    return found
 
 
 def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:

@@ -13,6 +13,7 @@ from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
 from ..base.triangles import median_edge
+from ..fields import FieldDraws
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..heights.draws import Draw
@@ -34,6 +35,7 @@ class RockInput:
     interpolating. structure: the compartments of a rock mass with faults, and their sheets; a surface is
     all its sheets. overlapping: by number, the error of a surface whose triangles overlap in a sheet
     because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
+    field_draws: the same of series of fields, by their names.
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
@@ -52,6 +54,7 @@ class RockInput:
     structure: RockStructure | None = None
     overlapping: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = field(default=None, metadata=NOT_STORED)
+    field_draws: dict[str, FieldDraws] = field(default_factory=dict, metadata=NOT_STORED)
     left_out: list[LeftOut] = field(default_factory=list)
     used: np.ndarray | None = None
     edge: float | None = None

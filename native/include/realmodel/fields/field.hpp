@@ -50,22 +50,61 @@ struct Anisotropy {
     std::array<double, 3> ratios;               ///< 1: as across; 0.01: a hundredth of it
 };
 
+/// What kind of random function a field is, as its data say. Lengths and values are in units of
+/// half of the lattice's diagonal.
+struct FunctionKind {
+    Anisotropy anisotropy;
+    int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough
+    double value_error = 0, slope_error = 0;  ///< variances of errors, in units of the kernel
+    double lift = 1;                          ///< by how much further coordinates are scaled
+    double scale = 0;                         ///< variance per unit of the kernel
+    std::vector<double> gaps;                 ///< differences of the levels; none: they are free
+    std::vector<std::uint8_t> centers;        ///< (contacts) which of them carry the field
+    std::vector<std::uint8_t> left_out;       ///< inequalities that contradict other data
+};
+
+/// Independent normal numbers that a random function is made of: on lines in random directions a
+/// motion in random steps.
+struct DrawnNumbers {
+    std::size_t dimensions = 3;          ///< three, and one more for each slit
+    std::span<const double> directions;  ///< of each line so many
+    std::span<const double> steps;       ///< of line 0, then of line 1
+    std::span<const double> dip_errors;  ///< two for each dip
+};
+
+/// A field that is drawn as the data allow: with the kind that solve_field() found of the same data
+/// and lattice.
+struct FieldDraw {
+    FunctionKind kind;
+    DrawnNumbers numbers;
+};
+
 struct FieldOptions {
     double tolerance = 0;     ///< distance by which surfaces may miss contacts; 0: only by rounding
     int most_centers = 2500;  ///< at most so many contacts carry the field
     /// Found before; null: the one under which the data are most likely.
     const Anisotropy* anisotropy = nullptr;
+    const FieldDraw* draw = nullptr;  ///< null: the smoothest field, the mean of all
+};
+
+/// A contact, dip or bound, by its row.
+struct Datum {
+    enum class Kind { kContact, kDip, kBound };
+
+    Kind kind;
+    std::int64_t row;
 };
 
 struct Field {
     std::vector<double> values;  ///< of the lattice's nodes, on each combination of sides of slits
     std::vector<double> levels;  ///< of the surfaces, rising
-    Anisotropy anisotropy;
-    int order = 3;             ///< of the derivatives that are least: 2 where surfaces are rough
+    FunctionKind kind;
     std::int64_t centers = 0;  ///< contacts that carry the field
     double misfit = 0;         ///< the largest distance of a contact from its surface, nearly
     std::vector<std::int64_t> dips_missed;    ///< dips against which f falls
     std::vector<std::int64_t> bounds_missed;  ///< bounds that contradict other data
+    /// Of each of these, those that count most for the field there.
+    std::vector<std::vector<Datum>> contradicted;
 };
 
 /// The smoothest field that honors the data: its third derivatives, integrated over all of space,
@@ -81,6 +120,10 @@ struct Field {
 ///
 /// Of more contacts than the options allow those carry the field that it would miss most (Carr et
 /// al. 2001, "Reconstruction and representation of 3D objects with radial basis functions").
+///
+/// A field that is drawn is a random function S, and the smoothest one that honors the data less
+/// what S is there: S is conditioned by the data, with equalities by kriging (Chiles and Delfiner
+/// 2012, section 7.3). Which data contradict one another is not asked again.
 /// @return  the same bytes for any number of threads
 /// @throws InputError kind "option", "not_finite", "outside" (items: contacts, dips or bounds, as
 ///         the message says), "no_contacts" (surface), "no_direction", "contradicting" (items: two

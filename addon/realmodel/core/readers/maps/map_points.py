@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import HeightsMissing, InputRefused
+from ...base.errors import HeightsMissing, InputRefused, counted
 from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import Step, no_step
 from ...settings.map_layer import MapLayer
@@ -39,5 +39,5 @@ def read_map_points(
         advice = 'name the attribute with the height: height = "ELEVATION"'
         raise HeightsMissing(what, file=file, advice=advice if given.height is None else None)
     left_out = len(found) - len(points)
-    warnings = [f"{file}: {left_out} points have no value and are left out"] if left_out else []
+    warnings = [f"{file}: left out: {counted(left_out, 'point')} without a value"] if left_out else []
     return points, warnings

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.algebra import norm
-from ...base.errors import InputRefused
+from ...base.errors import InputRefused, counted
 from ...settings.boreholes import Boreholes
 from ..tables.boreholes import Picks
 from ..tables.hole_tables import INTERVALS, PICKS
@@ -67,7 +67,7 @@ def _add_picks(
     if not points:
         raise InputRefused("there are no picks in it", file=given.picks)
     if missing:
-        picks.warnings.append(f"{given.picks}: {missing} picks have no place and are left out")
+        picks.warnings.append(f"{given.picks}: left out: {counted(missing, 'pick')} without a place")
 
 
 def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np.ndarray]]:

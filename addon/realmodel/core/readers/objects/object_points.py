@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused
+from ...base.errors import InputRefused, counted
 from ...base.mapped_arrays import JoinPieces
 from ...settings.point_file import PointFile, list_of
 from ..tables.table_layout import names_shown
@@ -43,7 +43,7 @@ def read_object_points(given: PointFile, gather: JoinPieces) -> tuple[np.ndarray
     if not known.any():
         raise InputRefused("none of its points has a value", file=file, item=item)
     left_out = int((~known).sum())
-    warnings = [f"{file}: {left_out} points have no value and are left out"] if left_out else []
+    warnings = [f"{file}: left out: {counted(left_out, 'point')} without a value"] if left_out else []
     return gather([places[known]], np.empty((0, 3))), warnings
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.errors import InputRefused
+from ...base.errors import InputRefused, counted
 from ...base.text import Step
 from ...settings.boreholes import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
@@ -23,8 +23,7 @@ class Picks:
     """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
     and (surface, place (3,)) of its picks, and of the tops of its intervals, the highest first; warnings,
     sentences. ends: where holes end (3,), as far as their collars say. observations: of the blocks of
-    intervals; left_out: intervals, and picks of holes without a collar, that are not used. switched_off: as
-    points, those of rows that are."""
+    intervals; left_out: intervals that are not used. switched_off: as points, those of rows that are."""
 
     points: dict[str, np.ndarray] = field(default_factory=dict)
     holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
@@ -43,10 +42,9 @@ def read_borehole_tables(
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
     (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
-    depth are left out with a warning: the hole did not reach the surface. Rows of holes without a collar are
-    listed, and refused where no hole has one. units: what the names of the tables
-    mean. plan_step: as of read_intervals.
-    Raises InputRefused naming file and line.
+    depth are left out with a warning: the hole did not reach the surface. Intervals of holes without a collar
+    are listed, and refused where no hole has one; picks of one are refused. units: what the names of the
+    tables mean. plan_step: as of read_intervals. Raises InputRefused naming file and line.
     """
     holes = Holes(given)
     found = Picks() if given.picks is None else _picks(holes, units, scale, step)
@@ -70,8 +68,6 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
     off: dict[str, list] = {}
     met: dict[str, tuple] = {}
     ends: dict[str, np.ndarray] = {}
-    left_out: list[LeftOut] = []
-    refused: InputRefused | None = None
     missing = 0
     for row in rows(given, Path(given.picks), COLLARS, ("hole", "surface"), step):
         name = units.surface(row.text("surface"))
@@ -81,10 +77,10 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         if not name or row.text(column).lower() in NO_VALUE:
             missing += 1
             continue
-        lost = holes.without_collar(row, row.number(column), name)
-        if lost is not None:
-            refused = refused or holes.refuse_all(row)
-            left_out.append(lost)
+        if lacks := holes.lacks_collar(row):
+            if row.is_used:
+                what = f"hole '{holes.hole_of(row)}': {lacks}"
+                raise row.refuse(what, "check how it is written, or leave it out")
             continue
         begin = holes.begin_of(row)
         if column == "depth":
@@ -101,11 +97,11 @@ def _picks(holes: Holes, units: UnitNames, scale: np.ndarray, step: Step) -> Pic
         if hole in holes.ends and hole not in ends:
             ends[hole] = holes.place(row, holes.ends[hole], scale)
     if not (found or off):
-        raise refused or InputRefused("there are no picks in it", file=given.picks)
+        raise InputRefused("there are no picks in it", file=given.picks)
     points, switched_off = ({name: np.array(of) for name, of in each.items()} for each in (found, off))
-    picks = Picks(points, met, ends=ends, left_out=left_out, switched_off=switched_off)
+    picks = Picks(points, met, ends=ends, switched_off=switched_off)
     if missing:
-        picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
+        picks.warnings.append(f"{given.picks}: left out: {counted(missing, 'pick')} without a depth")
     return picks
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step
+from ...base.units import other_units
 from .points import Table, open_table
 from .table_layout import Expected, fields, is_number, plain_name
 
@@ -89,6 +90,7 @@ _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows tha
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
+_LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
@@ -104,6 +106,9 @@ class Reading(Protocol):
 
     @property
     def decimal(self) -> str | None: ...
+
+    @property
+    def units(self) -> str | Mapping | None: ...
 
 
 @dataclass(frozen=True)
@@ -174,6 +179,19 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
         yield Row(
             table, table.layout.body_line + number, table.layout.fields(line.rstrip("\r")), columns, decimal
         )
+
+
+def other_units_in(given: Reading, file: Path, known: Columns, model_unit: str) -> list[str]:
+    """The warnings about units in the header of a table, other than those in which it is read."""
+    table = _opened(given, file, known)
+    names, units = table.layout.names or (), given.units
+    units = units if isinstance(units, Mapping) else {"xy": units, "z": units}
+    found = {
+        names[at]: units.get("xy" if meaning in ("x", "y") else "z")
+        for meaning, at in _columns(given, table, known, ()).items()
+        if meaning in _LENGTHS and at < len(names)
+    }
+    return other_units(file, found, model_unit)
 
 
 def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:

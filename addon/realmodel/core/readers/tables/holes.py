@@ -28,7 +28,7 @@ class Holes:
         self._incomplete: dict[str, str] = {}  # holes whose collars are without a number: what they lack
         self._written: dict[
             str, dict[str, None]
-        ] = {}  # names of holes with collars that `joined` makes alike
+        ] = {}  # names of holes with collars that are alike if `joined`
         self._taken: dict[tuple[str, str, str], None] = {}  # (file, name in it, the hole that it means)
         self.ends: dict[str, float] = {}  # depths along holes, as far as the collars say
         self._collars = None if given.collars is None else self._read_collars()
@@ -82,17 +82,21 @@ class Holes:
         self._taken[str(row.table.file), hole, alike[0]] = None
         return alike[0]
 
-    def without_collar(self, row: Row, depth: float | None, code: str) -> LeftOut | None:
-        """What a row says, where its hole has no collar; None where it has one. depth, code: of the row."""
+    def lacks_collar(self, row: Row) -> str:
+        """Why the place of a row's hole is not known; "" where it is."""
         hole = self.hole_of(row)
         self._unused.discard(hole)
         if self._collars is None or hole in self._collars:
+            return ""
+        return self._incomplete.get(hole, f"it has no collar in {self.given.collars}")
+
+    def without_collar(self, row: Row, depth: float | None, code: str) -> LeftOut | None:
+        """What a row says, where its hole has no collar; None where it has one. depth, code: of the row."""
+        if not (lacks := self.lacks_collar(row)):
             return None
-        at = "" if depth is None else f" at {depth:.9g}"
-        lacks = self._incomplete.get(hole, f"it has no collar in {self.given.collars}")
-        return LeftOut(
-            "no_collar", f"line {row.line}, hole '{hole}'{at}, '{code}': {lacks}", code, hole, depth
-        )
+        hole, at = self.hole_of(row), "" if depth is None else f" at {depth:.9g}"
+        text = f"line {row.line}, hole '{hole}'{at}, '{code}': {lacks}"
+        return LeftOut("no_collar", text, code, hole, depth)
 
     def refuse_all(self, row: Row) -> InputRefused:
         """That of a table no hole has a collar. row: its first."""
@@ -151,9 +155,8 @@ class Holes:
             taken = [f"'{name}' for '{hole}'" for own, name, hole in self._taken if own == file]
             warnings.append(f"{file}: holes are taken for those with collars: {number_list(taken)}")
         if incomplete := [hole for hole in self._incomplete if hole not in (self._collars or ())]:
-            warnings.append(
-                f"{self.given.collars}: holes without a place, which are not used: {number_list(incomplete)}"
-            )
+            names = number_list(incomplete)
+            warnings.append(f"{self.given.collars}: holes without x, y or z, which are not used: {names}")
         inclined = [hole for hole in self._inclined if hole not in self._paths]
         if inclined:
             warnings.append(

@@ -52,12 +52,13 @@ KNOWN = frozenset(name for names in AXES.values() for name in names)
 class PointRows:
     """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
     hold what was asked for; the names of the columns that were taken for x, y and z although they say
-    nothing of the kind."""
+    nothing of the kind. columns: the names of x, y and z in the header, where there is one."""
 
     points: np.ndarray
     missing: int = 0
     filtered: int = 0
     taken_for_xyz: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
 
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
@@ -78,10 +79,13 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
     """
     file = Path(given.file)
     table = open_table(file, Expected(given.separator, (*(given.columns or ()), *given.where), KNOWN))
-    rows = _read_rows(table, given, wanted_columns(table, given.columns), step, gather)
+    wanted = wanted_columns(table, given.columns)
+    rows = _read_rows(table, given, wanted, step, gather)
     if len(rows.points):
         guessed = () if given.columns is not None else _guessed_names(table)
-        return replace(rows, taken_for_xyz=guessed)
+        names = table.layout.names or ()
+        named = tuple(names[column] for column in wanted) if max(wanted) < len(names) else ()
+        return replace(rows, taken_for_xyz=guessed, columns=named)
     if rows.filtered:
         raise _nothing_matches(table, given.where)
     what = "none of its points has a value" if rows.missing else "there are no points in it"

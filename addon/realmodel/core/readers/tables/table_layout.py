@@ -85,7 +85,7 @@ def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: 
     texts = [line.decode(encoding, "replace").strip("\r") for line in lines]
     content = [n for n, text in enumerate(texts) if text.strip() and not _is_comment(text)]
     if not content:
-        raise InputRefused("there are no points in it", file=file)
+        raise InputRefused("there are no rows in it", file=file)
     if separator is None:
         separator = _separator([texts[n] for n in content], expected.numbers, expected.columns)
     first, headings = None, []

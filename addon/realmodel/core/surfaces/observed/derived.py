@@ -284,17 +284,30 @@ def _tightest(
 
 
 def along_bounds(bounds: Bounds) -> np.ndarray:
-    """(P, 3) a place for each position in plan with bounds, on the bound or between the two: points for a
-    surface that no observation is on."""
+    """(P, 3) points for a surface that no observation is on: one for each hole with bounds, or each position
+    in plan of those without a hole, on the nearest bound or halfway between the two. Along an inclined hole
+    the other bounds do not ask the surface to follow it down."""
     if not len(bounds):
         return np.empty((0, 3))
-    plan, column = np.unique(bounds.places[:, :2] + 0.0, axis=0, return_inverse=True)
-    low, high = np.full(len(plan), -np.inf), np.full(len(plan), np.inf)
-    z, lower = bounds.places[:, 2], bounds.is_lower
-    np.maximum.at(low, column.ravel()[lower], z[lower])
-    np.minimum.at(high, column.ravel()[~lower], z[~lower])
-    low, high = np.where(np.isinf(low), high, low), np.where(np.isinf(high), low, high)
-    return np.column_stack([plan, 0.5 * (low + high)])
+    _, column = np.unique(bounds.places[:, :2] + 0.0, axis=0, return_inverse=True)
+    _, hole = np.unique(bounds.holes, return_inverse=True)
+    group = np.where(bounds.holes == "", -1 - column.ravel(), hole.ravel())
+    low, high = _nearest(bounds, group, True), _nearest(bounds, group, False)
+    found = []
+    for key in sorted(low.keys() | high.keys()):
+        lower, upper = low.get(key, high.get(key)), high.get(key, low.get(key))
+        assert lower is not None and upper is not None
+        is_between = lower[2] <= upper[2] or bool((lower[:2] == upper[:2]).all())
+        found += [0.5 * (lower + upper)] if is_between else [lower, upper]
+    return np.unique(found, axis=0)
+
+
+def _nearest(bounds: Bounds, group: np.ndarray, is_lower: bool) -> dict[int, np.ndarray]:
+    """The highest lower, or the lowest upper bound of each group: its place (3,)."""
+    rows = np.flatnonzero(bounds.is_lower == is_lower)
+    sign = 1.0 if is_lower else -1.0
+    rows = rows[np.argsort(sign * bounds.places[rows, 2], kind="stable")]  # of several the last one counts
+    return {int(group[row]): bounds.places[row] for row in rows.tolist()}
 
 
 def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads tables of boreholes, of observed blocks and of dips for a rock mass, each told by its columns."""
+
+from dataclasses import dataclass, field
+
+from ...core import DipFile, Dips, InputRefused, ObservationFile, Observations, SpaceDips
+from ...core.readers import (
+    MAP_ENDINGS,
+    Picks,
+    UnitNames,
+    names_units,
+    read_boreholes,
+    read_dips,
+    read_dips_of_rock,
+    read_observed_places,
+    read_space_dips,
+    table_kind,
+)
+from ...core.readers.objects.object_file import is_object_file
+from ...core.readers.tables.hole_tables import joined
+from ...core.readers.tables.interval_values import read_interval_values
+from ...core.settings.boreholes import COLUMNS as OF_HOLES
+from ...core.settings.boreholes import Boreholes, check_column_names
+from ...core.settings.dips import COLUMNS as OF_DIPS
+from ...core.settings.map_file import MapFile
+from ...core.settings.observation_file import COLUMNS as OF_PLACES
+from ..project import observed_blocks
+from . import map_settings
+
+ALL_COLUMNS = tuple(dict.fromkeys((*OF_HOLES, *OF_PLACES, *OF_DIPS)))
+_ONE_OF_EACH = ("collars", "survey", "picks", "intervals")
+
+
+@dataclass
+class FieldTables:
+    """boreholes: None where there are none. assays: Boreholes whose intervals have no blocks. observations,
+    dips: ObservationFile and DipFile. rock_dips: DipFiles that name surfaces or blocks; those of `dips` name
+    none. series_dips: DipFiles of the field of a series. maps: MapFile, whose ground is a file or the name of
+    a surface."""
+
+    boreholes: Boreholes | None = None
+    assays: list = field(default_factory=list)
+    maps: list = field(default_factory=list)
+    observations: list = field(default_factory=list)
+    dips: list = field(default_factory=list)
+    rock_dips: list = field(default_factory=list)
+    series_dips: list = field(default_factory=list)
+
+    def give_dips_to_series(self, every):
+        """Dips are those of a field: all of them, or those that name neither surfaces nor blocks."""
+        self.series_dips, self.dips = self.dips, []
+        if every:
+            self.series_dips, self.rock_dips = self.series_dips + self.rock_dips, []
+
+
+@dataclass
+class Found:
+    """What tables say, in model units. picks: of boreholes. observations: of their intervals and of places.
+    dips: of one surface, rock_dips: with their surfaces and blocks, series_dips: SpaceDips or, of
+    sheets, Dips; None where there are none. new: units
+    that no surface, block or body is called, to be added. values: IntervalValues of tables of intervals and
+    assays. maps: DrapedMap of each map. warnings: sentences."""
+
+    picks: Picks
+    observations: Observations
+    dips: Dips | None
+    rock_dips: Dips | None
+    series_dips: SpaceDips | Dips | None
+    left_out: list
+    new: list
+    values: list
+    maps: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
+
+    def give_dips_to_sheets(self):
+        """All dips are those of a series of sheets, whose surfaces and blocks they may name."""
+        parts = [each for each in (self.dips, self.rock_dips) if each is not None]
+        self.series_dips = Dips.joined(parts) if parts else None
+        self.dips = self.rock_dips = None
+
+
+def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
+    """FieldTables of files. columns: names of those that are called otherwise, in any of the tables. of_maps:
+    keys of MapFile beside its file, for all maps. of_holes: what else Boreholes have; tables given there are
+    added to those of `paths`. Raises InputRefused, and OptionRefused."""
+    check_column_names(columns, ALL_COLUMNS)
+    tables = {kind: given for kind in _ONE_OF_EACH if (given := of_holes.pop(kind, None)) is not None}
+    found, assays = FieldTables(), []
+    for path in paths:
+        if path in tables.values():
+            continue
+        if is_map(path):
+            found.maps.append(_map_file(path, of_maps or {}, units))
+            continue
+        kind = "picks" if is_object_file(path) else table_kind(path, columns)
+        if kind == "observations":
+            found.observations.append(ObservationFile(path, _of(columns, OF_PLACES), units=units))
+        elif kind == "dips":
+            given = DipFile(path, _of(columns, OF_DIPS), units=units)
+            (found.rock_dips if names_units(given) else found.dips).append(given)
+        elif kind == "assays":
+            assays.append(path)
+        elif kind in tables:
+            what = f"{tables[kind].name} and {path.name} both have {kind}"
+            raise InputRefused(what, file=path, advice="choose one of them, or name columns that differ")
+        else:
+            tables[kind] = path
+    of_holes |= {"columns": _of(columns, OF_HOLES), "units": units}
+    if tables and not (assays and tables.keys() <= {"collars", "survey"}):
+        found.boreholes = Boreholes(**tables, **of_holes)
+        found.boreholes.check()
+    for path in assays:
+        found.assays.append(Boreholes(**tables | {"picks": None, "intervals": path}, **of_holes))
+        found.assays[-1].check()
+    return found
+
+
+def is_map(path):
+    """Whether a file has shapes in plan."""
+    return path.suffix.lower() in MAP_ENDINGS
+
+
+def _map_file(path, given, units):
+    map_file = MapFile(path, units=units, **given)
+    map_file.check()
+    return map_file
+
+
+def _of(columns, known):
+    return {name: column for name, column in columns.items() if name in known}
+
+
+def read(scene, rock, tables, names, add_surfaces):
+    """What FieldTables say of a rock mass: its row, or None where there is none yet. names: what units are
+    called in it, as of a project file. add_surfaces: units that nothing is called become surfaces. Raises
+    InputRefused."""
+    units = observed_blocks.units_of(scene, rock, names)
+    found = _read(scene, rock, tables, units)
+    new = found.new
+    own = [name for name in found.picks.points if name not in (*units.surfaces, *new)]
+    if not add_surfaces:
+        found.new = []
+    elif new or (own and tables.rock_dips):
+        units = UnitNames(
+            (*units.surfaces, *own, *new), (*units.blocks, *own, *new), units.bodies, units.names
+        )
+        found = _read(scene, rock, tables, units)
+        found.new = new
+    return found
+
+
+def _read(scene, rock, tables, units):
+    unit = scene.realmodel.units
+    step = rock.edge_length if rock is not None and rock.edge_length > 0.0 else None
+    picks = Picks()
+    logged = [*tables.assays]
+    if tables.boreholes is not None:
+        picks = read_boreholes(tables.boreholes, unit, units=units, plan_step=step)
+        intervals = tables.boreholes.intervals
+        logged += [tables.boreholes] if intervals is not None and not is_object_file(intervals) else []
+    seen, left_out = list(picks.observations), list(picks.left_out)
+    for file in tables.observations:
+        observed, not_used = read_observed_places(file, units, unit)
+        seen.append(observed)
+        left_out += not_used
+    maps, warnings = [], []
+    for file in tables.maps:
+        observed, not_used, draped, said = map_settings.read(scene, rock, file, units)
+        seen.append(observed)
+        left_out += not_used
+        maps.append(draped)
+        warnings += [*said, *draped.warnings]
+    dips, of_rock = [read_dips(file, unit) for file in tables.dips], []
+    for file in tables.rock_dips:
+        named, not_used = read_dips_of_rock(file, units, unit)
+        of_rock.append(named)
+        left_out += not_used
+    of_series = [read_space_dips(file, unit) for file in tables.series_dips]
+    known = {*units.surfaces, *units.blocks, *units.bodies}
+    codes = [each.block for each in left_out if each.kind == "unknown_block"]
+    meant = {}
+    for name in map(units.meaning, codes):
+        meant.setdefault(joined(name), name)  # of names that are written in several ways the first
+    return Found(
+        picks,
+        Observations.joined(seen),
+        Dips.joined(dips) if dips else None,
+        Dips.joined(of_rock) if of_rock else None,
+        SpaceDips.joined(of_series) if of_series else None,
+        left_out,
+        [name for name in meant.values() if name not in known],
+        [read_interval_values(each, unit) for each in logged],
+        maps,
+        warnings,
+    )

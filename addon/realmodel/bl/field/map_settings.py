@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geological maps: read onto their ground, and stored in the row of their rock mass as they are shown."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ...core import InputRefused, Project, Rock, Surface
+from ...core.readers import UnitNames, is_mesh_file
+from ...core.readers.maps.unit_polygons import read_unit_polygons
+from ...core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
+from ..host import caches
+from ..objects import stored_arrays, viewports
+from ..project import project_settings, settings
+from ..scene import data_objects
+
+_known = caches.new(most=8)  # by text
+
+
+def read(scene, row, given, units):
+    """(observations, what is not used, DrapedMap, warnings) of a MapFile for the row of a rock mass, None for
+    one that is not there yet. Its ground is a file, the name of a surface, or "" for the youngest one. Raises
+    InputRefused."""
+    project, rock = _begun(scene, row, given)
+    observations, left_out, warnings = read_map(project, rock, units)
+    return observations, left_out, draped_map(map_on_ground(project, rock), units), warnings
+
+
+def keep_of_project(scene, project):
+    """Stores what the maps of a project show that is read from its file, whose rock masses the scene has.
+    Raises InputRefused."""
+    bodies = [body.name for body in project.bodies]
+    for rock, row in zip(project.rocks, scene.realmodel.rocks, strict=True):
+        if rock.map is not None:
+            names = [surface.name for surface in rock.surfaces]
+            units = UnitNames(names, rock.block_names(), bodies, rock.names)
+            keep(row, draped_map(map_on_ground(project, with_ground(rock)), units))
+
+
+def take_ground(row, given):
+    """The youngest surface is made from the file of the ground of a MapFile, where it is made from nothing
+    yet. Returns its name, or None."""
+    if not given.ground or not len(row.surfaces):
+        return None
+    surface, path = row.surfaces[-1], Path(given.ground)
+    if given.ground in [each.name for each in row.surfaces] or not path.is_file():
+        return None
+    if surface.source not in ("NONE", "POINTS_FILE") or surface.filepath or surface.stored:
+        return None
+    with settings.filling():
+        surface.source = "MESH_FILE" if is_mesh_file(path) else "POINTS_FILE"
+        surface.filepath = str(path)
+    return surface.name
+
+
+def keep(row, draped):
+    """Stores a DrapedMap in the row of its rock mass, in place of the one there."""
+    row.map = stored_arrays.pack(
+        vertices=draped.vertices,
+        triangles=draped.triangles,
+        unit=draped.unit,
+        names=np.array(draped.names, str),
+    )
+
+
+def of_rock(row):
+    """The stored DrapedMap; None where there is none. Raises InputRefused for damaged text."""
+    if not row.map:
+        return None
+    if row.map not in _known:
+        arrays = stored_arrays.unpack(row.map)
+        parts = (arrays[key] for key in ("vertices", "triangles", "unit"))
+        _known[row.map] = DrapedMap(*parts, arrays["names"].tolist(), [])
+    return _known[row.map]
+
+
+def _begun(scene, row, given):
+    """The Project and the Rock of a row, as far as reading a map needs them: its region, by default all of
+    the map, its edge length, and the surface that is the ground."""
+    unit = scene.realmodel.units
+    depsgraph = viewports.updated_layer(scene).depsgraph
+    rock = Rock("rock mass" if row is None else row.name, [])
+    names = [] if row is None else [each.name for each in row.surfaces]
+    ground = given.ground or (names[-1] if names else "")
+    if ground in names:
+        surface = row.surfaces[ground]
+        points = data_objects.row_points(scene, surface, depsgraph)
+        if points is None and surface.source != "NONE":
+            what = f"the ground of the map is not known: surface '{ground}' has no points or mesh"
+            raise InputRefused(what, advice="choose a surface that has some, or a file, as Ground")
+        rock.surfaces = [Surface(ground, points=points)]
+    elif not ground:
+        raise InputRefused("the ground of the map is not known", advice="choose a file of it as Ground")
+    else:
+        rock.surfaces = [Surface("ground", points=np.zeros((1, 3)))]
+        given = replace(given, ground=ground)
+    rock.map = given
+    if row is not None:
+        origin = project_settings.model_origin(scene)
+        rings = project_settings.region_rings(row, depsgraph, origin)
+        rock.region = rings if rings else None
+        rock.edge_length = row.edge_length if row.edge_length > 0.0 else None
+    if rock.region is None:
+        polygons, _ = read_unit_polygons(given, unit)
+        corners = np.concatenate([ring for polygon in polygons for ring in polygon.rings])
+        (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
+        rock.region = np.array([(west, south), (east, south), (east, north), (west, north)])
+    return Project(bpy.path.clean_name(scene.realmodel.name) or "model", [rock], units=unit), rock

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Messages for the panel: settings by their labels; the warnings of a build short, equal ones merged. A range
+beyond the points changes no height and is usual where beds dip: the quality of the surface has it."""
+
+import re
+from pathlib import Path
+
+from ...core.base.errors import number_list
+from ...core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
+from ...core.settings.variogram import RANGE_BEYOND
+
+# By the keys of project files: settings that the panel shows, and the labels of those of several parts.
+_SETTINGS = {key: setting for each in (SERIES, BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}
+_LABELS = {key: setting.label for key, setting in _SETTINGS.items() if setting.label}
+_LABELS |= {"columns": "Columns", "where": "Filters", "ends_at": "Ends At", "rocks": "Rock Masses"}
+_KEY = "|".join(sorted(_LABELS, key=len, reverse=True))
+_GIVEN = re.compile(
+    rf"(?:\b(?:say|write|give|set) )?\b({_KEY})"
+    + r' = (".*?"|\[.*?\]|\{.*?\}|[^\s,;]+)'
+    + r'(?: or (".*?"))?'
+)
+_QUOTED = re.compile(
+    r"((?:surface|fault|body|rock|mass|block|column|object|layer|method|names) )?" + rf"'({_KEY})'"
+)
+_PLAIN = re.compile(r"(?<![\w'/.-])(" + "|".join(key for key in _LABELS if "_" in key) + r")(?![\w'/-]|\.\w)")
+_BODY = re.compile(r"write \[\[body\]\]")
+_NO_ACTION = "joined"  # the kind of a warning after which nothing is to be done
+_PATH = re.compile(r"(?<!\S)/(?:[^\s:]+/)+([^\s:/]+\.\w+)")
+
+
+def of_model(model):
+    """The text that `scene.realmodel.warnings` keeps of a model's warnings: one line for each that differs in
+    more than its surface and its numbers."""
+    alike = {}
+    several = len(model.project.rocks) > 1
+    for warning in shown(model):
+        if warning.kind == _NO_ACTION:
+            continue
+        alike.setdefault(re.sub(r"\d[\d.,e+-]*", "0", warning.text), []).append(warning)
+    lines = []
+    for group in alike.values():
+        names = []
+        for warning in group:
+            whole = [warning.rock] if warning.rock and (several or not warning.surface) else []
+            names.append(" / ".join([*whole, *([warning.surface] if warning.surface else [])]))
+        names = [name for name in dict.fromkeys(names) if name]
+        where = f"{number_list(names)}: " if names else ""
+        lines.append(" ".join(f"{where}{in_panel_words(group[0].text)}".split()))
+    return "\n".join(lines)
+
+
+def shown(model):
+    """The warnings of a model that say something about its blocks."""
+    return [warning for warning in model.warnings if not warning.text.startswith(RANGE_BEYOND)]
+
+
+def read(kept):
+    """The lines that `of_model` made."""
+    return kept.split("\n") if kept else []
+
+
+def in_panel_words(text):
+    """A message with the labels of the panel in the place of the keys of project files, and files by name."""
+    text = _BODY.sub("add it as a body", _GIVEN.sub(_setting, text))
+    text = _QUOTED.sub(lambda found: found[0] if found[1] else _LABELS[found[2]], text)
+    text = _PLAIN.sub(lambda found: _LABELS[found[1]], text)
+    return _PATH.sub(lambda found: Path(found[0]).name, text)
+
+
+def _setting(found):
+    values = [_value(found[1], value) for value in found.groups()[1:] if value]
+    return f"set {_LABELS[found[1]]} to {' or '.join(values)}"
+
+
+def _value(key, value):
+    value = value.strip('"[]{} ').replace('"', "")
+    words = _SETTINGS[key].words
+    return words[value][0] if value in words else value or "nothing"

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An ensemble of the built model, made in a thread; the main thread puts it into the scene: volumes, and the
+blocks of each realization on a section."""
+
+import numpy as np
+
+from ...core.ensembles import Realizer, section_samples
+from ...core.ensembles.ensemble import realized
+from ..display import cuts, ensembles, explosion, shown_models
+from ..host.thread_job import ThreadJob
+from ..objects import shapes
+from ..project import project_settings, settings
+
+_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
+
+
+class EnsembleJob(ThreadJob):
+    """So many realizations of the model of a scene.
+
+    line: a curve or mesh object along which the section goes; None: the section plane, or where there is
+    none a plane through the middle of the model, seen from the south. `finish()` puts the ensemble into the
+    scene and returns it, or raises what went wrong and leaves the scene as it was.
+    """
+
+    def __init__(self, scene, realizations, seed, line=None, depsgraph=None):
+        """Raises InputRefused."""
+        self._count, self._seed = realizations, seed
+        self._done = 0
+        self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
+        self._plane = self._line = None
+        origin = project_settings.model_origin(scene)
+        if line is not None:
+            self._line = shapes.polyline(line, depsgraph) + origin[:2]
+        elif cuts.plane_of(scene) is not None:
+            self._plane = cuts.plane_in_model(scene)
+        else:
+            low, high = explosion.bounds(scene)
+            self._plane = (np.asarray(low) + high) / 2 + origin, (0.0, -1.0, 0.0)
+
+    def run(self):
+        """Makes the ensemble in this thread and puts it into the scene."""
+        return self._put(super().run())
+
+    def finish(self):
+        return self._put(super().finish())
+
+    def state(self):
+        fraction, text = super().state()
+        return fraction, f"{self._done} of {self._count} realizations" if self._done else text
+
+    def _work(self, job):
+        with job.part(0.0, _BUILT):
+            model = self._request.make()
+        with job.part(_BUILT, 1.0):
+            cut = model.section(*self._plane) if self._line is None else model.fence(self._line)
+            samples = section_samples(model, cut)
+            blocks = []
+
+            def each(sums):
+                there = sums.counts.any(axis=1)
+                blocks.append(np.where(there, sums.counts.argmax(axis=1), -1).astype(np.int16))
+                self._done += 1
+
+            realizer = Realizer(model, self._seed)
+            found = realized(job, realizer, self._count, samples.places, each)
+        return found, samples, np.stack(blocks)
+
+    def _put(self, made):
+        scene = self._request.scene()
+        self._request.keep()
+        ensembles.put(scene, *made, self._seed)
+        return made[0]

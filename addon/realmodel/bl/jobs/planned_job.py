@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How certain it is what a planned hole meets, asked of the realizations of the scene's ensemble in a
+thread."""
+
+import bpy
+
+from ...core import BuildFailed, InputRefused
+from ...core.ensembles import Realizer
+from ...core.ensembles.along_holes import hole_of_realizations
+from ..display import ensembles, shown_models
+from ..host.thread_job import ThreadJob
+from ..project import settings
+from ..scene import planned_holes
+
+_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
+
+
+class PlannedJob(ThreadJob):
+    """The realizations of a scene's ensemble along its active planned hole. `finish()` keeps what they say in
+    the row of the hole and returns the core's PlannedHole, or raises what went wrong."""
+
+    def __init__(self, scene):
+        """Raises InputRefused, UsageError."""
+        found = ensembles.table(scene)
+        if found is None or ensembles.is_outdated(scene):
+            raise InputRefused("the model has no ensemble", advice="make one first (Ensemble)")
+        row = planned_holes.active(scene)
+        self._scene, self._name = scene.name, row.name
+        self._count, self._seed = found["count"], found["seed"]
+        self._axis = planned_holes.axis_of(row)
+        self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
+
+    def run(self):
+        """Asks in this thread."""
+        return self._put(super().run())
+
+    def finish(self):
+        return self._put(super().finish())
+
+    def _work(self, job):
+        axis = self._axis
+        with job.part(0.0, _BUILT):
+            model = self._request.make()
+            hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
+        with job.part(_BUILT, 1.0):
+            return hole_of_realizations(job, Realizer(model, self._seed), self._count, hole)
+
+    def _put(self, hole):
+        scene = bpy.data.scenes.get(self._scene)
+        row = None if scene is None else scene.realmodel.planned_holes.get(self._name)
+        if row is None or scene.realmodel.built_stamp != self._request.stamp:
+            raise BuildFailed("the hole or its model is gone; nothing was changed")
+        if planned_holes.axis_of(row) != self._axis:
+            raise BuildFailed("the hole was moved meanwhile; nothing was changed: ask again")
+        self._request.keep()
+        planned_holes.keep(scene, row, hole)
+        return hole

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether light and camera may be set up for a scene without being asked: where nobody has cared for them.
+
+That is a scene that has nothing but what Blender's own startup file brings along: its camera and its lamp
+where they stand there, its world, its renderer; or what was added here before, as long as nobody changed it.
+"""
+
+import numpy as np
+
+from ..objects import meshes
+from . import picture
+
+_STARTUP = {  # name, location and rotation of what the startup file has
+    "CAMERA": ("Camera", (7.358891, -6.925791, 4.958309), (1.109319, 0.0, 0.814928)),
+    "LIGHT": ("Light", (4.076245, 1.005454, 5.903862), (0.650328, 0.055217, 1.866391)),
+    "MESH": ("Cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+}
+_STARTUP_WORLD = "World"
+_STARTUP_SKY = (0.050876, 0.050876, 0.050876, 1.0, 1.0)  # its color and strength
+_STARTUP_ENGINE = "BLENDER_EEVEE"  # how its name begins in each version
+
+
+def is_free(scene):
+    """Whether no camera, lamp, world or renderer of a scene is of the user's making."""
+    own = [item for item in scene.objects if picture.KEY in item]
+    others = [item for item in scene.objects if item.type in ("CAMERA", "LIGHT") and item not in own]
+    if not all(map(_is_of_startup, others)):
+        return False
+    if own:
+        camera = scene.camera
+        return camera in own and _same(camera.get(picture.UNASKED, ()), _numbers(scene, own))
+    world = scene.world
+    is_startup_sky = world is None or (world.name == _STARTUP_WORLD and _same(_sky(world), _STARTUP_SKY))
+    return is_startup_sky and scene.render.engine.startswith(_STARTUP_ENGINE)
+
+
+def keep(scene):
+    """Remembers how light and camera were set up, and leaves the startup file's lamp and cube out of
+    pictures: on a small model the lamp is brighter than the sun."""
+    own = [item for item in scene.objects if picture.KEY in item]
+    scene.camera[picture.UNASKED] = _numbers(scene, own)
+    for item in scene.objects:
+        if item not in own and (item.type == "LIGHT" or _is_startup_cube(item)):
+            item.hide_render = True
+
+
+def _is_of_startup(item):
+    name, location, rotation = _STARTUP[item.type]
+    is_plain = item.name == name and item.parent is None and item.animation_data is None
+    return is_plain and _same(item.location, location) and _same(item.rotation_euler, rotation)
+
+
+def _is_startup_cube(item):
+    if item.type != "MESH" or not _is_of_startup(item) or len(item.modifiers) or len(item.data.vertices) != 8:
+        return False
+    return _same(np.abs(meshes.mesh_coordinates(item.data)).ravel(), np.ones(24))
+
+
+def _sky(world):
+    """Color and strength of a world's background; nothing where it has another kind of sky."""
+    nodes = world.node_tree.nodes if world.use_nodes else ()
+    if {node.type for node in nodes} != {"OUTPUT_WORLD", "BACKGROUND"}:
+        return ()
+    sky = next(node for node in nodes if node.type == "BACKGROUND")
+    return (*sky.inputs["Color"].default_value, sky.inputs["Strength"].default_value)
+
+
+def _numbers(scene, own):
+    """What users change of light and camera."""
+    found = [*(() if scene.world is None else _sky(scene.world)), float(scene.render.engine == "CYCLES")]
+    for item in own:
+        found += np.ravel(item.matrix_basis).tolist()
+        if item.type == "LIGHT":
+            found += [item.data.energy, *item.data.color]
+        elif item.type == "CAMERA":
+            found += [item.data.lens, float(item.data.type == "PERSP")]
+    return found
+
+
+def _same(one, other):
+    return len(one) == len(other) and bool(np.allclose(one, other, rtol=1e-5, atol=1e-5))

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Statistics of the compartments and the faults of a model, stored with the scene as text."""
+
+import json
+
+import numpy as np
+
+from ...core.structures.sheets.displacement import displacements
+
+
+def of_model(model):
+    """The JSON text that `scene.realmodel.view.compartments` keeps of a model; "" for one without structures.
+
+    names: of the compartments. volumes: {block: [its volume in each compartment]}. centers: (x, y, z) of each
+    in model coordinates. faults: [[fault, surface, mean throw, mean heave]].
+    """
+    if not model.structures.is_divided:
+        return ""
+    count = len(model.compartment_names)
+    kept = {
+        "names": model.compartment_names,
+        "volumes": {
+            block.name: np.bincount(model.cell_compartment[own], model.cell_volumes[own], count).tolist()
+            for number, block in enumerate(model.blocks)
+            if (own := np.flatnonzero(model.cell_block == number)).size
+        },
+        "centers": [_center(model, number) for number in range(count)],
+        "faults": [
+            [each.fault, each.surface, each.mean_throw, each.mean_heave] for each in displacements(model)
+        ],
+    }
+    return json.dumps(kept)
+
+
+def _center(model, compartment):
+    """The middle of the box around a compartment."""
+    inside = np.append(model.cell_compartment == compartment, False)
+    faces = np.flatnonzero(inside[model.face_cells].any(axis=1))
+    _, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    places = model.vertices[corners]
+    return ((places.min(axis=0) + places.max(axis=0)) / 2).tolist()
+
+
+def read(scene):
+    """The statistics of the last build, as of `of_model`; None for a model without structures."""
+    text = scene.realmodel.view.compartments
+    return json.loads(text) if text else None
+
+
+def shifts(scene, amount):
+    """(N, 3) float64: the displacement of each compartment in an exploded view. amount: 1 doubles the
+    distance of each center from the center of the model."""
+    centers = np.array(read(scene)["centers"], np.float64)
+    return amount * (centers - (centers.min(axis=0) + centers.max(axis=0)) / 2)
+
+
+def names(scene):
+    """The names of the compartments of a scene's model, in the order of their numbers."""
+    found = read(scene)
+    return [] if found is None else found["names"]

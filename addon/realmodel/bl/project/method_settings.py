@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converts settings, by their declarations (core/settings/setting.py), between the properties of a row and
+realmodel.core; also those of methods with their variograms."""
+
+import json
+
+import numpy as np
+
+from ...core.settings.methods import METHODS, OPTIONS, STRUCTURE
+from ...core.settings.setting import property_name, switch_name
+from .settings import number, rock_of, set_number
+
+_NAME_OR_NUMBER = ("surface", "direction")  # kinds of settings that are a text in the panel
+READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
+
+
+def interpolates(rock):
+    """Whether surfaces of a rock mass are interpolated on its mesh, or may yet be: there are none."""
+    return not len(rock.surfaces) or any(row.source not in READY_MESHES for row in rock.surfaces)
+
+
+def has_method(row):
+    """Whether a surface's method is used: the surface is interpolated, or a ready mesh that is continued to
+    faults by a chosen method."""
+    if row.source not in READY_MESHES:
+        return True
+    return row.use_continuation and len(row.id_data.realmodel.faults) > 0
+
+
+def value(row, key, settings):
+    """A setting of a row as realmodel.core takes it; None where it is not given."""
+    setting, name = settings[key], property_name(key, settings[key])
+    switch = switch_name(key, settings)
+    if switch is not None and not getattr(row, switch):
+        return None
+    if setting.parts:
+        found = {part: value(row, part, setting.parts) for part in setting.parts}
+        return {part: given for part, given in found.items() if given is not None} or None
+    if setting.kind in ("number", "length"):
+        given = number(row, name)
+        return None if setting.zero_is_none and given == 0.0 else given
+    given = getattr(row, name)
+    if setting.kind in _NAME_OR_NUMBER:
+        return _name_or_number(given)
+    return None if given == "" or (given == "NONE" and "" in setting.words) else given
+
+
+def set_value(row, key, settings, given):
+    """Sets a setting of a row, and its switch; None unsets it."""
+    setting, name = settings[key], property_name(key, settings[key])
+    switch = switch_name(key, settings)
+    if switch is not None and setting.beside is None:
+        setattr(row, switch, given is not None)
+    if setting.parts:
+        for part, inner in (given or {}).items():
+            set_value(row, part, setting.parts, inner)
+    elif given is None:
+        row.property_unset(name)
+        if setting.kind == "word":
+            setattr(row, name, setting.default or "NONE")
+    elif setting.kind in ("number", "length"):
+        set_number(row, name, given)
+    elif setting.kind in _NAME_OR_NUMBER:
+        setattr(row, name, given if isinstance(given, str) else repr(given))
+    else:
+        setattr(row, name, given)
+
+
+def dips_unused(row):
+    """Sentences about dips that the method of a surface's row does not use: its own, which a build refuses,
+    or those of its rock mass."""
+    if row.source in READY_MESHES or METHODS[row.method].is_constrained:
+        return []
+    if row.dips:
+        able = ", ".join(method.label for method in METHODS.values() if method.is_constrained)
+        return [f"The method of '{row.name}' does not use dips: choose one of {able}, or remove the dips"]
+    if rock_of(row).dips:
+        return [f"Dips of the rock mass have no effect on '{row.name}': its method does not use them"]
+    return []
+
+
+def options_of(row):
+    """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
+    known = METHODS[row.method].options
+    others = json.loads(row.other_options) if row.other_options else {}
+    options = {key: given for key, given in others.items() if key in known}
+    for key, setting in known.items():
+        given = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
+        if key not in options and given is not None and given != setting.default:
+            options[key] = given
+    return options
+
+
+def set_options(row, method, options):
+    """Sets a surface's method and its options from a project; options without a setting in the panel are
+    stored as text."""
+    if method is not None:
+        row.method = method
+    others = {}
+    for key, given in options.items():
+        if key == "variogram" and given is not None:
+            set_variogram(row, given)
+        elif key in OPTIONS and not (OPTIONS[key].kind == "surface" and np.ndim(given)):
+            set_value(row, key, OPTIONS, given)
+        else:  # heights or a triangulation
+            others[key] = [np.asarray(part).tolist() for part in given]
+    row.other_options = json.dumps(others) if others else ""
+
+
+def _name_or_number(text):
+    text = text.strip()
+    try:
+        return float(text)
+    except ValueError:
+        return text or None
+
+
+def _variogram(row):
+    """The variogram as in a project file; None where it is to be fitted."""
+    if row.fit_variogram:
+        return None
+    found = value(row, "variogram", OPTIONS)
+    if not len(row.structures):
+        return found
+    structures = [{key: value(part, key, STRUCTURE) for key in STRUCTURE} for part in row.structures]
+    for part in structures:
+        if part["anisotropy"] is None:
+            del part["anisotropy"]
+    return {"nugget": found["nugget"], "structures": structures}
+
+
+def set_variogram(row, given):
+    """Sets the variogram of a surface's row, which then is not fitted: as a project file writes it, or one
+    found by an earlier interpolation."""
+    given = given.settings() if hasattr(given, "settings") else given
+    row.fit_variogram = False
+    row.structures.clear()
+    given = {"nugget": 0.0, **given}
+    structures = given.pop("structures", ())
+    set_value(row, "variogram", OPTIONS, given)
+    for structure in structures:
+        part = row.structures.add()
+        for key in STRUCTURE:
+            set_value(part, key, STRUCTURE, structure.get(key))
+
+
+def take_fitted(row, fitted):
+    """Sets the variogram that a build has fitted, as a project file writes it; it is not fitted again."""
+    parts = fitted.get("structures", ())
+    if len(parts) == 1:  # one with an anisotropy of its own
+        anisotropy = parts[0].get("anisotropy")
+        if anisotropy is not None:
+            set_value(row, "anisotropy", OPTIONS, anisotropy)
+        nugget = fitted["nugget"]
+        fitted = {key: parts[0][key] for key in ("model", "range", "sill")} | {"nugget": nugget}
+        fitted["sill"] += nugget  # of a structure it is without the nugget
+    set_variogram(row, fitted)

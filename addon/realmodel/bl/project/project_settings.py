@@ -1,0 +1,460 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converts the settings of a scene, and the objects that they refer to, to a project, and back."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ...core.base.errors import naming
+from ...core.base.work import run
+from ...core.project.project import surface_item
+from ...core.results.automatic_library import with_library
+from ...core.settings.methods import CONTINUATION
+from ...core.settings.schema import MESH_READING, READING, ROCK, SURFACE
+from ...core.structures.shapes.reading import read_structures
+from ...core.surfaces.prepare import read_rocks
+from ..objects import built_models, exaggeration, shapes, stored_arrays
+from ..objects.origin import KEY as ORIGIN_KEY
+from . import (
+    borehole_picks,
+    library_rows,
+    method_settings,
+    names,
+    observed_blocks,
+    plan_mesh,
+    reading_text,
+    series_settings,
+    settings,
+    structure_settings,
+    surface_dips,
+    units,
+)
+
+# of surfaces; a ready mesh has none
+_OF_INTERPOLATED = ("minimum_thickness", "true_thickness", "tie", "correlation")
+
+
+@dataclass
+class Composed:
+    """The project of a scene. read: by place (settings.row_at) the stamp of the file that is still to be
+    read. origin_is_free: no object of the user determines the position of the model. has_origin: the origin
+    was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
+    and are used as they are."""
+
+    project: Project
+    origin: np.ndarray
+    origin_is_free: bool
+    has_origin: bool = False
+    read: dict = field(default_factory=dict)
+    edited: list = field(default_factory=list)
+    objects: set = field(default_factory=set)
+
+    def from_object(self, place):
+        """Whether a shape is a mesh object of the scene just as it stands."""
+        return place in self.objects
+
+
+class _Source(NamedTuple):
+    """What a project is composed from, see `compose`."""
+
+    scene: bpy.types.Scene
+    depsgraph: bpy.types.Depsgraph
+    whole: bool
+
+
+def model_origin(scene):
+    """(3,) float64: what object coordinates lack to be model coordinates."""
+    return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
+
+
+def in_world(scene, places):
+    """(N, 3) where places (N, 3) of the model are shown."""
+    stretched = exaggeration.matrix(scene)
+    offsets = np.asarray(places, np.float64).reshape(-1, 3) - model_origin(scene)
+    return offsets @ stretched[:3, :3].T + stretched[:3, 3]
+
+
+def user_objects(scene):
+    """The objects of the user that a model is made from: where they stand fixes its origin."""
+    found = [row.region for row in scene.realmodel.rocks]
+    found += [item for row in scene.realmodel.rocks for item in plan_mesh.objects(row)]
+    found += [row.object for _, row in settings.interface_rows(scene) if row.source in settings.OF_OBJECTS]
+    return [item for item in found if item is not None]
+
+
+def absolute(path):
+    """A path as the user gave it ("//" is the .blend's folder) as a Path; None for an empty one."""
+    path = path.strip()
+    return Path(os.path.realpath(bpy.path.abspath(path))) if path else None
+
+
+def compose(scene, depsgraph, whole=True):
+    """Composes the project from a scene's settings.
+
+    depsgraph: the evaluated one, in which modifiers have been applied. whole: check whether files have
+    changed; otherwise (live) the data stored in the .blend are used if there are any. Raises InputRefused,
+    naming the rock mass and the surface, for invalid input.
+    """
+    origin = model_origin(scene)
+    group = scene.realmodel
+    if not len(group.rocks):
+        raise InputRefused("there is no rock mass", advice="add one, or open a project file")
+    project = Project(
+        group.name, [], library_rows.library_of(scene), units=group.units, crs=group.crs.strip() or None
+    )
+    composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
+    source = _Source(scene, depsgraph, whole)
+    for number, row in enumerate(group.rocks):
+        base = method_settings.value(row, "base_elevation", ROCK)
+        picks = borehole_picks.of_rock(row)
+        ends = borehole_picks.ends_of(row)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
+        with naming(rock.item):
+            rock.observations = observed_blocks.of_rock(row)
+            rock.dips = surface_dips.of_row(row)
+            rock.series = series_settings.of_rock(row)
+        plan_mesh.compose(rock, row, depsgraph, origin)
+        _region(source, composed, number, rock, row)
+        composed.project.rocks.append(rock)
+        fields = series_settings.fields(row)
+        for at, surface_row in enumerate(row.surfaces):
+            surface = _plain_surface(surface_row, fields)
+            with naming(surface_item(rock, surface)):
+                _shape(source, composed, (number, at), surface, surface_row)
+            rock.surfaces.append(surface)
+        if not rock.interpolates:  # no mesh that they could affect
+            rock.constraints, rock.size = [], []
+    for place, row in settings.structure_rows(scene):
+        entry = structure_settings.entry_of(place, row)
+        with naming(entry.item):
+            _shape(source, composed, place, entry, row)
+        (project.faults if place[0] == "fault" else project.bodies).append(entry)
+    composed.origin_is_free = composed.origin_is_free and not composed.edited
+    return composed
+
+
+def _plain_surface(row, fields):
+    """A surface with everything but its shape. fields: the names of series whose surfaces are level sets."""
+    surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
+    surface.series = row.series or None
+    if row.source not in method_settings.READY_MESHES:
+        surface.dips = surface_dips.of_row(row)
+        if row.left_out:
+            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
+    if surface.series in fields:
+        return surface
+    if method_settings.has_method(row):
+        surface.method = row.method
+        surface.options = method_settings.options_of(row)
+    if row.source not in method_settings.READY_MESHES:
+        for key in _OF_INTERPOLATED:
+            setattr(surface, key, method_settings.value(row, key, SURFACE))
+        surface.true_thickness &= surface.has_thickness  # it stays set where it has no effect
+    return surface
+
+
+def region_rings(row, depsgraph, origin):
+    """The outlines of a rock mass's region object, or None where it has none. Raises InputRefused."""
+    if row.region is None:
+        return None
+    return [ring + origin[:2] for ring in shapes.rings(row.region, depsgraph)]
+
+
+def _region(source, composed, number, rock, row):
+    with naming(rock.item):
+        rings = region_rings(row, source.depsgraph, composed.origin)
+        if rings is None:
+            rings = _stored_rings(source, composed, number, rock, row)
+    if rings:  # holes are not marked: the even-odd rule decides
+        rock.region = rings if len(rings) > 1 else rings[0]
+
+
+def _stored_rings(source, composed, number, rock, row):
+    """The outlines that the .blend keeps of a region's file; None where the file is to be read."""
+    path = absolute(row.region_file)
+    if path is not None and (not row.region_stored or (source.whole and _changed(path, row.region_stamp))):
+        rock.region = path
+        composed.read[number, None] = stored_arrays.file_stamp(path)
+        return None
+    if not row.region_stored:
+        return None
+    arrays = stored_arrays.unpack(row.region_stored)
+    return [arrays[f"ring{n}"] for n in range(len(arrays))]
+
+
+def _changed(path, stamp):
+    """Whether a file is there and is another one than was read."""
+    now = stored_arrays.file_stamp(path)
+    return bool(now) and now != stamp
+
+
+def _shape(source, composed, place, surface, row):
+    if row.source == "NONE":
+        return
+    if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
+        _from_object(source, composed, place, surface, row)
+        return
+    if row.interface_digest and in_use(row.interface):
+        given, triangles = shapes.triangulation(row.interface, source.depsgraph)
+        if shapes.digest(given, triangles) != row.interface_digest:
+            if isinstance(surface, Surface) and series_settings.is_level_set(row):
+                what = f"its interface was edited, but it is a level set of series '{row.series}'"
+                raise InputRefused(
+                    what, advice="undo that and move its contacts, or take it out of the series"
+                )
+            composed.edited.append(place)
+            composed.objects.add(place)
+            if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
+                surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
+                for key in _OF_INTERPOLATED:
+                    setattr(surface, key, SURFACE[key].default)
+            base = _made_of(source.scene, place, row)
+            _take_mesh(composed, surface, row.interface, given, triangles, base)
+            structure_settings.clear_extension(surface)
+            return
+    if row.source in settings.LINE_OBJECTS:
+        _lines_of_object(source, composed, surface, row)
+        return
+    path, stored = absolute(row.filepath), stored_shape(row)
+    if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
+        name_file(surface, row, path)
+        composed.read[place] = stored_arrays.file_stamp(path)
+    elif stored:
+        _take_stored(surface, stored, row)
+        if row.source == "POINTS_FILE" or (path is not None and row.source != "TRACE_FILE"):
+            structure_settings.clear_extension(surface)
+    else:
+        kind = {"POINTS_FILE": "points", "TRACE_FILE": "trace"}.get(row.source, "mesh")
+        raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
+
+
+def name_file(entry, row, path):
+    """Sets the file of a surface, fault or body from its row, with its import options."""
+    if row.source == "POINTS_FILE":
+        entry.points = PointFile(path, **reading_text.options(row))
+    elif row.source == "TRACE_FILE":
+        structure_settings.set_trace(entry, row, PointFile(path, **reading_text.options(row)))
+    else:
+        entry.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
+
+
+def _stored_key(row):
+    """The key under which a row stores the shape of its file: of faults the fitted surface, not the
+    points."""
+    if row.source == "TRACE_FILE":
+        return "stored_trace"
+    return "stored" if row.source == "POINTS_FILE" and hasattr(row, "stored") else "stored_mesh"
+
+
+def stored_shape(row):
+    """The text in which the .blend stores the data of a row's file; "" where it has none."""
+    return getattr(row, _stored_key(row))
+
+
+def keep_shape(row, text, stamp):
+    """Stores the shape of a row in the .blend, and the stamp of the file that it was read from."""
+    setattr(row, _stored_key(row), text)
+    row.stored_stamp = stamp
+
+
+def forget_shape(row):
+    """Discards the stored shape of a row's file."""
+    setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
+    if hasattr(row, "stored_trace"):
+        row.stored_trace = ""
+    row.stored_stamp = ""
+
+
+def _take_stored(surface, text, row):
+    if row.source == "TRACE_FILE":
+        structure_settings.set_stored_trace(surface, row, text)
+        return
+    for key, array in stored_arrays.unpack(text).items():
+        setattr(surface, key, array)
+
+
+def _from_object(source, composed, place, surface, row):
+    if row.object is None:
+        if row.source == "MESH_OBJECT" and row.stored_mesh:
+            _take_stored(surface, row.stored_mesh, row)
+            return
+        raise InputRefused("it has no object", advice="choose the object that gives its shape")
+    if not in_use(row.object) and row.object.modifiers:
+        raise InputRefused(
+            f"object '{row.object.name}' was deleted from the scene",
+            advice="undo that, or choose another object",
+        )
+    if row.source == "POINTS_OBJECT":
+        surface.points = shapes.points(row.object, source.depsgraph) + composed.origin
+        if not len(surface.points):
+            raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
+        return
+    if settings.kind_of(row) == "surface" and not row.object.modifiers:
+        shapes.require_open(row.object)
+    given, triangles = shapes.triangulation(row.object, source.depsgraph)
+    composed.objects.add(place)
+    base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
+    _take_mesh(composed, surface, row.object, given, triangles, base)
+
+
+def _lines_of_object(source, composed, fault, row):
+    """The trace of a fault, or its sticks."""
+    if row.object is None:
+        raise InputRefused("it has no object", advice="choose the curve or mesh with its trace or its sticks")
+    lines = [line + composed.origin for line in shapes.lines(row.object, source.depsgraph)]
+    if row.source == "STICKS_OBJECT":
+        fault.points = lines
+        return
+    structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
+
+
+def _made_of(scene, place, row):
+    """The arrays, in full digits, that an interface was made from: stored ones, or those of the cached
+    model."""
+    if row.source == "MESH_FILE" and row.stored_mesh:
+        return stored_arrays.unpack(row.stored_mesh)
+    model = built_models.current(scene)
+    places = [place for place, _ in settings.interface_rows(scene)]
+    if model is None or len(model.surface_names) != len(places):
+        return {}
+    vertices, triangles = model.surface(places.index(place))
+    return {"vertices": vertices, "triangles": triangles}
+
+
+def _take_mesh(composed, surface, item, given, triangles, base):
+    if not len(triangles):
+        raise InputRefused(f"object '{item.name}' has no faces", advice="choose a mesh that has faces")
+    if hasattr(surface, "points"):
+        surface.points = None
+    surface.vertices = shapes.with_full_digits(
+        given, triangles, composed.origin, base.get("vertices"), base.get("triangles")
+    )
+    surface.triangles = triangles
+
+
+def oldest_first(items, depsgraph):
+    """Mesh objects by the mean height of their vertices: for surfaces in sequence, their order in age."""
+
+    def mean_height(item):
+        heights = shapes.points(item, depsgraph)[:, 2]
+        return float(heights.mean()) if len(heights) else 0.0
+
+    return sorted(items, key=mean_height)
+
+
+def read_project(composed):
+    """The project with arrays in the place of the files that it still names. Raises InputRefused."""
+    given = composed.project
+    if not composed.read:
+        return given
+    inputs = run(lambda work: read_rocks(work, given))
+    faults, bodies, _ = run(lambda work: read_structures(work, given))
+    return replace(given, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+
+
+def in_use(item):
+    """Whether an object that a setting points to is still in some scene: deleted objects that are pointed to
+    live on outside of all."""
+    return item is not None and len(item.users_scene) > 0
+
+
+def entry_at(project, place):
+    """The realmodel.core.Surface, Fault or Body of a place."""
+    first, number = place
+    if isinstance(first, str):
+        return (project.faults if first == "fault" else project.bodies)[number]
+    return project.rocks[first].surfaces[number]
+
+
+def packed(surface):
+    """The text that a row keeps of the shape of a realmodel.core.Surface, Fault or Body with arrays."""
+    if getattr(surface, "traced", None) is not None:
+        return structure_settings.packed_trace(surface.traced)
+    if getattr(surface, "points", None) is not None:
+        contacts = getattr(surface, "contacts", None)
+        derived = {} if contacts is None else {"contacts": contacts}
+        return stored_arrays.pack(points=np.asarray(surface.points, np.float64), **derived)
+    return stored_arrays.pack_mesh(surface.vertices, surface.triangles)
+
+
+def packed_region(rock):
+    """The text that a row keeps of the outlines of a realmodel.core.Rock with arrays."""
+    rings = rock.rings()
+    return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
+
+
+def fill(scene, project):
+    """Fills the rows from a project, in place of the present ones. project: realmodel.core.Project. Files
+    stay files; data that were read, as in `Model.project`, are stored. Without a library it gets one, as
+    surfaces that are imported do."""
+    project = with_library(project)
+    group = scene.realmodel
+    with settings.filling():
+        group.rocks.clear()
+        group.results.clear()
+        group.active_rock = group.stage = 0
+        group.name, group.units, group.crs = project.name, project.units, project.crs or ""
+        group.exists = True
+        group.version = settings.VERSION
+        group.project_file = str(project.path or "")
+        group.library_path = str(project.library.path or "") if project.library else ""
+        for rock in project.rocks:
+            add_rock(group, rock)
+        structure_settings.fill(scene, project)
+    settings.follow_youngest(scene)
+    names.store(scene)
+    units.set_up(scene, project.units)
+    library_rows.fill(scene, project.library)
+
+
+def add_rock(group, rock):
+    """A row for a realmodel.core.Rock."""
+    row = group.rocks.add()
+    with settings.filling():
+        row.name = rock.name
+        plan_mesh.fill(row, rock)
+        method_settings.set_value(row, "base_elevation", ROCK, rock.base_elevation)
+        if rock.region_file is not None:
+            row.region_file = str(rock.region_file)
+        elif rock.region is not None:
+            row.region_stored = packed_region(rock)
+        for surface in rock.surfaces:
+            fill_surface(row.surfaces.add(), surface)
+        row.active_surface = max(len(rock.surfaces) - 1, 0)
+        borehole_picks.keep(row, rock.hole_picks)
+        borehole_picks.keep_ends(row, rock.hole_ends)
+        observed_blocks.keep(row, rock.observed)
+        surface_dips.keep(row, rock.dips)
+        series_settings.fill(row, rock.series)
+    return row
+
+
+def fill_surface(row, surface):
+    """Sets a surface's row from a realmodel.core.Surface."""
+    with settings.filling():
+        for key in ("name", "rule", "property", "block", "series", *_OF_INTERPOLATED):
+            method_settings.set_value(row, key, SURFACE, getattr(surface, key))
+        given = surface.method is not None or surface.options
+        row.use_continuation = bool(given) and not surface.interpolated
+        method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
+        method_settings.set_options(row, method, surface.options)
+        surface_dips.keep(row, surface.own_dips())
+        if surface.left_out is not None and len(surface.left_out):
+            row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
+        has_points = surface.interpolated or surface.is_level_set
+        if surface.input_file is not None:
+            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
+            row.filepath = str(surface.input_file)
+            reading_text.fill(row, vars(surface.point_file or surface.mesh_file))
+        elif surface.interpolated and not len(surface.point_array()):
+            row.source = "NONE"
+        else:
+            row.source = "POINTS_FILE" if has_points else "MESH_FILE"
+            setattr(row, "stored" if has_points else "stored_mesh", packed(surface))

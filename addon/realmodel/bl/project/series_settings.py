@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converts the series of a rock mass between its rows and realmodel.core; which surfaces belong to them."""
+
+import numpy as np
+
+from ...core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
+from ...core.base.errors import naming
+from ...core.project.series import check_level_set, check_series
+from ...core.settings.schema import ROCK, SERIES
+from ...core.settings.series import AUTO, FIELD
+from ..objects import stored_arrays
+from . import method_settings, settings
+
+_STANDS_FOR = np.zeros((3, 2))  # any region, where only whether there is one counts
+
+
+def fill(rock, series):
+    """Fills the rows of a rock mass from realmodel.core.Series whose dips are arrays."""
+    rock.series.clear()
+    rock.active_series = 0
+    for each in series:
+        row = rock.series.add()
+        resolution = None if each.resolution == AUTO else each.resolution
+        for key, value in (("name", each.name), ("kind", each.kind), ("resolution", resolution)):
+            method_settings.set_value(row, key, SERIES, value)
+        keep_dips(row, each.dips)
+
+
+def of_rock(rock):
+    """The Series of a rock mass. Raises InputRefused for damaged text."""
+    return [_series(row) for row in rock.series]
+
+
+def _series(row):
+    resolution = method_settings.value(row, "resolution", SERIES) if row.kind == FIELD else None
+    with naming(f"series '{row.name}'"):
+        return Series(row.name, row.kind, dips_of(row), AUTO if resolution is None else resolution)
+
+
+def keep_dips(row, dips):
+    """Stores SpaceDips, or Dips of sheets, in the row of a series, or None."""
+    row.dips = ""
+    if dips is not None and len(dips):
+        given = {key: each for key, each in vars(dips).items() if each is not None}
+        row.dips = stored_arrays.pack(**given)
+
+
+def dips_of(row):
+    """The stored SpaceDips of a series, or Dips of sheets; None where there are none. Raises InputRefused for
+    damaged text."""
+    if not row.dips:
+        return None
+    arrays = stored_arrays.unpack(row.dips)
+    return SpaceDips(**arrays) if "normals" in arrays else Dips(**arrays)
+
+
+def add_dips(row, dips):
+    """Adds SpaceDips, or Dips of sheets, to the dips that a series has. Raises InputRefused where sheets
+    would get a vertical or an overturned one."""
+    parts = [each for each in (dips_of(row), dips) if each is not None]
+    if any(isinstance(each, Dips) for each in parts):
+        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+        keep_dips(row, Dips.joined(flat))
+    else:
+        keep_dips(row, SpaceDips.joined(parts))
+
+
+def active(rock):
+    """The row of the active series of a rock mass; None where it has none."""
+    return rock.series[min(max(rock.active_series, 0), len(rock.series) - 1)] if len(rock.series) else None
+
+
+def fields(rock):
+    """The names of the series of a rock mass whose surfaces are level sets."""
+    return {row.name for row in rock.series if row.kind == FIELD}
+
+
+def is_level_set(surface):
+    """Whether the row of a surface is of a level set of a field."""
+    return bool(surface.series) and surface.series in fields(settings.rock_of(surface))
+
+
+def of_surface(surface):
+    """The row of the series of a surface's row; None where it is in none."""
+    return next((row for row in settings.rock_of(surface).series if row.name == surface.series), None)
+
+
+def members(rock, row):
+    """The numbers of the surfaces of a series, from the oldest."""
+    return [number for number, surface in enumerate(rock.surfaces) if surface.series == row.name]
+
+
+def set_run(rock, row, first, last):
+    """Makes the surfaces from one number to another those of a series."""
+    for number, surface in enumerate(rock.surfaces):
+        if first <= number <= last:
+            surface.series = row.name
+        elif surface.series == row.name:
+            surface.series = ""
+
+
+def refusal(rock, row):
+    """Why a build refuses a series as it stands, as one sentence, by what needs no look at its data; empty
+    where it does not."""
+    surfaces = [_outline_of(surface) for surface in rock.surfaces]
+    has_region = rock.region is not None or rock.region_file or rock.region_stored
+    try:
+        given = Rock(
+            rock.name,
+            surfaces,
+            region=_STANDS_FOR if has_region else None,
+            base_elevation=method_settings.value(rock, "base_elevation", ROCK),
+            series=[_series(row)],
+        )
+        check_series(given)
+        for number in members(rock, row) if row.kind == FIELD else ():
+            surface = surfaces[number]
+            check_level_set(given, surface, lambda *told, own=surface.item: _refused(own, *told))
+    except InputRefused as error:
+        about = f"{error.item}: " if (error.item or "").startswith("surface") else ""
+        return f"{about}{error.what}; {error.advice}" if error.advice else f"{about}{error.what}"
+    return ""
+
+
+def _outline_of(row):
+    """A Surface with what matters to its series."""
+    surface = Surface(row.name, series=row.series or None)
+    if row.source in method_settings.READY_MESHES:
+        surface.vertices, surface.triangles = np.empty((0, 3)), np.empty((0, 3), np.int32)
+        return surface
+    surface.points = np.empty((0, 3))
+    if not is_level_set(row):
+        surface.method = row.method
+    elif row.dips:
+        surface.dips = row.dips
+    return surface
+
+
+def _refused(item, what, _key=None, advice=None):
+    return InputRefused(what, item=item, advice=advice)

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converts faults and bodies between the rows of a scene and realmodel.core."""
+
+import numpy as np
+
+from ...core import Body, Fault, Project
+from ...core.base import work
+from ...core.settings.schema import BODY, FAULT
+from ...core.structures.shapes.reading import read_structures
+from ..objects import stored_arrays
+from . import method_settings, reading_text, settings
+
+_FAULT_KEYS = ("youngest", "dies_out", "extend")
+_TRACE_KEYS = ("dip", "dip_direction", "elevation")
+_BODY_KEYS = ("after", "property", "void", "rock")
+
+
+def entry_of(place, row):
+    """A realmodel.core.Fault or Body with everything but its shape."""
+    if place[0] == "body":
+        body = Body(row.name, **{key: method_settings.value(row, key, BODY) for key in _BODY_KEYS})
+        if body.void:
+            body.property = 0
+        return body
+    fault = Fault(row.name, **{key: method_settings.value(row, key, FAULT) for key in _FAULT_KEYS})
+    fault.ends_at = tuple(each.name for each in row.ends_at if each.name)
+    fault.rocks = tuple(each.name for each in row.rocks if each.name)
+    if row.source == "POINTS_FILE" and row.stick.strip():
+        fault.stick = reading_text.column(row.stick)
+    return fault
+
+
+def set_trace(fault, row, trace):
+    """Sets the trace of a realmodel.core.Fault, and what the row says of it."""
+    fault.trace = trace
+    for key in _TRACE_KEYS:
+        setattr(fault, key, method_settings.value(row, key, FAULT))
+
+
+def set_stored_trace(fault, row, text):
+    """Sets the trace that a row has stored; the dip of its file counts where the row has none."""
+    arrays = stored_arrays.unpack(text)
+    set_trace(fault, row, arrays["line"])
+    for key in ("dip", "dip_direction"):
+        if getattr(fault, key) is None and key in arrays:
+            setattr(fault, key, arrays[key].item())
+
+
+def packed_trace(fault):
+    """The text that a row keeps of the trace of a realmodel.core.Fault that was read, with its dip."""
+    dips = {key: getattr(fault, key) for key in ("dip", "dip_direction")}
+    return stored_arrays.pack(
+        line=fault.trace, **{key: np.array(value) for key, value in dips.items() if value is not None}
+    )
+
+
+def clear_extension(entry):
+    """The mesh of a fault was made from its file, as its settings say: they are not to be applied again."""
+    if isinstance(entry, Fault):
+        entry.extend, entry.stick = 0.0, None
+
+
+def forget_extension(row):
+    """The mesh that a fault's row has from now on was extended when it was made."""
+    if settings.kind_of(row) == "fault":
+        with settings.filling():
+            method_settings.set_value(row, "extend", FAULT, 0.0)
+
+
+def fill(scene, project):
+    """Fills the rows from the faults and bodies of a project, in place of the present ones."""
+    group = scene.realmodel
+    group.faults.clear()
+    group.bodies.clear()
+    group.active_fault = group.active_body = 0
+    group.structure_kind = "BODY" if project.bodies and not project.faults else "FAULT"
+    for fault in (each.traced or each for each in project.faults):
+        row = group.faults.add()
+        row.name = fault.name
+        for key in (*_FAULT_KEYS, *_TRACE_KEYS):
+            method_settings.set_value(row, key, FAULT, getattr(fault, key))
+        for key in ("ends_at", "rocks"):
+            for name in getattr(fault, key):
+                getattr(row, key).add().name = name
+        row.stick = "" if fault.stick is None else reading_text.column_text(fault.stick)
+        _fill_shape(row, fault, project.units)
+    for body in project.bodies:
+        row = group.bodies.add()
+        row.name = body.name
+        for key in _BODY_KEYS:
+            method_settings.set_value(row, key, BODY, getattr(body, key))
+        _fill_shape(row, body, project.units)
+
+
+def _fill_shape(row, entry, units):
+    row.source = "MESH_FILE"
+    if entry.input_file is not None:
+        points, trace = (getattr(entry, key, None) for key in ("point_file", "trace_file"))
+        row.source = "POINTS_FILE" if points else "TRACE_FILE" if trace else "MESH_FILE"
+        row.filepath = str(entry.input_file)
+        reading_text.fill(row, vars(points or trace or entry.mesh_file))
+        return
+    if entry.vertices is None:  # points or a trace from a script or a project file
+        entry = work.run(lambda task: _read_fault(task, entry, units))
+        if entry.vertices is None:
+            row.source, row.stored_trace = "TRACE_FILE", packed_trace(entry)
+            return
+        forget_extension(row)
+    row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
+
+
+def _read_fault(task, fault, units):
+    return read_structures(task, Project("points", [], units=units, faults=[fault]))[0][0]
+
+
+def names_of(project):
+    """The names of the faults and of the bodies of a project."""
+    return [fault.name for fault in project.faults], [body.name for body in project.bodies]
+
+
+def names_in(scene):
+    """The names of the rows of a scene."""
+    return tuple([row.name for row in settings.structures_of(scene, kind)] for kind in ("fault", "body"))

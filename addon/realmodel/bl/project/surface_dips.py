@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dips of a surface or of a rock mass, stored in its row."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...core import Dips, SpaceDips
+from ..objects import stored_arrays
+
+
+def keep(row, dips):
+    """Stores realmodel.core.Dips, or None."""
+    row.dips = ""
+    if dips is not None and len(dips):
+        given = {key: each for key, each in vars(dips).items() if each is not None}
+        row.dips = stored_arrays.pack(**given)
+
+
+def add(row, dips):
+    """Adds Dips to those that a row has."""
+    known = of_row(row)
+    keep(row, dips if known is None else Dips.joined([known, dips]))
+
+
+def of_row(row):
+    """The stored Dips; None where there are none. Raises InputRefused for damaged text."""
+    return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
+
+
+def with_used(dips, number, used):
+    """Dips or SpaceDips of which one is switched off, or on."""
+    in_use = dips.in_use.copy()
+    in_use[number] = used
+    return replace(dips, used=None if in_use.all() else in_use)
+
+
+def moved(dips, number, place):
+    """Dips or SpaceDips of which one is at a place (x, y, z); a height that is not known stays so."""
+    positions = dips.positions.copy()
+    positions[number] = place[: positions.shape[1]]
+    if isinstance(dips, SpaceDips):
+        return replace(dips, positions=positions)
+    z = None if dips.z is None else dips.z.copy()
+    if z is not None and not np.isnan(z[number]):
+        z[number] = place[2]
+    return replace(dips, positions=positions, z=z)
+
+
+def rename(row, old, new):
+    """Gives a surface, and the block beneath it, its new name in the dips of a rock mass."""
+    dips = of_row(row)
+    if dips is not None:
+        surfaces, blocks = (np.where(names == old, new, names) for names in dips.named)
+        keep(row, replace(dips, surfaces=surfaces, blocks=blocks))

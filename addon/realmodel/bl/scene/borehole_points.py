@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Adds the points where boreholes meet surfaces to the surfaces of a rock mass, and stores them in the
+.blend."""
+
+import numpy as np
+
+from ...core import Surface
+from ...core.surfaces.age_order import age_order
+from ..objects import stored_arrays
+from ..project import library_rows, reading_text, settings
+from . import data_objects
+
+
+def give(scene, rock, picks, add_surfaces=False, units=()):
+    """Adds points to the surfaces of their names; those that are switched off stay with them.
+
+    rock: its row. picks: realmodel.core.Picks in model units. add_surfaces: adds those that are not there,
+    the oldest first. units: names of blocks with intervals or observations; their surfaces are called so,
+    too. Returns warnings about unused points, and about their order. Raises InputRefused.
+    """
+    points = picks.points
+    given = {row.name for row in rock.surfaces}
+    new = [name for name in dict.fromkeys((*points, *units)) if name not in given]
+    own = {row.name: own_points(scene, row) for row in rock.surfaces if row.name in points}
+    warnings = []
+    with settings.filling():
+        if add_surfaces:
+            order = age_order(new, [points.get(name, _tops(picks, name)) for name in new], picks.holes)
+            warnings += [text] if (text := order.warning(new)) else []
+            for name in (new[number] for number in order.order):
+                row = rock.surfaces.add()
+                row.name = name
+                row.property_id = library_rows.for_surface(scene, name)
+                row.block = name if name in units else ""
+                if name in points:
+                    own[name] = np.empty((0, 3))
+        else:
+            warnings += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
+        for row in rock.surfaces:  # Blender may have moved all of them when some were added
+            if own.get(row.name) is not None:
+                keep_points(row, np.concatenate([own[row.name], points[row.name]]))
+            off = picks.switched_off.get(row.name)
+            if off is not None and row.source == "POINTS_FILE":
+                keep_left_out(row, np.concatenate([left_out(row), off]))
+        warnings += [
+            f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
+            for name, array in own.items()
+            if array is None
+        ]
+        rock.active_surface = len(rock.surfaces) - 1
+    return warnings
+
+
+def _tops(picks, name):
+    """(N, 3) where a unit begins in the intervals of holes; None where it is in none."""
+    tops = [place for _, met in picks.holes.values() for surface, place in met if surface == name]
+    return np.array(tops) if tops else None
+
+
+def own_points(scene, row):
+    """The points that a surface has from its file, without contacts that follow from observations; None where
+    it is no surface of such points."""
+    if row.source == "NONE":
+        return np.empty((0, 3))
+    if row.source != "POINTS_FILE":
+        return None
+    found = data_objects.read_points(scene, row)
+    if found is None:
+        return np.empty((0, 3))
+    contacts = stored_arrays.unpack(row.stored).get("contacts") if row.stored else None
+    own = Surface(row.name, points=found, contacts=contacts).own_points()
+    return np.empty((0, 3)) if own is None else own
+
+
+def keep_points(row, points):
+    """Gives a surface points that are stored in the .blend."""
+    row.source, row.filepath = "POINTS_FILE", ""
+    reading_text.fill(row, {})
+    row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""
+    row.interface_digest = ""
+
+
+def left_out(row):
+    """(Q, 3) the points of a surface that are switched off. Raises InputRefused for damaged text."""
+    return stored_arrays.unpack(row.left_out)["points"] if row.left_out else np.empty((0, 3))
+
+
+def keep_left_out(row, places):
+    """Stores the points of a surface that are switched off."""
+    row.left_out = stored_arrays.pack(points=places) if len(places) else ""

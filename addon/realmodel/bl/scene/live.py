@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Live updates: the model is rebuilt after each change, after a short pause (`scene.realmodel.live`).
+
+A handler of Blender's dependency graph reports changed objects; the update callbacks of the settings report
+changed rows. A timer waits until nothing has changed for the length of the pause, builds in a thread, and
+updates the existing meshes. Of series whose surfaces are level sets of a field, it first builds a coarse one,
+which follows the hand, and once nothing changes any more the whole. It adds no undo step: undoing an edit is
+one more edit, and starts a rebuild.
+"""
+
+import time
+from contextlib import contextmanager
+
+import bpy
+
+from ... import preferences
+from ...core import Cancelled
+from ..host import caches
+from ..host.debounce import DebouncedJob
+from ..objects import viewports
+from ..project import names, plan_mesh, region_size, settings
+from . import build_job, built_scene, problems
+
+_SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
+
+_at_work = False  # the changes that Blender reports now are the add-on's own
+measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
+_REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whole one is built
+_to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
+
+
+def touch(scene):
+    """Reports that input of a scene's model was changed."""
+    if len(scene.realmodel.results):
+        scene.realmodel.is_outdated = True
+    _look_at(scene)
+
+
+def _look_at(scene):
+    """Reports that a scene's model may be another one than its input makes."""
+    names.store(scene)
+    settings.follow_youngest(scene)
+    if scene.realmodel.live:
+        _to_refine.discard(scene.name)
+        _work.touch(scene.name)
+
+
+def switched():
+    """`live` was switched on or off in some scene, or another file was opened."""
+    _work.forget_changes()
+    for scene in bpy.data.scenes:
+        _look_at(scene)
+
+
+def is_working():
+    """Whether a rebuild is under way, or waits for a pause."""
+    return _work.is_working()
+
+
+def changed(scene, depsgraph):
+    """Called when Blender has evaluated changed objects."""
+    group = scene.realmodel
+    if _at_work or not len(group.rocks):
+        return
+    edited = {update.id.original.name_full for update in depsgraph.updates if _counts(update)}
+    if not edited:
+        return
+    for rock in group.rocks:
+        if rock.region is not None and _names(rock.region) & edited:
+            rock.region_area = -1.0
+            region_size.ask()
+            _edited(scene, rock.region)
+        for item in plan_mesh.objects(rock):
+            if _names(item) & edited:
+                _edited(scene, item)
+    for _, row in settings.interface_rows(scene):
+        made = row.interface if row.interface_digest else None
+        if made is not None and _names(made) & edited:
+            _edited(scene, made)
+        source = row.object if row.source in settings.OF_OBJECTS else None
+        if source is not None and _names(source) & edited:
+            _edited(scene, source)
+
+
+def _edited(scene, item):
+    """Blender has evaluated an object that a model is made from. Only in edit mode it is sure that it has
+    another shape now."""
+    if item.mode == "EDIT":
+        touch(scene)
+    else:
+        _look_at(scene)
+
+
+def _counts(update):
+    is_shape = isinstance(update.id, (bpy.types.Object, bpy.types.Mesh, bpy.types.Curve))
+    return is_shape and (update.is_updated_geometry or update.is_updated_transform)
+
+
+def _names(item):
+    return {item.name_full, item.data.name_full} if item.data is not None else {item.name_full}
+
+
+def undone():
+    """Called after undo and redo: the displayed blocks may be of another build."""
+    for scene in bpy.data.scenes:
+        _look_at(scene)
+
+
+def stop_work():
+    """Stops running builds and discards the changes that wait."""
+    _work.stop_jobs()
+
+
+def stop():
+    """Stops all work: the add-on is disabled."""
+    _work.stop()
+
+
+def _finish(name, job, changed_at):
+    try:
+        with _our_own(bpy.data.scenes.get(name)):
+            job.finish(in_place=True)
+    except Cancelled:
+        return
+    except Exception as error:
+        _tell(bpy.data.scenes.get(name), error)
+    else:
+        if name not in _refined:
+            measured[name] = time.perf_counter() - changed_at
+        _tell(None, None)
+        if job.is_coarse:
+            _to_refine.add(name)
+            _work.touch(name, later=_REFINE_SECONDS)
+
+
+@contextmanager
+def _our_own(scene):
+    """Changes made within are the add-on's own, not edits. Blender runs timers after it has reported all
+    earlier edits."""
+    global _at_work
+    _at_work = True
+    try:
+        yield
+    finally:
+        for layer in scene.view_layers if scene is not None else ():
+            layer.update()  # Blender reports the changes now
+        _at_work = False
+
+
+def _begin(name, _changed_at):
+    scene = bpy.data.scenes.get(name)
+    refines = name in _to_refine
+    _to_refine.discard(name)
+    (_refined.add if refines else _refined.discard)(name)
+    if scene is None or not scene.realmodel.live:
+        return None
+    try:
+        with _our_own(scene):
+            layer = viewports.updated_layer(scene)
+            built_scene.check_modes(scene)
+            job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False, coarse=not refines)
+    except Exception as error:
+        _tell(scene, error)
+        return None
+    job.start(is_short=not refines and measured.get(name, 0.0) < _SHORT_SECONDS)
+    return job
+
+
+def _tell(scene, error):
+    """Shows the error of a scene's model in the panel, or removes it; the selection and the view do not
+    change."""
+    problems.forget()
+    if scene is not None:
+        problems.remember(scene, error)
+    viewports.redraw()
+
+
+_work = DebouncedJob(
+    lambda: preferences.current().live_pause,
+    _begin,
+    _finish,
+    lambda: not bpy.context.window_manager.realmodel.running,
+)
