@@ -10,7 +10,7 @@ from realmodel.bl.objects import viewports
 from realmodel.bl.project import compartments, project_settings, settings
 from realmodel.bl.scene import built_scene, data_objects
 from realmodel.core import PointFile, build, load_project
-from test_structures import StructureCase, wall
+from structure_case import StructureCase, wall
 
 LINE = [(50.0, 10.0), (50.0, 90.0)]
 
