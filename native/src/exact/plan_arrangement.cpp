@@ -191,11 +191,27 @@ LineId PlanArrangement::add_line(const Line& line) {
 
 PointId PlanArrangement::add_point(const Point& wanted) {
     const PointId next(points_.size());
-    const auto found = point_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
-        return point(PointId(number)).key();
+    const auto key = [&](const Point& p) {
+        return NamedPoint(p, piercing(line(p.first), line(p.second))).key();
+    };
+    const auto found = point_table_.insert(key(wanted), next.number(), [&](std::int32_t number) {
+        return key(point(PointId(number)));
     });
     if (found.is_new) set_point(append(0, 1).point, wanted);
     return PointId(found.number);
+}
+
+Piercing PlanArrangement::piercing(const Line& first, const Line& second) const {
+    if (first.is_edge() == second.is_edge()) return {};
+    const Line &edge = first.is_edge() ? first : second, &trace = first.is_edge() ? second : first;
+    const auto standing = [&](PlaneId id) {
+        const EdgeOrPlane above = plane(id).above(edge);
+        return above.is_edge() ? above : EdgeOrPlane(id);
+    };
+    const auto [lower, upper] = trace.planes();
+    EdgeOrPlane one = standing(lower), other = standing(upper);
+    if (!one.is_edge() || (other.is_edge() && other < one)) std::swap(one, other);
+    return one.is_edge() ? Piercing{one, other} : Piercing{};
 }
 
 PlanArrangement::Appended PlanArrangement::append(std::size_t lines, std::size_t points) {

@@ -155,21 +155,30 @@ inline double rounding_error(double size) {
 /// A plan point: an input vertex, or the crossing of two lines.
 struct Point {
     LineId first = kNone, second = kNone;  ///< none of an input vertex
-    /// Where an input edge pierces a plane: known by name, since the traces of both triangles
-    /// beside that edge run through it. Where the plane's triangle has an edge over the same plan
-    /// edge, that edge stands for the plane, as the triangles beside it share it too. Neither
-    /// elsewhere.
-    EdgeOrPlane edge, pierced;
-    double x = 0, y = 0;  ///< the doubles nearest to the true position
+    double x = 0, y = 0;                   ///< the doubles nearest to the true position
 
     /// Bound on the distance from the true position in x and in y.
     double error() const {
         return first == kNone ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
     }
-    /// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
+};
+
+/// Where an input edge pierces a plane: known by name, since the traces of both triangles beside
+/// that edge run through it. Where the plane's triangle has an edge over the same plan edge, that
+/// edge stands for the plane, as the triangles beside it share it too. Neither elsewhere.
+struct Piercing {
+    EdgeOrPlane edge, pierced;
+};
+
+/// A crossing with what names it: the edge and the plane or edge that it meets, or its two lines.
+struct NamedPoint : Point {
+    NamedPoint(const Point& point, const Piercing& piercing) : Point(point), by(piercing) {}
+
+    Piercing by;
+
     KeyTable::Key key() const {
-        const auto of_edge = edge.key(), of_pierced = pierced.key();
-        if (edge.is_edge()) return {of_edge[0], of_edge[1], of_pierced[0], of_pierced[1]};
+        const auto of_edge = by.edge.key(), of_pierced = by.pierced.key();
+        if (by.edge.is_edge()) return {of_edge[0], of_edge[1], of_pierced[0], of_pierced[1]};
         return {-1, std::min(first, second).number(), std::max(first, second).number(), 0};
     }
 };
@@ -323,6 +332,8 @@ public:
                            : trace_filter(l.planes()[0], l.planes()[1]);
     }
     const Point& point(PointId id) const { return points_[index(id)]; }
+    /// What an edge pierces at the crossing of two lines.
+    Piercing piercing(const Line& first, const Line& second) const;
     const Plane& plane(PlaneId id) const { return planes_[index(id)]; }
     const PlaneFilter& plane_filter(PlaneId id) const { return plane_filters_[index(id)]; }
     const SpaceVertex& space(SpaceId id) const { return space_[index(id)]; }

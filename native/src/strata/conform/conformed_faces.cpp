@@ -53,7 +53,7 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
 
 std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& conformed,
                           std::size_t face) {
-    return conformed.entries.first(static_cast<std::size_t>(faces.polygons.offsets[face]));
+    return conformed.entries.first(faces.polygons.offsets[face]);
 }
 
 /// Counts entries on each plan vertex. Which of a plan vertex's entries comes first depends on
