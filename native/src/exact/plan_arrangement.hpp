@@ -272,8 +272,9 @@ public:
     /// then on none may be added.
     void freeze_vertices();
 
-    /// Gives back the memory that finds lines and points by name. No edge may be added any more;
-    /// other lines and points become new ones, whatever their names.
+    /// Gives back the memory that finds lines and points by name, and that of gradients, which are
+    /// found anew each time. No edge and no plane may be added any more; other lines and points
+    /// become new ones, whatever their names.
     void forget_names();
     /// Gives all memory back, for when nothing but the vertex count and the counts of decisions
     /// will be asked for.
@@ -335,7 +336,9 @@ public:
     /// What an edge pierces at the crossing of two lines.
     Piercing piercing(const Line& first, const Line& second) const;
     const Plane& plane(PlaneId id) const { return planes_[index(id)]; }
-    const PlaneFilter& plane_filter(PlaneId id) const { return plane_filters_[index(id)]; }
+    PlaneFilter plane_filter(PlaneId id) const {
+        return plane_filters_.empty() ? filter_of(plane(id).corner) : plane_filters_[index(id)];
+    }
     const SpaceVertex& space(SpaceId id) const { return space_[index(id)]; }
 
     LineFilter edge_filter(VertexId from, VertexId to) const;
@@ -370,6 +373,7 @@ private:
     Array<Plane> planes_;
     Array<PlaneFilter> plane_filters_;
     Array<Line> lines_;
+    PlaneFilter filter_of(const std::array<SpaceId, 3>& corner) const;
     LineId find_or_add_line(const Line& line, LineId next);
 
     KeyTable vertex_table_, space_table_;

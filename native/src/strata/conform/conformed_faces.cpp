@@ -115,6 +115,7 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
             const PlaneId plane = faces.plane[f];
             for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
                 counts.prefetch(vertex_of(std::min(i + 32, last)));
+                prefetch(&on.values[counts.counts()[vertex_of(std::min(i + 16, last))]]);
                 const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
                 on.values[at] = code_of(plane, plan_vertex[i] < 0);
                 plan_vertex[i] = static_cast<std::int32_t>(at);
