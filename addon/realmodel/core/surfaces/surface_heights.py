@@ -23,8 +23,8 @@ from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
 from .observed.conformable import alike_of
+from .observed.raised_sheets import honoring
 from .observed.sheet_series import bounds_beside, companions_of
-from .raised_sheets import honoring
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.work import Work, native_module
-from ..heights.ties import TieData
+from ...base.work import Work, native_module
+from ...heights.ties import TieData
 
 _MOST_ROUNDS = 300
 _ON_EDGE = 1e-9  # weights of corners that do not count
