@@ -55,6 +55,22 @@ KindTuple tuple_of(const fields::FunctionKind& kind) {
             kind.left_out};
 }
 
+/// Of each bound the kind and the row of each datum.
+std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
+    const std::vector<std::vector<fields::Datum>>& data) {
+    std::vector<std::vector<std::pair<std::string, std::int64_t>>> out;
+    for (const std::vector<fields::Datum>& each : data) {
+        out.emplace_back();
+        for (const auto& [kind, row] : each) {
+            out.back().emplace_back(kind == fields::Datum::Kind::kContact ? "contact"
+                                    : kind == fields::Datum::Kind::kDip   ? "dip"
+                                                                          : "bound",
+                                    row);
+        }
+    }
+    return out;
+}
+
 fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
     const auto& [kind, directions, steps, errors] = given;
     const auto& [anisotropy, order, value, slope, lift, scale, gaps, centers, left_out] = kind;
@@ -97,6 +113,7 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     py::dict out;
     out["values"] = to_array(std::move(made.values));
     out["levels"] = to_array(std::move(made.levels));
+    out["contradicted"] = listed(made.contradicted);
     out["kind"] = tuple_of(made.kind);
     out["centers"] = made.centers;
     out["misfit"] = made.misfit;
@@ -141,8 +158,8 @@ give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3
 combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
 draw: None, or of a field that is drawn at random its kind, as it is returned of the same data, and normal numbers:
 (lines, 3 + F), (lines, steps) and (M, 2).
-Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed, and the kind of
-random function: (axes, ratios), order, errors of values and slopes, scale of further coordinates, variance, gaps,
+Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed, of each of the latter
+the data that it contradicts ("contact", "dip" or "bound", and the row), and the kind of random function: (axes, ratios), order, errors of values and slopes, scale of further coordinates, variance, gaps,
 centers, inequalities that are left out. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),

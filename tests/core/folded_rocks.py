@@ -4,12 +4,13 @@
 from dataclasses import replace
 
 import numpy as np
-from realmodel.core import Project, Rock, Series, Surface
+from realmodel.core import Project, Rock, Series, SpaceDips, Surface
 from realmodel.core.fields import Anisotropy, SolvedField
 from realmodel.core.structures import fields
 
 SIZE = 10.0
 SQUARE = [[0.0, 0.0], [SIZE, 0.0], [SIZE, SIZE], [0.0, SIZE]]
+OF_FOLD = (1.5, 2.5, 4.0)  # levels of `recumbent`
 
 
 def recumbent(p):
@@ -103,3 +104,15 @@ def folded_project(f=recumbent, levels=(1.5, 2.5, 4.0), younger=(), **more):
     series = [level_surface("f" + "i" * k, f, level) for k, level in enumerate(levels)]
     ground = sheet("ground", lambda x, y: 8.0 + 0.6 * np.sin(x) * np.cos(0.7 * y))
     return Project("folded", [folded_rock([*series, *younger, ground])], **more)
+
+
+def folded(f=recumbent, levels=OF_FOLD, **more):
+    """A project with few contacts and dips of a closed form."""
+    project = folded_project(f, levels, **more)
+    rock = project.rocks[0]
+    for number, level in enumerate(levels):
+        rock.surfaces[number].points = contacts(f, level, 9, 11 + number, high=7.0)
+    places = np.random.default_rng(5).uniform(0.5, 7.0, (12, 3))
+    normals = np.column_stack([f(places + move) - f(places - move) for move in 1e-5 * np.eye(3)])
+    rock.series[0].dips = SpaceDips(places, normals)
+    return project

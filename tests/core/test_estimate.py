@@ -4,9 +4,11 @@
 import numpy as np
 import pytest
 from conftest import grid_surface
+from folded_rocks import dome, folded
 from realmodel.core import (
     BuildFailed,
     Cancelled,
+    Fault,
     InputRefused,
     NotEnoughMemory,
     Project,
@@ -17,6 +19,7 @@ from realmodel.core import (
     estimate,
 )
 from realmodel.core.model.estimate import memory_text
+from test_slits import leaning
 
 
 def jittered(random, n):
@@ -112,6 +115,21 @@ def test_what_cannot_be_read_is_refused_as_the_build_refuses_it():
     project.rocks[0].surfaces[1].vertices[0, 2] = np.nan
     with pytest.raises(InputRefused, match="surface 'S1'"):
         estimate(project)
+
+
+@pytest.mark.parametrize("faults", [0, 1])
+def test_level_sets_of_fields(faults):
+    """Some triangles more or less, and the memory of the dense arrays at least."""
+    given = [Fault("F", *leaning((-2.0, 12.0)), youngest="fii")][:faults]
+    project = folded(dome, (3.0, 4.5, 6.0), faults=given)
+    estimated, model = estimate(project, "blocks"), build(project, cells="blocks")
+    fields = list(model.rock_inputs[0].fields[0].distinct())
+    assert estimated.lattice_nodes == fields[0].lattice.nodes
+    assert 0.4 < estimated.triangles / len(model.surface_triangles) < 3
+    assert estimated.memory > 10 * model.vertices.nbytes
+    assert f"nodes of lattices             {estimated.lattice_nodes:,}\n" in estimated.table()
+    with pytest.raises(NotEnoughMemory, match="or a resolution of series 2"):
+        build(project, memory=estimate(project).memory // 4)
 
 
 def test_estimating_can_be_cancelled():

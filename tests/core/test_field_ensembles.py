@@ -4,8 +4,8 @@ be."""
 
 import numpy as np
 import pytest
-from folded_rocks import contacts, dome, folded_project, recumbent
-from realmodel.core import Observations, SpaceDips, Surface, build
+from folded_rocks import OF_FOLD, dome, folded, recumbent
+from realmodel.core import Observations, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.ensembles import Realizer, ensemble
 from realmodel.core.fields import FieldDraws, are_on, solve_field
@@ -13,26 +13,12 @@ from realmodel.core.project.project import Fault
 from test_fields import LATTICE, LEVELS, _data, overturned
 from test_slits import leaning
 
-OF_FOLD = (1.5, 2.5, 4.0)
-
 
 def drawn(data, number, known, lattice=LATTICE):
     def normal(part, count):
         return np.random.default_rng((number, part)).standard_normal(count)
 
     return run(lambda work: FieldDraws(normal, known, 0.0).field(lattice, data, work, 0))
-
-
-def folded(f=recumbent, levels=OF_FOLD, **more):
-    """A project with few contacts and dips of a closed form."""
-    project = folded_project(f, levels, **more)
-    rock = project.rocks[0]
-    for number, level in enumerate(levels):
-        rock.surfaces[number].points = contacts(f, level, 9, 11 + number, high=7.0)
-    places = np.random.default_rng(5).uniform(0.5, 7.0, (12, 3))
-    normals = np.column_stack([f(places + move) - f(places - move) for move in 1e-5 * np.eye(3)])
-    rock.series[0].dips = SpaceDips(places, normals)
-    return project
 
 
 def test_blocks_are_as_often_true_as_they_are_probable():

@@ -167,6 +167,12 @@ def test_bounds_that_contradict_other_data_are_left_out():
     )
     field = _solve(bounded)
     assert field.bounds_missed.tolist() == wrong.tolist()
+    given = {"contact": data.contacts, "dip": data.dips, "bound": points}
+    for row, against in zip(wrong.tolist(), field.contradicted, strict=True):
+        assert 1 <= len(against) <= 4
+        assert ("bound", row) not in against
+        away = np.linalg.norm(given[against[0][0]][against[0][1]] - points[row])
+        assert away < 400.0  # of a kilometer
     right = np.searchsorted(field.levels, field.at(points)) == block
     assert right[np.setdiff1d(np.arange(150), wrong)].all()
     assert _share_right(overturned, field) > 0.97

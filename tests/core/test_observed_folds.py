@@ -309,6 +309,11 @@ def test_a_place_that_contradicts_its_hole_is_left_out(down):
     assert {each.place for each in found.violated} == {tuple(place.tolist())}
     (warning,) = [each for each in model.warnings if each.kind == "contradiction"]
     assert "side of 'f" in warning.text
+    for _, each in found.left_out:  # with what is known around it
+        assert each.block == wrong.blocks[0] and f" in '{each.block}': on the " in each.text
+        assert 0 < len(each.contradicts) <= 4
+        assert "; ".join(each.contradicts) in each.text and each.text in warning.text
+        assert any(said.startswith("hole 'B") for said in each.contradicts)
     assert model.validate().passed
 
 

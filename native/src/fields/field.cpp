@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -51,6 +52,9 @@ constexpr double kPerCriticalPoint = 20;
 constexpr std::size_t kMostCounted = 50000;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
+// What a bound contradicts: so many data at most, and those that count this much of the first one.
+constexpr std::size_t kMostContradicted = 4;
+constexpr double kCounts = 0.25;
 // Edges of the lattice over which a drawn function is averaged that has no derivatives.
 constexpr double kRough = 4;
 
@@ -733,13 +737,53 @@ private:
     }
 
     void report_missed(Field& out) const {
-        for (const Inequality& inequality : inequalities_) {
+        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
+            const Inequality& inequality = inequalities_[n];
             const double lack = inequality.least - spline_->of(inequality.functional);
             if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
-            auto& missed = inequality.kind == Kind::kPolarity ? out.dips_missed : out.bounds_missed;
-            if (missed.empty() || missed.back() != inequality.item)
-                missed.push_back(inequality.item);
+            const bool is_dip = inequality.kind == Kind::kPolarity;
+            auto& missed = is_dip ? out.dips_missed : out.bounds_missed;
+            if (!missed.empty() && missed.back() == inequality.item) continue;
+            missed.push_back(inequality.item);
+            if (!is_dip) out.contradicted.push_back(contradicted(n));
         }
+    }
+
+    /// The data that say where the field is at a bound that is missed.
+    std::vector<Datum> contradicted(std::size_t bound) const {
+        const Functional& of_bound = inequalities_[bound].functional;
+        const std::vector<double> weights = spline_->weights_for(of_bound);
+        std::map<std::pair<Datum::Kind, std::int64_t>, double> counts;
+        for (std::size_t row = 0; row < 2 * known_.data().dips.size(); ++row)
+            counts[{Datum::Kind::kDip, static_cast<std::int64_t>(row / 2)}] +=
+                std::abs(weights[row]);
+        std::size_t row = first_contact_;
+        for (std::size_t n = 0; n < is_center_.size(); ++n) {
+            if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
+                counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
+                    std::abs(weights[row++]);
+        }
+        const auto is_bound = [](const Inequality& each) { return each.kind == Kind::kBound; };
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            if (!states_[n].active) continue;
+            const Inequality& other = inequalities_[n];
+            const double count = std::abs(weights[row++]);
+            if (other.kind == Kind::kPolarity) counts[{Datum::Kind::kDip, other.item}] += count;
+            // one on the same side says the same
+            if (is_bound(other) &&
+                other.functional.values[0].weight * of_bound.values[0].weight < 0)
+                counts[{Datum::Kind::kBound, other.item}] += count;
+        }
+        std::vector<std::pair<double, Datum>> sorted;
+        for (const auto& [datum, count] : counts)
+            sorted.push_back({count, {datum.first, datum.second}});
+        std::ranges::stable_sort(sorted, std::greater{}, &std::pair<double, Datum>::first);
+        std::vector<Datum> out;
+        for (const auto& [count, datum] : sorted) {
+            if (out.size() == kMostContradicted || count < kCounts * sorted[0].first) break;
+            out.push_back(datum);
+        }
+        return out;
     }
 
     Lattice lattice_;

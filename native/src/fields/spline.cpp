@@ -142,6 +142,26 @@ std::vector<double> Spline::misfits_without(std::span<const std::size_t> functio
     return out;
 }
 
+std::vector<double> Spline::weights_for(const Functional& functional) const {
+    const Functional f = functional.mapped_by(smoothness_.map, smoothness_.lift);
+    const Vec3 of = f.of_coordinates();
+    const Lift lift = f.of_lift();
+    const auto n = static_cast<Eigen::Index>(known_.size());
+    Eigen::MatrixXd side(n, 1);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        side(i, 0) = scales_(i) * (known_[i].with(f, smoothness_.kernel()) +
+                                   kProducts * (dot(known_[i].of_coordinates(), of) +
+                                                product(known_[i].of_lift(), lift)));
+    }
+    factor_->solve(side, nullptr);
+    const Eigen::Matrix3d inner = products_.bottomRightCorner<3, 3>();
+    const Eigen::Vector3d drift =
+        coordinates_.transpose() * side.col(0) - Eigen::Vector3d(of[0], of[1], of[2]);
+    side.col(0) -= coordinates_ * inner.ldlt().solve(drift);
+    factor_->solve_transposed(side, nullptr);
+    return {side.data(), side.data() + n};
+}
+
 bool Spline::left_out(std::size_t functional) const {
     return factor_->left_out(static_cast<Eigen::Index>(functional));
 }

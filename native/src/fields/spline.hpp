@@ -53,6 +53,9 @@ public:
     /// How well functionals fit those around them: the square of what each would be missed by if it
     /// were left out, by its variance per unit of the kernel. In the mean it is scale().
     std::vector<double> misfits_without(std::span<const std::size_t> functionals) const;
+    /// How much what is known counts for the value of a functional that is not: the weights of
+    /// kriging, in units of the standard deviation of each.
+    std::vector<double> weights_for(const Functional& functional) const;
     /// Whether a functional follows from those before it, and was left out.
     bool left_out(std::size_t functional) const;
 

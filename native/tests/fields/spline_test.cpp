@@ -236,6 +236,20 @@ TEST(Spline, TheLikelihoodIsThatOfContrasts) {
     }
 }
 
+TEST(Spline, WeightsSayWhatAValueIsMadeOf) {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    const Spline spline(known, {}, {});
+    const Functional unknown = Functional::difference({0.4, -0.2, 0.1}, {0.1, 0.2, -0.3});
+    const std::vector<double> weights = spline.weights_for(unknown);
+    double sum = 0;
+    for (std::size_t n = 0; n < known.size(); ++n) {
+        const Vec3 of = known[n].of_coordinates();
+        const double variance = known[n].with(known[n], {3, 0}) + 100 * dot(of, of);
+        sum += weights[n] * known[n].right / std::sqrt(variance);
+    }
+    EXPECT_NEAR(sum, spline.of(unknown), 1e-9);
+}
+
 TEST(Anisotropy, MapsScaleAlongTheAxes) {
     const double half = std::sqrt(0.5);
     const Anisotropy of{{{{half, half, 0}, {-half, half, 0}, {0, 0, 1}}}, {0.1, 1, 0.5}};

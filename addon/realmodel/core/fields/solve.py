@@ -108,7 +108,8 @@ class SolvedField(ScalarField):
     2 where surfaces are rough; how many contacts carry the field; the largest distance of a contact from its
     surface, nearly; rows of the dips and bounds that contradict other data and do not hold; where the field
     has critical points inside, (C, 3), none of one that is drawn; the fields on the other combinations of
-    sides of slits; and the kind of random function, of which the native module draws others."""
+    sides of slits; the kind of random function, of which the native module draws others; and of each of the
+    missed bounds what it contradicts: "contact", "dip" or "bound", and the row."""
 
     anisotropy: Anisotropy
     order: int
@@ -119,6 +120,7 @@ class SolvedField(ScalarField):
     critical_points: np.ndarray
     others: tuple[SolvedField, ...] = ()
     kind: tuple = field(default=(), repr=False, metadata=NOT_STORED)
+    contradicted: list[list[tuple[str, int]]] = field(default_factory=list, repr=False, metadata=NOT_STORED)
 
 
 def solve_field(
@@ -175,6 +177,7 @@ def solve_field(
         bounds_missed=found["bounds_missed"],
         critical_points=points[0],
         kind=found["kind"],
+        contradicted=found["contradicted"],
     )
     others = zip(every[1:], points[1:], strict=True)
     return replace(

@@ -6,12 +6,15 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+from ..base.elementary import cube_root
 from ..base.errors import NotEnoughMemory
 from ..base.sheet import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..fields.solve import MOST_CENTERS
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
+from ..structures.fields import lattices
 from ..structures.setup import mesh_inputs
 from ..surfaces.prepare import read_rocks
 from ..surfaces.rock_input import RockInput
@@ -28,13 +31,21 @@ _MOST_BYTES = {
 _SECONDS_PER_TRIANGLE = {"columns": 2e-6, "blocks": 5e-7}
 _STRUCTURED = 4  # times as much as without, and once more for each fault or body
 _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points are fitted with
+# Of fields, measured of the samples and of Claudius: a level set has 11 to 26 triangles for each of the nodes
+# to the power of two thirds, that are in one layer of a lattice. The bytes are a third more than was taken.
+_TRIANGLES_IN_LAYER = 20
+_MOST_BYTES_OF_LEVEL_SET = {"columns": 5500, "blocks": 3000}
+_SECONDS_PER_LEVEL_TRIANGLE = {"columns": 3e-5, "blocks": 1.5e-5}
+_SECONDS_PER_CUBE = 2.5e-10  # of the data that carry a field: it is solved for in several rounds
+_SECONDS_PER_VALUE = 2e-9  # of a datum at a node
 
 
 @dataclass(frozen=True)
 class Estimate:
     """What building a project will take.
 
-    cell_kind, threads: as given. triangles: of all surfaces. memory: an upper bound, in bytes, of the memory
+    cell_kind, threads: as given. triangles: of all surfaces; of level sets of fields in order of magnitude.
+    lattice_nodes: of the lattices of all fields. memory: an upper bound, in bytes, of the memory
     that the build adds to the process; mostly it needs a third to all of that. seconds: of the whole build on
     an idle machine, in order of magnitude. available: free memory in bytes.
     """
@@ -45,6 +56,7 @@ class Estimate:
     memory: int
     seconds: float
     available: int
+    lattice_nodes: int = 0
 
     @property
     def fits(self) -> bool:
@@ -53,8 +65,10 @@ class Estimate:
 
     def table(self) -> str:
         """The estimate as text for a terminal."""
+        about = "about " if self.lattice_nodes else ""
         rows = [
-            ("triangles of all surfaces", f"{self.triangles:,}"),
+            ("triangles of all surfaces", f"{about}{self.triangles:,}"),
+            *([("nodes of lattices", f"{self.lattice_nodes:,}")] if self.lattice_nodes else []),
             (f"memory while building {self.cell_kind}", f"at most {memory_text(self.memory)}"),
             ("memory free", memory_text(self.available)),
             ("time", f"about {_time_text(self.seconds)}"),
@@ -101,13 +115,21 @@ def estimate(
         nodes = 0
         for entry in inputs:
             if entry.region is not None:
-                nodes += len(entry.region.vertices) * sum(surface is None for surface in entry.surfaces)
+                nodes += len(entry.region.vertices) * sum(surface is None for surface in _sheets(entry))
         structures = len(project.faults) + len(project.bodies)
         seconds = _SECONDS_PER_TRIANGLE[cells] * triangles + _SECONDS_PER_NODE * nodes
-        seconds = read + seconds * _times(structures)
-        available = native_module().available_memory()
+        fields = [field for entry in inputs for field in _fields(entry, structures)]
+        of_level_sets = sum(field.triangles for field in fields)
+        seconds = read + seconds * _times(structures) + sum(field.seconds for field in fields)
+        seconds += _SECONDS_PER_LEVEL_TRIANGLE[cells] * of_level_sets
         return Estimate(
-            cells, threads, triangles, memory_bound(inputs, cells, structures), seconds, available
+            cells,
+            threads,
+            triangles + of_level_sets,
+            memory_bound(inputs, cells, structures),
+            seconds,
+            native_module().available_memory(),
+            sum(field.nodes for field in fields),
         )
 
     return run(task, progress, cancel, threads=threads)
@@ -117,7 +139,33 @@ def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> in
     """An upper bound of the memory, bytes, that building rock masses needs that are read and meshed, by their
     triangles. structures: the number of faults and bodies."""
     bytes_of_stacks = sum(_MOST_BYTES[cells, _on_one_plan(entry)] * _triangles(entry) for entry in inputs)
-    return bytes_of_stacks * _times(structures)
+    fields = [field for entry in inputs for field in _fields(entry, structures)]
+    of_level_sets = _MOST_BYTES_OF_LEVEL_SET[cells] * sum(field.triangles for field in fields)
+    return bytes_of_stacks * _times(structures) + of_level_sets + sum(field.system for field in fields)
+
+
+@dataclass(frozen=True)
+class _FieldSize:
+    """Of the field of a series. nodes: of its lattice. triangles: of all its level sets, about. system: bytes
+    of what is solved. seconds: that the solution takes."""
+
+    nodes: int
+    triangles: int
+    system: int
+    seconds: float
+
+
+def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
+    """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
+    part a field in two."""
+    found = []
+    for data, lattice in lattices(entry):
+        rows = min(len(data.contacts), MOST_CENTERS) + 2 * len(data.dips)
+        in_layer = _TRIANGLES_IN_LAYER * cube_root(float(lattice.nodes)) ** 2
+        triangles = round(in_layer * len(data.numbers) * (1 + structures))
+        seconds = _SECONDS_PER_CUBE * rows**3 + _SECONDS_PER_VALUE * rows * lattice.nodes
+        found.append(_FieldSize(lattice.nodes, triangles, 2 * 8 * rows**2, seconds))
+    return found
 
 
 def _times(structures: int) -> int:
@@ -136,10 +184,14 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
     if cells == "columns" and (blocks := memory_bound(inputs, "blocks", structures)) <= free:
         advice.append(f'ask for cells="blocks" (at most {memory_text(blocks)})')
     triangles = sum(map(_triangles, inputs))
+    triangles += sum(field.triangles for entry in inputs for field in _fields(entry, structures))
     fitting = float(f"{0.9 * triangles * free / needed:.1e}")
     coarser = f"use surfaces of {fitting:,.0f} triangles in all instead of {triangles:,}"
-    if any(entry.rock.interpolates for entry in inputs):
-        coarser += f", or an edge length {(needed / (0.9 * free)) ** 0.5:.1f} times as long"
+    times = f"{(needed / (0.9 * free)) ** 0.5:.1f} times as long"
+    if any(_fields(entry, structures) for entry in inputs):
+        coarser += f", or a resolution of series {times}"
+    elif any(entry.rock.interpolates for entry in inputs):
+        coarser += f", or an edge length {times}"
     advice.append(coarser)
     advice.append("build fewer surfaces at a time (stage)" if len(inputs) == 1 else "build fewer rock masses")
     whose = "are free" if limit is None else "are allowed"
@@ -151,9 +203,15 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
     )
 
 
+def _sheets(entry: RockInput) -> list[Sheet | None]:
+    """The surfaces that are no level sets; None where one is not interpolated yet."""
+    pairs = zip(entry.rock.surfaces, entry.surfaces, strict=True)
+    return [shape for surface, shape in pairs if not surface.is_level_set]
+
+
 def _plans(entry: RockInput) -> list[Sheet]:
-    """The triangulation of each surface; of one that is not interpolated yet, the region's."""
-    return [entry.planar_mesh() if surface is None else surface for surface in entry.surfaces]
+    """The triangulation of each of them; of one that is not interpolated yet, the region's."""
+    return [entry.planar_mesh() if surface is None else surface for surface in _sheets(entry)]
 
 
 def _triangles(entry: RockInput) -> int:
@@ -162,8 +220,8 @@ def _triangles(entry: RockInput) -> int:
 
 def _on_one_plan(entry: RockInput) -> bool:
     """Whether all surfaces have the same triangles in plan."""
-    first, *others = _plans(entry)
-    return all(other.has_plan_of(first) for other in others)
+    plans = _plans(entry)
+    return all(other.has_plan_of(plans[0]) for other in plans)
 
 
 def memory_text(size: float) -> str:

@@ -12,7 +12,7 @@ from ..base.work import Work
 from ..fields import ScalarField, SolvedField, are_on
 from ..fields.series_field import SeriesField
 from ..project.series import Series
-from ..readers.tables.observations import KINDS
+from ..readers.tables.observations import KINDS, LeftOut
 from ..surfaces.rock_input import RockInput
 from ..surfaces.wrong_sides import heights_at
 from .series_data import SeriesData
@@ -32,9 +32,14 @@ def warn_of_lacks(entry: RockInput, series: Series, lacks: list[str], compartmen
     entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
 
 
-def leave_out(entry: RockInput, series: Series, data: SeriesData, rows: np.ndarray) -> None:
-    """Lists bounds that are left out, by their rows; those of one observation once. Warns of them."""
-    found = list({(each.text, each.hole): each for each in map(data.left_out, rows.tolist())}.values())
+def leave_out(entry: RockInput, series: Series, data: SeriesData, field: SolvedField) -> None:
+    """Lists bounds that are left out of a field, with what they contradict; those of one observation once.
+    Warns of them."""
+    others: dict[str, LeftOut] = {}
+    contradicted = field.contradicted or [[] for _ in field.bounds_missed]
+    for row, against in zip(field.bounds_missed.tolist(), contradicted, strict=True):
+        others.setdefault(data.bound_text(row), data.left_out(row, against))
+    found = list(others.values())
     if found:
         entry.left_out += found
         text = f"{len(found)} {KINDS['contradiction']}"

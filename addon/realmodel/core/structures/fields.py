@@ -80,16 +80,23 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
             _take_level_sets(work, entry, own)
 
 
+def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:
+    """The data and the lattice of each series of a rock mass, which is read, whose surfaces are level sets;
+    as far as they are known before other surfaces are made. Raises InputRefused."""
+    given = [series for series in entry.rock.series if series.kind == FIELD]
+    waiting = [series for series in given if members(entry.rock, series)]
+    top = _top(entry) if waiting else 0.0
+    found = []
+    for series in waiting:
+        data = SeriesData.of(entry, series, members(entry.rock, series))
+        found.append((data, _lattice(entry, series, data.positions(), top)))
+    return found
+
+
 def spacing(entry: RockInput) -> float:
     """The smallest edge length of the lattices of the fields of a rock mass that is read; infinite where it
     has none."""
-    given = [series for series in entry.rock.series if series.kind == FIELD]
-    top = _top(entry) if given else 0.0
-    found = [math.inf]
-    for series in given:
-        places = SeriesData.of(entry, series, members(entry.rock, series)).positions()
-        found.append(_lattice(entry, series, places, top).spacing[0])
-    return min(found)
+    return min((lattice.spacing[0] for _, lattice in lattices(entry)), default=math.inf)
 
 
 def _top_of_fields(entry: RockInput) -> float:
@@ -137,7 +144,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
                 field = solve_field(lattice, known, work)
             else:
                 field = draws.field(lattice, known, work, number)
-        leave_out(entry, series, own, field.bounds_missed)
+        leave_out(entry, series, own, field)
         solved = [field, *field.others]
         for side, each in enumerate(solved):
             points = each.critical_points

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.algebra import norm
+from ..base.errors import place_text
 from ..fields import LevelSetData, ScalarField, SlitData
 from ..project.project import Rock
 from ..project.series import Series
@@ -130,32 +131,59 @@ class SeriesData:
             at = int(self.bound_rows[row])
             return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
         surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
-        at, observed = int(self.contact_rows[row]), self.rock.observed
-        own = len(surface.point_array()) - len(surface.contact_array())
-        if observed is not None and at >= own:
-            same = np.flatnonzero((observed.places == self.contacts[row]).all(axis=1))
-            if len(same):
-                return f"surface '{surface.name}', {observed.source(int(same[0]))}"
-        return f"surface '{surface.name}', point {at}"
+        source = self._source(row)
+        return f"surface '{surface.name}', {source or f'point {self.contact_rows[row]}'}"
 
-    def left_out(self, row: int) -> LeftOut:
-        """A bound that is not used, as it contradicts others."""
+    def _source(self, row: int) -> str | None:
+        """Where a contact was observed; None where it is a point of its surface."""
+        surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
+        observed = self.rock.observed
+        own = len(surface.point_array()) - len(surface.contact_array())
+        if observed is None or self.contact_rows[row] < own:
+            return None
+        same = np.flatnonzero((observed.places == self.contacts[row]).all(axis=1))
+        return observed.source(int(same[0])) if len(same) else None
+
+    def left_out(self, row: int, against: Sequence[tuple[str, int]]) -> LeftOut:
+        """A bound that is not used. against: what it contradicts, by kind and row."""
         bounds, at = self._bounds_of(row), int(self.bound_rows[row])
         depth = float(bounds.depths[at])
+        others = tuple(dict.fromkeys(self._said(*each) for each in against))
         return LeftOut(
             "contradiction",
-            f"{self.bound_text(row)}, which contradicts data near it",
-            "",
+            f"{self.bound_text(row)}, which contradicts {'; '.join(others) or 'data near it'}",
+            self._block_of(row),
             str(bounds.holes[at]),
             None if np.isnan(depth) else depth,
             tuple(self.bounds[row].tolist()),
+            others,
         )
+
+    def _said(self, kind: str, row: int) -> str:
+        """What a datum says, by its kind and row."""
+        if kind == "bound":
+            return self.bound_text(row)
+        if kind == "dip":
+            return f"{self.item(kind, row)} at {place_text(self.dips[row].tolist())}"
+        name = self.rock.surfaces[self.numbers[self.surfaces[row]]].name
+        return f"{self._source(row) or place_text(self.contacts[row].tolist())}: on '{name}'"
 
     def bound_text(self, row: int) -> str:
         """What a bound says."""
         name = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].name
         side = "older" if self.is_lower[row] else "younger"
-        return f"{self.item('bound', row)}: on the {side} side of '{name}'"
+        block = self._block_of(row)
+        return f"{self.item('bound', row)}{block and f' in {block!r}'}: on the {side} side of '{name}'"
+
+    def _block_of(self, row: int) -> str:
+        """The block in which a bound was seen; "" where it is not known."""
+        bounds, at, observed = self._bounds_of(row), int(self.bound_rows[row]), self.rock.observed
+        if observed is None:
+            return ""
+        same = (observed.places == bounds.places[at]).all(axis=1)
+        same &= observed.holes == bounds.holes[at]
+        blocks = np.unique(observed.blocks[same])
+        return str(blocks[0]) if len(blocks) == 1 else ""
 
     def _bounds_of(self, row: int) -> Bounds:
         bounds = self.rock.surfaces[self.numbers[self.bound_surfaces[row]]].bounds

@@ -87,6 +87,14 @@ struct FieldOptions {
     const FieldDraw* draw = nullptr;  ///< null: the smoothest field, the mean of all
 };
 
+/// A contact, dip or bound, by its row.
+struct Datum {
+    enum class Kind { kContact, kDip, kBound };
+
+    Kind kind;
+    std::int64_t row;
+};
+
 struct Field {
     std::vector<double> values;  ///< of the lattice's nodes, on each combination of sides of slits
     std::vector<double> levels;  ///< of the surfaces, rising
@@ -95,6 +103,8 @@ struct Field {
     double misfit = 0;         ///< the largest distance of a contact from its surface, nearly
     std::vector<std::int64_t> dips_missed;    ///< dips against which f falls
     std::vector<std::int64_t> bounds_missed;  ///< bounds that contradict other data
+    /// Of each of these, those that count most for the field there.
+    std::vector<std::vector<Datum>> contradicted;
 };
 
 /// The smoothest field that honors the data: its third derivatives, integrated over all of space,
