@@ -13,15 +13,15 @@
 
 #include "base/parallel.hpp"
 #include "fields/anisotropy.hpp"
-#include "fields/known_data.hpp"
+#include "fields/frame_function.hpp"
 #include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
-#include "fields/lattice_weights.hpp"
+#include "fields/known_data.hpp"
+#include "fields/likely_field.hpp"
 #include "fields/neighbors.hpp"
 #include "fields/random_function.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/fields/critical_points.hpp"
 
 namespace realmodel::fields {
 
@@ -30,14 +30,7 @@ namespace {
 using Kind = Inequality::Kind;
 
 constexpr double kMet = 1e-9;  // in the frame: what is left by rounding
-constexpr int kGapRounds = 6;
-// A field that is so much steeper between some surfaces than between others has drawn levels
-// together.
-constexpr double kUneven = 4;
-// Levels that come out in the wrong order by more than this share of the mean gap are refused.
-constexpr double kWrongOrder = 0.5;
-constexpr std::size_t kFirstCenters = 600, kSampledContacts = 160, kSampledDips = 90,
-                      kSampledForDistance = 2000;
+constexpr std::size_t kFirstCenters = 600;
 constexpr int kMostRounds = 40;
 constexpr std::size_t kSampledMisfits = 128;
 // Data are suspected if the field would miss them by more, as squares, than this times what four
@@ -47,10 +40,6 @@ constexpr double kSuspect = 8, kAsMuch = 0.1;
 // millions.
 constexpr double kPays = 400;
 constexpr double kApart = 0.1;  // of half of the lattice's diagonal
-// What a critical point of the field through the sample costs, as a logarithm of likelihood, and on
-// how many nodes they are counted.
-constexpr double kPerCriticalPoint = 20;
-constexpr std::size_t kMostCounted = 50000;
 // So many inequalities become active in one round, those that are missed most.
 constexpr std::size_t kMostActivated = 200;
 // What a bound contradicts: so many data at most, and those that count this much of the first one.
@@ -59,27 +48,11 @@ constexpr double kCounts = 0.25;
 // Edges of the lattice over which a drawn function is averaged that has no derivatives.
 constexpr double kRough = 4;
 
-/// The box of a lattice with nodes farther apart, at most about `most` of them.
-Lattice coarsened(const Lattice& lattice, std::size_t most) {
-    Lattice out = lattice;
-    for (int step = 2; out.nodes() > most; ++step) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const int steps = lattice.counts[axis] - 1;
-            out.counts[axis] = std::max(steps / step, 1) + 1;
-            out.spacing[axis] = lattice.spacing[axis] * steps / (out.counts[axis] - 1);
-        }
-    }
-    return out;
-}
-
 /// The field while more of the data get into it.
 class Solution {
 public:
-    Solution(const Lattice& lattice, const KnownData& known, const FieldOptions& options,
-             const Execution& execution)
-        : lattice_(lattice),
-          half_spacing_(0.5 * std::ranges::min(lattice.spacing) / known.frame().unit),
-          known_(known),
+    Solution(const KnownData& known, const FieldOptions& options, const Execution& execution)
+        : known_(known),
           options_(options),
           execution_(execution),
           is_center_(known.contacts().size(), 0) {
@@ -96,9 +69,9 @@ public:
                 is_center_[n] = 1;
         }
         begin(0.0, 0.3, "anisotropy of the field");
-        sample_ = spread_pairs(known, kSampledContacts / 2);
-        refuse_wrong_order();
-        find_likely();
+        LikelyField found = likely_field(known, execution);
+        likely_ = found.likely;
+        gaps_ = std::move(found.gaps);
         if (options.anisotropy != nullptr) likely_.anisotropy = *options.anisotropy;
         begin(0.3, 0.7, "field through the data");
     }
@@ -108,7 +81,7 @@ public:
         fit();
         inequalities_ = known_.inequalities();
         for (Inequality& inequality : inequalities_)
-            inequality.functional = for_order(likely_, inequality.functional);
+            inequality.functional = known_.for_order(likely_.order, inequality.functional);
         states_.assign(inequalities_.size(), {});
         if (drawn_) {
             meet_drawn(options_.draw->kind.left_out);
@@ -126,14 +99,14 @@ public:
         begin(0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
         for (std::size_t side = 0; side < known_.data().slits.sides; ++side) {
-            std::vector<double> at_nodes = values_of(*spline_, lattice_, side);
+            std::vector<double> at_nodes = function().at_nodes(known_.lattice(), side, execution_);
             for (double& value : at_nodes)
                 value *= unit;
-            const std::vector<double> smooth = balanced(at_nodes, lattice_, execution_);
+            const std::vector<double> smooth = balanced(at_nodes, known_.lattice(), execution_);
             out.values.insert(out.values.end(), smooth.begin(), smooth.end());
         }
         make_same(out.values);
-        for (const double level : levels())
+        for (const double level : function().levels())
             out.levels.push_back(unit * level);
         out.kind = kind();
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
@@ -142,7 +115,7 @@ public:
         std::vector<char> kept(known_.data().bounds.size(), 1);
         for (const std::int64_t bound : out.bounds_missed)
             kept[static_cast<std::size_t>(bound)] = 0;
-        keep_bounds(lattice_, known_.data(), kept, out.levels, out.values);
+        keep_bounds(known_.lattice(), known_.data(), kept, out.levels, out.values);
         make_same(out.values);
         return out;
     }
@@ -168,7 +141,7 @@ private:
             numbers.steps.size() * numbers.dimensions % numbers.directions.size() != 0 ||
             numbers.dip_errors.size() != 2 * known_.data().dips.size())
             throw InputError("option", "a function is drawn of numbers for each line and dip");
-        const double rough = kRough * 2 * half_spacing_;
+        const double rough = kRough * 2 * known_.half_spacing();
         drawn_.emplace(likely_.smoothness(), kind.scale, 1 + 2 * rough + farthest_lift(), rough,
                        numbers);
         begin(0.0, 0.7, "field through the data");
@@ -227,169 +200,13 @@ private:
         if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
     }
 
+    FrameFunction function() const { return {known_, *spline_, drawn_ ? &*drawn_ : nullptr}; }
+
     /// Nodes that are one place beyond tips get the value of the first of them.
     void make_same(std::vector<double>& values) const {
         const std::span<const std::int64_t> same = known_.data().slits.same;
         for (std::size_t n = 0; n < same.size(); ++n)
             values[n] = values[static_cast<std::size_t>(same[n])];
-    }
-
-    double level_in(const Spline& spline, std::int32_t surface) const {
-        const std::size_t contact = known_.reference(surface);
-        return spline.of(
-            {{{known_.contacts()[contact], 1, true, known_.lift_of(contact)}}, {}, 0, false});
-    }
-
-    std::vector<double> levels() const {
-        std::vector<double> out;
-        for (std::int32_t k = 0; k < known_.data().surfaces; ++k) {
-            out.push_back(level_in(*spline_, k));
-            const std::size_t contact = known_.reference(k);
-            if (drawn_)
-                out.back() += drawn_->value(known_.contacts()[contact], known_.lift_of(contact));
-        }
-        return out;
-    }
-
-    /// A functional as splines of the order take it.
-    Functional for_order(const Likely& likely, const Functional& functional) const {
-        return likely.order == 2 ? functional.by_differences(half_spacing_) : functional;
-    }
-
-    /// The fixed functionals, of many dips only some.
-    std::vector<Functional> with_some_dips(std::span<const double> gaps) const {
-        std::vector<Functional> fixed = known_.fixed(gaps);
-        const std::size_t dips = known_.data().dips.size();
-        const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
-        std::vector<Functional> out;
-        for (std::size_t n = 0; n < fixed.size(); ++n) {
-            if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
-        }
-        return out;
-    }
-
-    /// These, and the sample.
-    std::vector<Functional> sampled(std::span<const double> gaps, const Likely& likely) const {
-        std::vector<Functional> out = with_some_dips(gaps);
-        for (Functional& functional : out)
-            functional = for_order(likely, functional);
-        for (const std::size_t n : sample_)
-            out.push_back(known_.on_surface(n));
-        return out;
-    }
-
-    /// Levels are free, unless the field would be far steeper between some of them than between
-    /// others: it is smoothest where it is flat, so that rough surfaces can draw their levels
-    /// together.
-    void find_likely() {
-        const auto look = [&] {
-            likely_ = most_likely(sampled(gaps_, {}), known_.data().normals, execution_);
-            choose_order();
-        };
-        look();
-        if (known_.data().surfaces < 3) return;
-        const Spline spline(sampled(gaps_, likely_), likely_.smoothness(), execution_);
-        double low = 1e300, high = 0;
-        const std::vector<double> apart = distances_between(known_, kSampledForDistance);
-        for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
-            const double steep = (level_in(spline, k + 1) - level_in(spline, k)) / apart[k];
-            low = std::min(low, steep);
-            high = std::max(high, steep);
-        }
-        if (high <= kUneven * low) return;
-        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift});
-        look();
-        find_gaps(apart, likely_);
-        look();
-    }
-
-    /// Between rough surfaces the function whose third derivatives are least overshoots, and has
-    /// critical points. That whose second ones are least bends at contacts instead. It is taken
-    /// where it has so many fewer of them that the data may be less likely.
-    void choose_order() {
-        const Likely rough{kIsotropic, {}, 2, likely_.lift};
-        if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
-    }
-
-    double log_probability(const Likely& likely) const {
-        std::vector<Functional> known;
-        for (const Functional& functional : with_some_dips(gaps_))
-            known.push_back(functional.by_differences(half_spacing_));
-        for (const std::size_t n : thinned(known_, kFirstCenters)) {
-            if (n != known_.reference(known_.surface_of(n))) known.push_back(known_.on_surface(n));
-        }
-        const Spline spline(known, likely.smoothness(), execution_);
-        const std::optional<double> likelihood = spline.log_likelihood();
-        if (!likelihood) return -HUGE_VAL;
-        const Lattice coarse = coarsened(lattice_, kMostCounted);
-        const auto points = critical_points(coarse, values_of(spline, coarse, 0), execution_);
-        return *likelihood - kPerCriticalPoint * static_cast<double>(points.size());
-    }
-
-    /// At the nodes of a lattice, in the frame, on a combination of sides of slits.
-    std::vector<double> values_of(const Spline& spline, const Lattice& lattice,
-                                  std::size_t side) const {
-        return lattice_values(
-            lattice,
-            [&](std::span<const Vec3> positions, std::span<double> values) {
-                std::vector<Vec3> local(positions.size());
-                std::transform(positions.begin(), positions.end(), local.begin(),
-                               [&](const Vec3& at) { return known_.frame().to_local(at); });
-                const std::vector<double> lifts = lifts_at(positions, side);
-                spline.values_at(local, lifts, values);
-                if (drawn_) drawn_->add_values(local, lifts, values);
-            },
-            execution_, known_.data().slits.count == 0 && !drawn_);
-    }
-
-    /// The further coordinates of positions in the lattice, linear between its nodes.
-    std::vector<double> lifts_at(std::span<const Vec3> positions, std::size_t side) const {
-        const Slits& slits = known_.data().slits;
-        std::vector<double> out;
-        if (slits.count == 0) return out;
-        const std::size_t first = side * lattice_.nodes();
-        for (const Vec3& at : positions) {
-            const auto corners = corners_at(lattice_, at);
-            for (std::size_t k = 0; k < slits.count; ++k) {
-                double sum = 0;
-                for (const auto& [node, weight] : corners)
-                    sum += weight * slits.nodes[(first + node) * slits.count + k];
-                out.push_back(sum);
-            }
-        }
-        return out;
-    }
-
-    /// Differences of levels with which the field is as steep between all surfaces.
-    /// @param apart  how far each surface is from the next
-    void find_gaps(const std::vector<double>& apart, const Likely& likely) {
-        const std::int32_t last = known_.data().surfaces - 1;
-        gaps_ = apart;
-        Spline spline(sampled(gaps_, likely), likely.smoothness(), execution_);
-        for (int round = 0; round < kGapRounds; ++round) {
-            const std::vector<double> steep = steepness(spline);
-            for (std::int32_t k = 0; k < last; ++k)
-                gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
-            spline.set_right(sampled(gaps_, likely));
-        }
-    }
-
-    /// How steep a field is on the two surfaces of each layer.
-    std::vector<double> steepness(const Spline& spline) const {
-        std::vector<std::vector<double>> on(known_.data().surfaces);
-        for (const std::size_t n : sample_)
-            on[known_.surface_of(n)].push_back(
-                length(spline.gradient(known_.contacts()[n], known_.lift_of(n))));
-        std::vector<double> out;
-        for (std::size_t k = 0; k + 1 < on.size(); ++k) {
-            std::vector<double> both = on[k];
-            both.insert(both.end(), on[k + 1].begin(), on[k + 1].end());
-            if (both.empty()) both.push_back(1);
-            const auto middle = both.begin() + static_cast<std::ptrdiff_t>(both.size() / 2);
-            std::nth_element(both.begin(), middle, both.end());
-            out.push_back(std::max(*middle, 1e-9));
-        }
-        return out;
     }
 
     void fit() {
@@ -402,7 +219,7 @@ private:
             error = std::sqrt(draw.kind.slope_error * draw.kind.scale);
         }
         for (const Functional& functional : known_.fixed(gaps_))
-            all.push_back(for_order(likely_, functional));
+            all.push_back(known_.for_order(likely_.order, functional));
         first_contact_ = all.size();
         for (std::size_t n = 0; n < is_center_.size(); ++n) {
             if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
@@ -433,11 +250,10 @@ private:
                 const auto lifts =
                     known_.data().slits.contacts.subspan(slits * from, slits * (to - from));
                 const std::span<double> values(out.data() + from, to - from);
-                spline_->values_at(here, lifts, values);
-                if (drawn_) drawn_->add_values(here, lifts, values);
+                function().values_at(here, lifts, values);
             },
             0.0);
-        const std::vector<double> level_of = levels();
+        const std::vector<double> level_of = function().levels();
         for (std::size_t n = 0; n < at.size(); ++n)
             out[n] = std::abs(out[n] - level_of[known_.surface_of(n)]);
         return out;
@@ -598,24 +414,6 @@ private:
         }
     }
 
-    void refuse_wrong_order() const {
-        const std::int32_t last = known_.data().surfaces - 1;
-        if (last < 1) return;
-        const Likely rough{kIsotropic, {1e-6, 1e-3}, 3, 1};
-        const Spline spline(sampled({}, rough), rough.smoothness(), execution_);
-        const double mean_gap = known_.total_gap() / last;
-        for (std::int32_t k = 0; k < last; ++k) {
-            if (level_in(spline, k + 1) - level_in(spline, k) >= -kWrongOrder * mean_gap) continue;
-            const auto older = known_.reference(k), younger = known_.reference(k + 1);
-            throw InputError("wrong_order",
-                             "surface " + std::to_string(k + 1) +
-                                 " lies on the older side of surface " + std::to_string(k),
-                             k,
-                             {static_cast<std::int64_t>(older), static_cast<std::int64_t>(younger)},
-                             known_.data().contacts[younger]);
-        }
-    }
-
     /// Most dips against which the field falls; or one whose nearest neighbors have its attitude,
     /// but the other polarity.
     void refuse_polarities() {
@@ -691,13 +489,10 @@ private:
         return out;
     }
 
-    Lattice lattice_;
-    double half_spacing_;  // in the frame: over which dips are measured where the order is 2
     const KnownData& known_;
     FieldOptions options_;
     Execution execution_;
     std::vector<char> is_center_;
-    std::vector<std::size_t> sample_;
     std::vector<double> gaps_;
     Likely likely_;
     std::vector<Inequality> inequalities_;
@@ -713,7 +508,7 @@ private:
 Field solve_field(const Lattice& lattice, const FieldData& data, const FieldOptions& options,
                   const Execution& execution) {
     const KnownData known(lattice, data);
-    Solution solution(lattice, known, options, execution);
+    Solution solution(known, options, execution);
     solution.solve();
     return solution.field();
 }

@@ -30,8 +30,9 @@ Frame::Frame(const Lattice& lattice) : middle{}, unit(0) {
     unit = std::sqrt(unit);
 }
 
-KnownData::KnownData(const Lattice& lattice, const FieldData& data) : data_(data), frame_(lattice) {
-    check(lattice);
+KnownData::KnownData(const Lattice& lattice, const FieldData& data)
+    : lattice_(lattice), data_(data), frame_(lattice) {
+    check();
     for (const Vec3& contact : data.contacts)
         contacts_.push_back(frame_.to_local(contact));
     find_references();
@@ -40,19 +41,23 @@ KnownData::KnownData(const Lattice& lattice, const FieldData& data) : data_(data
     hold_tilts();
 }
 
-void KnownData::check(const Lattice& lattice) const {
+double KnownData::half_spacing() const {
+    return 0.5 * std::ranges::min(lattice_.spacing) / frame_.unit;
+}
+
+void KnownData::check() const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (lattice.counts[axis] >= 2 && lattice.spacing[axis] > 0 &&
-            std::isfinite(lattice.spacing[axis]) && std::isfinite(lattice.origin[axis]))
+        if (lattice_.counts[axis] >= 2 && lattice_.spacing[axis] > 0 &&
+            std::isfinite(lattice_.spacing[axis]) && std::isfinite(lattice_.origin[axis]))
             continue;
         throw InputError("option",
                          "a lattice has two nodes along each axis or more, and spacings "
                          "above 0");
     }
     if (data_.surfaces < 1) throw InputError("option", "a field has one surface or more");
-    check_places(lattice, data_.contacts, "contact");
-    check_places(lattice, data_.dips, "dip");
-    check_places(lattice, data_.bounds, "bound");
+    check_places(data_.contacts, "contact");
+    check_places(data_.dips, "dip");
+    check_places(data_.bounds, "bound");
     if (data_.contact_surfaces.size() != data_.contacts.size() ||
         data_.normals.size() != data_.dips.size() ||
         data_.bound_below.size() != data_.bounds.size() ||
@@ -73,15 +78,15 @@ void KnownData::check(const Lattice& lattice) const {
                          -1, {static_cast<std::int64_t>(n)});
     }
     check_bounds();
-    check_slits(lattice);
+    check_slits();
 }
 
-void KnownData::check_slits(const Lattice& lattice) const {
+void KnownData::check_slits() const {
     const Slits& slits = data_.slits;
     const auto all_finite = [](std::span<const double> of) {
         return std::ranges::all_of(of, [](double each) { return std::isfinite(each); });
     };
-    const std::size_t nodes = slits.sides * lattice.nodes();
+    const std::size_t nodes = slits.sides * lattice_.nodes();
     const bool of_data = slits.contacts.size() == slits.count * data_.contacts.size() &&
                          slits.dips.size() == slits.count * data_.dips.size() &&
                          slits.dip_slopes.size() == 3 * slits.count * data_.dips.size() &&
@@ -121,12 +126,11 @@ SlopeAtom KnownData::slope(std::size_t dip, const Vec3& along) const {
     return out;
 }
 
-void KnownData::check_places(const Lattice& lattice, FieldData::Points points,
-                             const char* what) const {
+void KnownData::check_places(FieldData::Points points, const char* what) const {
     for (std::size_t n = 0; n < points.size(); ++n) {
         const Vec3& p = points[n];
         const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-        if (finite && lattice.contains(p)) continue;
+        if (finite && lattice_.contains(p)) continue;
         throw InputError(finite ? "outside" : "not_finite",
                          std::string(what) + " " + std::to_string(n) +
                              (finite ? " lies outside the lattice" : " is not finite"),

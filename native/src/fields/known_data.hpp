@@ -37,6 +37,7 @@ public:
     /// @throws InputError as solve_field()
     KnownData(const Lattice& lattice, const FieldData& data);
 
+    const Lattice& lattice() const { return lattice_; }
     const Frame& frame() const { return frame_; }
     const FieldData& data() const { return data_; }
     const std::vector<Vec3>& contacts() const { return contacts_; }
@@ -56,6 +57,13 @@ public:
         return Functional::difference(contacts_[contact], contacts_[from], lift_of(contact),
                                       lift_of(from));
     }
+    /// A functional as splines take it whose derivatives of an order are least: with order 2 they
+    /// have no slopes, and differences stand for them.
+    Functional for_order(int order, const Functional& functional) const {
+        return order == 2 ? functional.by_differences(half_spacing()) : functional;
+    }
+    /// Half of the least edge of the lattice, in the frame.
+    double half_spacing() const;
     /// The further coordinates of a contact.
     Lift lift_of(std::size_t contact) const { return lift(data_.slits.contacts, contact); }
     /// Levels that rise, polarities and bounds.
@@ -64,10 +72,10 @@ public:
     double total_gap() const;
 
 private:
-    void check(const Lattice& lattice) const;
-    void check_places(const Lattice& lattice, FieldData::Points points, const char* what) const;
+    void check() const;
+    void check_places(FieldData::Points points, const char* what) const;
     void check_bounds() const;
-    void check_slits(const Lattice& lattice) const;
+    void check_slits() const;
     void check_contradictions() const;
     void find_references();
     void add_dips();
@@ -77,6 +85,7 @@ private:
     SlopeAtom slope(std::size_t dip, const Vec3& along) const;
     Functional bound(std::size_t n, std::int32_t surface, double sign) const;
 
+    Lattice lattice_;
     FieldData data_;
     Frame frame_;
     std::vector<Vec3> contacts_;

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/likely_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "fields/frame_function.hpp"
+#include "fields/neighbors.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/fields/critical_points.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+constexpr int kGapRounds = 6;
+// A field that is so much steeper between some surfaces than between others has drawn levels
+// together.
+constexpr double kUneven = 4;
+// Levels that come out in the wrong order by more than this share of the mean gap are refused.
+constexpr double kWrongOrder = 0.5;
+constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kSampledForOrder = 600,
+                      kSampledForDistance = 2000;
+// What a critical point of the field through the sample costs, as a logarithm of likelihood, and on
+// how many nodes they are counted.
+constexpr double kPerCriticalPoint = 20;
+constexpr std::size_t kMostCounted = 50000;
+
+/// The box of a lattice with nodes farther apart, at most about `most` of them.
+Lattice coarsened(const Lattice& lattice, std::size_t most) {
+    Lattice out = lattice;
+    for (int step = 2; out.nodes() > most; ++step) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int steps = lattice.counts[axis] - 1;
+            out.counts[axis] = std::max(steps / step, 1) + 1;
+            out.spacing[axis] = lattice.spacing[axis] * steps / (out.counts[axis] - 1);
+        }
+    }
+    return out;
+}
+
+/// The search for it, by samples of the data.
+class LikelySearch {
+public:
+    LikelySearch(const KnownData& known, const Execution& execution)
+        : known_(known), execution_(execution), sample_(spread_pairs(known, kSampledPairs)) {}
+
+    LikelyField found() {
+        refuse_wrong_order();
+        look();
+        if (known_.data().surfaces < 3) return {likely_, gaps_};
+        const std::vector<double> apart = distances_between(known_, kSampledForDistance);
+        if (!is_uneven(apart)) return {likely_, gaps_};
+        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift});
+        look();
+        find_gaps(apart, likely_);
+        look();
+        return {likely_, gaps_};
+    }
+
+private:
+    void refuse_wrong_order() const {
+        const std::int32_t last = known_.data().surfaces - 1;
+        if (last < 1) return;
+        const Likely rough{kIsotropic, {1e-6, 1e-3}, 3, 1};
+        const Spline spline(sampled({}, rough.order), rough.smoothness(), execution_);
+        const std::vector<double> levels = FrameFunction(known_, spline).levels();
+        const double mean_gap = known_.total_gap() / last;
+        for (std::int32_t k = 0; k < last; ++k) {
+            if (levels[k + 1] - levels[k] >= -kWrongOrder * mean_gap) continue;
+            const auto older = known_.reference(k), younger = known_.reference(k + 1);
+            throw InputError("wrong_order",
+                             "surface " + std::to_string(k + 1) +
+                                 " lies on the older side of surface " + std::to_string(k),
+                             k,
+                             {static_cast<std::int64_t>(older), static_cast<std::int64_t>(younger)},
+                             known_.data().contacts[younger]);
+        }
+    }
+
+    void look() {
+        likely_ = most_likely(sampled(gaps_, 3), known_.data().normals, execution_);
+        choose_order();
+    }
+
+    /// @param apart  how far each surface is from the next
+    bool is_uneven(const std::vector<double>& apart) const {
+        const Spline spline(sampled(gaps_, likely_.order), likely_.smoothness(), execution_);
+        const std::vector<double> levels = FrameFunction(known_, spline).levels();
+        double low = 1e300, high = 0;
+        for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+            const double steep = (levels[k + 1] - levels[k]) / apart[k];
+            low = std::min(low, steep);
+            high = std::max(high, steep);
+        }
+        return high > kUneven * low;
+    }
+
+    /// The fixed functionals, of many dips only some.
+    std::vector<Functional> with_some_dips(std::span<const double> gaps) const {
+        std::vector<Functional> fixed = known_.fixed(gaps);
+        const std::size_t dips = known_.data().dips.size();
+        const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
+        std::vector<Functional> out;
+        for (std::size_t n = 0; n < fixed.size(); ++n) {
+            if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
+        }
+        return out;
+    }
+
+    /// These, and the sample.
+    std::vector<Functional> sampled(std::span<const double> gaps, int order) const {
+        std::vector<Functional> out = with_some_dips(gaps);
+        for (Functional& functional : out)
+            functional = known_.for_order(order, functional);
+        for (const std::size_t n : sample_)
+            out.push_back(known_.on_surface(n));
+        return out;
+    }
+
+    /// Between rough surfaces the function whose third derivatives are least overshoots, and has
+    /// critical points. That whose second ones are least bends at contacts instead. It is taken
+    /// where it has so many fewer of them that the data may be less likely.
+    void choose_order() {
+        const Likely rough{kIsotropic, {}, 2, likely_.lift};
+        if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
+    }
+
+    double log_probability(const Likely& likely) const {
+        std::vector<Functional> known;
+        for (const Functional& functional : with_some_dips(gaps_))
+            known.push_back(known_.for_order(2, functional));
+        for (const std::size_t n : thinned(known_, kSampledForOrder)) {
+            if (n != known_.reference(known_.surface_of(n))) known.push_back(known_.on_surface(n));
+        }
+        const Spline spline(known, likely.smoothness(), execution_);
+        const std::optional<double> likelihood = spline.log_likelihood();
+        if (!likelihood) return -HUGE_VAL;
+        const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
+        const std::vector<double> values =
+            FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
+        const auto points = critical_points(coarse, values, execution_);
+        return *likelihood - kPerCriticalPoint * static_cast<double>(points.size());
+    }
+
+    /// Differences of levels with which the field is as steep between all surfaces.
+    /// @param apart  how far each surface is from the next
+    void find_gaps(const std::vector<double>& apart, const Likely& likely) {
+        const std::int32_t last = known_.data().surfaces - 1;
+        gaps_ = apart;
+        Spline spline(sampled(gaps_, likely.order), likely.smoothness(), execution_);
+        for (int round = 0; round < kGapRounds; ++round) {
+            const std::vector<double> steep = steepness(spline);
+            for (std::int32_t k = 0; k < last; ++k)
+                gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
+            spline.set_right(sampled(gaps_, likely.order));
+        }
+    }
+
+    /// How steep a field is on the two surfaces of each layer.
+    std::vector<double> steepness(const Spline& spline) const {
+        std::vector<std::vector<double>> on(known_.data().surfaces);
+        for (const std::size_t n : sample_)
+            on[known_.surface_of(n)].push_back(
+                length(spline.gradient(known_.contacts()[n], known_.lift_of(n))));
+        std::vector<double> out;
+        for (std::size_t k = 0; k + 1 < on.size(); ++k) {
+            std::vector<double> both = on[k];
+            both.insert(both.end(), on[k + 1].begin(), on[k + 1].end());
+            if (both.empty()) both.push_back(1);
+            const auto middle = both.begin() + static_cast<std::ptrdiff_t>(both.size() / 2);
+            std::nth_element(both.begin(), middle, both.end());
+            out.push_back(std::max(*middle, 1e-9));
+        }
+        return out;
+    }
+
+    const KnownData& known_;
+    Execution execution_;
+    std::vector<std::size_t> sample_;
+    Likely likely_;
+    std::vector<double> gaps_;
+};
+
+}  // namespace
+
+LikelyField likely_field(const KnownData& known, const Execution& execution) {
+    return LikelySearch(known, execution).found();
+}
+
+}  // namespace realmodel::fields

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "fields/anisotropy.hpp"
+#include "fields/known_data.hpp"
+#include "realmodel/base/execution.hpp"
+
+namespace realmodel::fields {
+
+/// The kind of field that data are most likely to be of.
+struct LikelyField {
+    Likely likely;
+    std::vector<double> gaps;  ///< differences of the levels; none: they are free
+};
+
+/// Levels are free, unless the field would be far steeper between some of them than between
+/// others: it is smoothest where it is flat, so that rough surfaces can draw their levels together.
+/// @throws InputError wrong_order: a surface lies on the wrong side of the next
+LikelyField likely_field(const KnownData& known, const Execution& execution);
+
+}  // namespace realmodel::fields
