@@ -29,7 +29,7 @@ from realmodel.bl.host import versions  # noqa: E402
 IMAGES = ROOT / "docs" / "images" / "guide"
 THUMBNAILS, SIDE = ROOT / "addon" / "realmodel" / "previews" / "filling.jpg", 128  # pixels
 SIZE = (900, 560)
-RAYS, SECONDS = 10, 200.0  # of a pixel, and of a picture at most
+RAYS, SECONDS = 10, 600.0  # of a pixel, and of a picture at most
 
 
 def boulder():

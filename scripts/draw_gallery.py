@@ -170,7 +170,7 @@ def fold(folder):
     """A fold that lies on its side, cut open along its dip: beds that are met three times."""
     from realmodel.core.display import polygon_mesh
 
-    model, picture = sample("recumbent_fold", folder)
+    model, picture = sample("recumbent_fold", folder, finer=1.7)
     half = model.cut_by_plane((0.0, 330.0, 0.0), (0.0, 1.0, 0.0)).above
     picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
     picture.sun = math.radians(140.0), math.radians(42.0)

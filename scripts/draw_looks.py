@@ -29,7 +29,7 @@ SMALL = (320, 260)  # in the sheet
 COLUMNS = 4
 PREVIEW = 128  # pixels: side of a preview
 WIDE = 30.0  # the block
-RAYS, SECONDS = 12, 60.0
+RAYS, SECONDS = 12, 300.0
 EXPOSURE = 0.2
 INK = (34, 38, 46)
 

@@ -77,11 +77,12 @@ def modes(walk):
     pictures.append(labeled(viewed(walk), "Section"))
     side_by_side(pictures, walk.folder / "view_modes.png", 3, 2)
     bpy.ops.realmodel.section_remove()
-    for stage in (3, 6, 10):
+    frame(walk)
+    for stage in (3, 6, 9, 10):
         group.stage = stage
         yield from settled(walk)
         pictures.append(labeled(viewed(walk), f"Stage {stage}: {group.rocks[0].surfaces[stage].name}"))
-    side_by_side(pictures[-3:], walk.folder / "stages.png", 3, 2)
+    side_by_side(pictures[-4:], walk.folder / "stages.png", 2, 2)
 
 
 def modes_of(group):
@@ -112,8 +113,10 @@ def csv(walk):
     guide_scenes.import_tables()
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
-    fill_view(walk, guide_scenes.visible_meshes())
+    walk.area.spaces.active.overlay.show_floor = True  # beneath points that would hang in the air
+    fill_view(walk, guide_scenes.visible_meshes(), elevation=math.radians(40.0))
     yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    walk.area.spaces.active.overlay.show_floor = False
     guide_scenes.settle_rock()
     yield from build(walk)
     bpy.context.scene.realmodel.rocks[0].region.hide_set(True)  # a line that lies on the walls
@@ -126,8 +129,10 @@ def quality(walk):
     import bpy
     from driver import read_picture
 
-    yield from example(walk, "castle_hill")
-    bpy.context.scene.realmodel.rocks[0].active_surface = 9
+    guide_scenes.import_tables()
+    guide_scenes.settle_rock()
+    yield from build(walk)
+    bpy.context.scene.realmodel.rocks[0].active_surface = 1
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):

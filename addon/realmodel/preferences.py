@@ -72,6 +72,7 @@ class RealModelPreferences(bpy.types.AddonPreferences):
             column = layout.column(heading=heading)
             for name in names:
                 column.prop(self, name)
+        layout.operator("realmodel.install_looks", icon="ASSET_MANAGER")
 
 
 def current():

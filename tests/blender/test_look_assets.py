@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The asset library of the rock looks."""
+"""The asset library of the rock looks and of the presets of Fill with Strata."""
 
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops
-from realmodel.bl.shading import look_assets, looks
+from realmodel.bl.shading import look_assets, looks, strata_presets
 from realmodel.core.project.looks import LOOKS
 
 
@@ -33,18 +33,32 @@ class LookAssets(PanelCase):
         path = self.folder / look_assets.FILE
         self.assertLess(path.stat().st_size, 2e6)
         with bpy.data.libraries.load(str(path), assets_only=True) as (found, wanted):
-            self.assertEqual(sorted(found.materials), sorted(look.label for look in LOOKS.values()))
+            known = [look.label for look in LOOKS.values()]
+            known += [f"{label} Strata" for label, _ in strata_presets.PRESETS.values()]
+            self.assertEqual(sorted(found.materials), sorted(known))
             wanted.materials = found.materials
         catalogs = (self.folder / look_assets.CATALOGS).read_text()
         seen = set()
         for material in wanted.materials:
-            self.assertIn(f"{material.asset_data.catalog_id}:Rock Looks:", catalogs)
-            self.assertEqual(LOOKS[material[looks.KEY]].label, material.name)
+            if (preset := material.get(strata_presets.KEY)) is None:
+                self.assertIn(f"{material.asset_data.catalog_id}:Rock Looks:", catalogs)
+                self.assertEqual(LOOKS[material[looks.KEY]].label, material.name)
+            else:
+                self.assertIn(f"{material.asset_data.catalog_id}:Strata:", catalogs)
+                self.assertEqual(f"{strata_presets.PRESETS[preset][0]} Strata", material.name)
             pixels = np.array(material.preview.image_pixels_float[:])
             self.assertEqual(len(pixels), 4 * 128 * 128)
             self.assertGreater(pixels.reshape(-1, 4)[:, :3].std(), 0.02)
             seen.add(round(float(pixels.mean()), 5))
-        self.assertEqual(len(seen), len(LOOKS))
+        self.assertEqual(len(seen), len(known))
+
+    def test_a_mesh_has_the_preset_of_its_material(self):
+        bpy.ops.mesh.primitive_cube_add()
+        item = bpy.context.object
+        self.assertIsNone(strata_presets.of_item(item))
+        for material in (bpy.data.materials.new("plain"), strata_presets.material("OVERTURNED")):
+            item.data.materials.append(material)
+        self.assertEqual(strata_presets.of_item(item), "OVERTURNED")
 
     def test_a_material_has_layers_on_an_object_that_has_none(self):
         """Its laminae follow the height in the object."""

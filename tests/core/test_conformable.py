@@ -118,3 +118,17 @@ def test_in_each_compartment_its_own_data_count():
     found = model.interpolations[0].variogram
     assert found.sill < 100**2
     assert model.interpolations[1].variogram.range == found.range
+
+
+def test_a_faulted_succession_is_proposed():
+    """As far as it lies on one side of the fault."""
+    surfaces = [*automatic([60] * 3, 2), unconformity()]
+    for surface in surfaces[:3]:
+        surface.points[surface.points[:, 1] > 500, 2] += 400
+    trace = np.array([[-100.0, 500], [1100, 500]])
+    fault = Fault("F", trace=trace, dip=90, dip_direction=0, youngest="S2")
+    model = build(Project("p", [rock_of(surfaces)], faults=[fault]))
+    (text,) = [each.text for each in model.warnings if each.kind == "series"]
+    assert text.startswith(
+        "surfaces 'S0', 'S1' and 'S2' are conformable: a contact that is left out is estim"
+    )

@@ -116,6 +116,12 @@ def test_auto_by_number_and_spread():
     assert interpolate(tilted, NODES, "auto").method == "plane"
 
 
+def test_auto_names_points_that_contradict_one_another_by_their_own_numbers():
+    points = [[0, 0, 1], [9, 0, 2], [0, 0, 1], [0, 9, 3], [5, 5, 0], [5, 5, 9.0]]
+    with pytest.raises(InputRefused, match="points 4 and 5 have the same position"):
+        interpolate(points, [[1.0, 1.0]], method="auto")
+
+
 def test_auto_keeps_extrapolate_and_takes_no_option_of_others():
     result = interpolate(POINTS, NODES, "auto", extrapolate="none")
     assert np.isnan(result.z).mean() == result.extrapolated > 0

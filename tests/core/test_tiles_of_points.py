@@ -15,6 +15,8 @@ from realmodel.core.surfaces.local_heights import LocalHeights, local_surfaces
 from realmodel.core.tiles.windows import PointWindows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
+from test_conformable import automatic
+from test_series_of_sheets import rock_of
 from tiled_models import OUTLINE, assert_same_blocks, assert_same_warnings
 
 pytestmark = pytest.mark.usefixtures("tiles_in_this_process")
@@ -318,6 +320,13 @@ def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):
     assert_same_heights(tiled, whole)
     assert_same_warnings(tiled, whole)
     assert [surface.method for surface in project.rocks[0].surfaces] == ["auto"] * 4
+
+
+def test_what_auto_proposes_is_said_of_tiles_too(tmp_path):
+    project = Project("p", [rock_of(automatic([15, 15, 15], 4))])
+    tiled = build_tiles(project, tmp_path / "t", (600, 1100))
+    assert [each.kind for each in tiled.warnings].count("series") == 1
+    assert_same_warnings(tiled, build(project))
 
 
 def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):

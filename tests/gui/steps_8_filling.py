@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 from realmodel.bl.host import thumbnails
 from realmodel.bl.objects import meshes
+from realmodel.bl.shading import strata_presets
 from steps_1_panel import idle
 from steps_3_import import invoked
 
@@ -56,11 +57,14 @@ def preview_and_cancel(walk):
 
 
 def fill_and_undo(walk):
-    """Enter makes the beds, light and camera; Ctrl-Z once takes them all away."""
+    """The dialog begins with the preset of the mesh's material, an asset. Enter makes the beds, light and
+    camera; Ctrl-Z once takes them all away."""
+    bpy.data.objects["Boulder"].data.materials.append(strata_presets.material("FAULTED"))
+    bpy.ops.ed.undo_push(message="material")
     scene = bpy.context.scene
     startup = scene.camera.name, scene.world.name, scene.render.engine
     walk.over_viewport()
-    invoked(walk, bpy.ops.realmodel.fill_with_strata, preset="FAULTED")
+    invoked(walk, bpy.ops.realmodel.fill_with_strata)
     yield walk.redrawn(4)
     region = walk.region("WINDOW")
     walk.move(region.x + 30, region.y + 30)  # over no field of the dialog, which Enter would open

@@ -11,6 +11,8 @@ from ..bl.host import thumbnails
 from ..bl.jobs.fill_job import FilledShape, FillJob
 from ..bl.jobs.fill_preview import FillPreview
 from ..bl.objects.boolean_job import VOLUME
+from ..bl.shading import strata_presets
+from ..bl.shading.strata_presets import PRESETS
 from ..core import RealModelError, Strata
 from ..core.filling import PALETTES
 from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT
@@ -18,55 +20,12 @@ from .background import InBackground
 from .pictures import by_hand, set_up_first
 from .reporting import not_building, object_mode
 
-_PLAIN = {
-    "beds": 12,
-    "thickness": 0.0,
-    "variation": 0.5,
-    "dip": 0.0,
-    "fold_amplitude": 0.0,
-    "fold_wavelength": 0.5,
-    "axial_dip": math.radians(UPRIGHT),
-    "faults": 0,
-    "throw": 0.1,
-    "unconformity": 0.0,
-    "gap": 0.0,
-    "pegs": 0,
-}
-# What a preset sets, beside _PLAIN
-_PRESETS = {
-    "CLIFF": ("Cliff", {"beds": 14, "dip": math.radians(6), "palette": "CLIFF"}),
-    "CANYON": ("Canyon", {"beds": 24, "variation": 0.9, "dip": math.radians(2), "palette": "CANYON"}),
-    "ISLAND": ("Island", {"beds": 9, "dip": math.radians(18), "unconformity": 0.6, "palette": "VOLCANIC"}),
-    "FOLDED": (
-        "Folded",
-        {"beds": 16, "dip": math.radians(10), "fold_amplitude": 0.15, "palette": "DESERT"},
-    ),
-    "OVERTURNED": (
-        "Overturned",
-        {
-            "beds": 16,
-            "dip": math.radians(4),
-            "fold_amplitude": 0.25,
-            "fold_wavelength": 0.7,
-            "axial_dip": math.radians(30),
-            "palette": "CLIFF",
-        },
-    ),
-    "FAULTED": (
-        "Faulted",
-        {"beds": 14, "dip": math.radians(12), "faults": 3, "throw": 0.12, "palette": "COAL"},
-    ),
-    "PRINT": ("Print in Parts", {"beds": 4, "gap": 0.004, "pegs": 2, "palette": "DESERT"}),
-}
-_PICTURES = "filling.jpg"  # of the presets in their order, made by scripts/draw_filling.py
 _PICTURE_SIZE = 3.0  # in heights of a button
 
 
 def _set_preset(self, _context):
-    values = _PRESETS.get(self.preset)
-    if values is not None:
-        for name, value in (_PLAIN | values[1]).items():
-            setattr(self, name, value)
+    for name, value in strata_presets.values(self.preset).items():
+        setattr(self, name, value)
 
 
 def _a_mesh(context):
@@ -106,7 +65,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         description="Values to begin with; a choice replaces those below",
         items=(
             ("NONE", "None", "The values below"),
-            *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in _PRESETS.items()),
+            *((key, name, f"Values for {name.lower()} strata") for key, (name, _) in PRESETS.items()),
         ),
         default="NONE",
         update=_set_preset,
@@ -206,9 +165,12 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     _problem = ""
 
     def invoke(self, context, event):
+        item = context.active_object
+        given = strata_presets.of_item(item)
+        if given is not None and not self.properties.is_property_set("preset"):
+            self.preset = given
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        item = context.active_object
         try:
             self._shape = FilledShape.of(item, context.evaluated_depsgraph_get())
             self._shape.closed(self.base_depth)
@@ -229,9 +191,11 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         layout = self.layout
         layout.label(text="Preset")
         grid = layout.grid_flow(row_major=True, columns=4, even_columns=True)
-        for number, key in enumerate(_PRESETS):
+        for number, key in enumerate(PRESETS):
             cell = grid.column(align=True)
-            cell.template_icon(icon_value=thumbnails.icon(_PICTURES, number), scale=_PICTURE_SIZE)
+            cell.template_icon(
+                icon_value=thumbnails.icon(strata_presets.PICTURES, number), scale=_PICTURE_SIZE
+            )
             cell.prop_enum(self, "preset", key)
         layout.use_property_split = True
         groups = (

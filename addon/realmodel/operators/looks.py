@@ -155,9 +155,10 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
-    """Make an asset library of the looks and add it to the preferences: materials to drag onto any object"""
+    """Make an asset library of the looks and of the presets of Fill with Strata, and add it to the
+    preferences: materials to drag onto any object"""
 
-    bl_label = "Install Rock Looks"
+    bl_label = "Install Assets"
     bl_options = {"REGISTER"}
 
     directory: StringProperty(

@@ -90,15 +90,20 @@ const bool kExtended = is_extended();
     return {value, error == 0 && value == 0 ? 0 : error + kExtendedUnderflow};
 }
 
-/// The double nearest to the true value, or nothing where the bound leaves two to choose from.
-std::optional<double> nearest(Extended value, double error) {
-    const double slack = error == 0 ? 0
-                                    : error * (kBoundSlack) + 2 * kExtendedUnit * size(value) +
-                                          8 * kExtendedUnderflow;
-    const auto up = static_cast<double>(value + slack);
-    const auto down = static_cast<double>(value - slack);
+/// The double that all numbers are nearest to which are within a bound of one, if they are.
+[[gnu::always_inline]] inline std::optional<double> nearest_within(Extended value, double bound) {
+    const auto up = static_cast<double>(value + bound);
+    const auto down = static_cast<double>(value - bound);
     if (up == down && std::isfinite(up)) return up + 0.0;  // 0 is not negative
     return std::nullopt;
+}
+
+/// The double nearest to the true value, or nothing where the bound leaves two to choose from.
+std::optional<double> nearest(Extended value, double error) {
+    return nearest_within(value, error == 0
+                                     ? 0
+                                     : error * (kBoundSlack) + 2 * kExtendedUnit * size(value) +
+                                           8 * kExtendedUnderflow);
 }
 
 /// The normal of a plane.
@@ -130,34 +135,57 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
     return {value, kExtendedUnit * size(value)};
 }
 
-/// Which share of the way along the first of two edges lies before their crossing.
-[[gnu::always_inline]] inline ExtendedInterval share_of_way(const PlanArrangement& g, const Line& l,
-                                                            const Line& m) {
+/// Which share of the way along an edge lies before its crossing with another one. Bounds are found
+/// in doubles alone: to ask an extended number for its size takes longer than to calculate with it.
+struct Share {
+    Extended value;
+    double most, error;  ///< bounds of its size and of its error
+};
+[[gnu::always_inline]] inline Share share_of_way(const PlanArrangement& g, const Line& l,
+                                                 const Line& m) {
     const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
     const Point &s = g.point(m.ends()[0]), &t = g.point(m.ends()[1]);
-    const Extended along_x = Extended(p.x) - o.x, along_y = Extended(p.y) - o.y;
-    const Extended other_x = Extended(t.x) - s.x, other_y = Extended(t.y) - s.y;
-    const Extended way_x = Extended(s.x) - o.x, way_y = Extended(s.y) - o.y;
-    return quotient(determinant(way_x, other_y, way_y, other_x),
-                    determinant(along_x, other_y, along_y, other_x));
+    const auto across = [&](auto number, const Point& to) {  // the way from o to there x the other
+        using Number = decltype(number);
+        return std::array{(Number(to.x) - o.x) * (Number(t.y) - s.y),
+                          (Number(to.y) - o.y) * (Number(t.x) - s.x)};
+    };
+    const auto [dx, dy] = across(0.0, p);
+    const auto [nx, ny] = across(0.0, s);
+    const double size = std::abs(dx) + std::abs(dy), around = std::abs(nx) + std::abs(ny);
+    const double least = std::abs(dx - dy) - (kDeterminant * size + kTermUnderflow);
+    if (!(least > 0)) return {0, 0, HUGE_VAL};
+    const double inverse = kBoundSlack / least;
+    const double most = (std::abs(nx - ny) + kDeterminant * around + kTermUnderflow) * inverse;
+    const auto d = across(Extended{}, p), n = across(Extended{}, s);
+    return {(n[0] - n[1]) / (d[0] - d[1]), most,
+            kExtendedUnit * (5 * around * inverse + most * (1 + 5 * size * inverse))};
 }
 
-/// That share of a difference of two doubles.
-[[gnu::always_inline]] inline ExtendedInterval part_of(const ExtendedInterval& share,
-                                                       Extended along) {
-    const Extended value = share.value * along;
-    const bool exact = along == 0 || (share.error == 0 && value == 0);
-    return ExtendedInterval{value, exact
-                                       ? 0
-                                       : size(along) * share.error * (kBoundSlack) +
-                                             3 * kExtendedUnit * size(value) + kExtendedUnderflow};
+/// That share of the way from one double to another.
+[[gnu::always_inline]] inline ExtendedInterval part_of(const Share& share, double from, double to) {
+    const double way = std::abs(to - from);
+    return {share.value * (Extended(to) - from),
+            way == 0 ? 0
+                     : way * (share.error + 3 * kExtendedUnit * share.most) * kBoundSlack +
+                           kTermUnderflow};
+}
+
+/// The double nearest to where one is after that share of the way.
+[[gnu::always_inline]] inline std::optional<double> nearest_on_way(const Share& share, double from,
+                                                                   double to) {
+    if (!kExtended) return std::nullopt;
+    const ExtendedInterval part = part_of(share, from, to);
+    const double most = std::abs(from) + std::abs(to - from) * share.most;
+    return nearest_within(from + part.value,
+                          part.error == 0 ? 0 : part.error + 3 * kExtendedUnit * most);
 }
 
 /// Where two edges cross, relative to the first one's first vertex.
 NearPoint near_crossing(const PlanArrangement& g, const Line& l, const Line& m) {
     const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
-    const ExtendedInterval share = share_of_way(g, l, m);
-    return {l.ends()[0], part_of(share, Extended(p.x) - o.x), part_of(share, Extended(p.y) - o.y)};
+    const Share share = share_of_way(g, l, m);
+    return {l.ends()[0], part_of(share, o.x, p.x), part_of(share, o.y, p.y)};
 }
 
 }  // namespace
@@ -192,6 +220,14 @@ std::optional<double> nearest_sum(double from, const ExtendedInterval& value) {
     const Extended whole = from + value.value;
     const bool exact = value.error == 0 && value.value == 0;
     return nearest(whole, exact ? 0 : value.error + kExtendedUnit * size(whole));
+}
+
+std::array<std::optional<double>, 2> nearest_crossing(const PlanArrangement& g, const Line& l,
+                                                      const Line& m) {
+    keep_extended();
+    const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
+    const Share share = share_of_way(g, l, m);
+    return {nearest_on_way(share, o.x, p.x), nearest_on_way(share, o.y, p.y)};
 }
 
 std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const NearPoint& p) {
@@ -234,7 +270,7 @@ std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId 
     if (s.plan != (is_forward ? low_end : high_end) || t.plan != (is_forward ? high_end : low_end))
         return std::nullopt;
     const double low = is_forward ? s.z : t.z, high = is_forward ? t.z : s.z;
-    return nearest_sum(low, part_of(share_of_way(g, edge, other), Extended(high) - low));
+    return nearest_on_way(share_of_way(g, edge, other), low, high);
 }
 
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {

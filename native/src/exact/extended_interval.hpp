@@ -22,6 +22,10 @@ NearLine near_line(const PlanArrangement& geometry, const Line& line, VertexId o
 /// error leaves two to choose from.
 std::optional<double> nearest_sum(double from, const ExtendedInterval& value);
 
+/// The coordinates of the crossing of two input edges, likewise.
+std::array<std::optional<double>, 2> nearest_crossing(const PlanArrangement& geometry,
+                                                      const Line& first, const Line& second);
+
 /// The height of a plane above a point, likewise.
 std::optional<double> near_height(const PlanArrangement& geometry, PlaneId plane,
                                   const NearPoint& point);

@@ -118,9 +118,10 @@ bool LocalArrangement::on_trace_by_name(PlaneId a, PlaneId b, const Point& p) co
         return (c[0] == from || c[1] == from || c[2] == from) &&
                (c[0] == to || c[1] == to || c[2] == to);
     };
-    if (p.edge.is_edge()) {
+    const Piercing by = shared_.piercing(line(p.first), line(p.second));
+    if (by.edge.is_edge()) {
         const auto meets = [&](PlaneId plane) {
-            return has(plane, p.edge) || has(plane, p.pierced);
+            return has(plane, by.edge) || has(plane, by.pierced);
         };
         if (meets(a) && meets(b)) return true;
     }
@@ -245,24 +246,7 @@ PointId LocalArrangement::crossing(LineId a, LineId b) {
 }
 
 PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
-    const Line la = line(a), lb = line(b);
-    Point p;
-    p.first = a;
-    p.second = b;
-    if (la.is_edge() != lb.is_edge()) {
-        const Line &edge = la.is_edge() ? la : lb, &trace_line = la.is_edge() ? lb : la;
-        const auto standing = [&](PlaneId plane) {
-            const EdgeOrPlane above = shared_.plane(plane).above(edge);
-            return above.is_edge() ? above : EdgeOrPlane(plane);
-        };
-        const auto [first, second] = trace_line.planes();
-        EdgeOrPlane one = standing(first), other = standing(second);
-        if (!one.is_edge() || (other.is_edge() && other < one)) std::swap(one, other);
-        if (one.is_edge()) {
-            p.edge = one;
-            p.pierced = other;
-        }
-    }
+    NamedPoint p({a, b}, shared_.piercing(line(a), line(b)));
     return points_.find_or_add(p, [&](Point& at) { locate(at); });
 }
 

@@ -123,7 +123,7 @@ protected:
     }
 
     const PlanArrangement& shared_;
-    LocalThings<PointId, Point> points_;
+    LocalThings<PointId, NamedPoint> points_;
 
 private:
     LineId add_line_by_name(LineId id);

@@ -2,6 +2,7 @@
 #include "exact/plan_arrangement.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "exact/arithmetic.hpp"
@@ -75,6 +76,7 @@ PlaneId PlanArrangement::add_plane(const std::array<SpaceId, 3>& corner) {
 }
 
 PlaneId PlanArrangement::make_planes(std::size_t count) {
+    assert(plane_filters_.size() == planes_.size());
     check_ids(planes_.size() + count, "triangles");
     const PlaneId first(planes_.size());
     planes_.resize(planes_.size() + count);
@@ -82,7 +84,7 @@ PlaneId PlanArrangement::make_planes(std::size_t count) {
     return first;
 }
 
-void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner) {
+PlaneFilter PlanArrangement::filter_of(const std::array<SpaceId, 3>& corner) const {
     const auto position = [&](int i) {
         const Point& p = point(space(corner[i]).plan);
         return std::array{p.x, p.y};
@@ -108,9 +110,13 @@ void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& cor
     };
     filter.error_x = error_of(filter.gx, error_a);
     filter.error_y = error_of(filter.gy, error_b);
+    return filter;
+}
+
+void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner) {
     planes_[index(plane)] = {corner,
                              {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
-    plane_filters_[index(plane)] = filter;
+    plane_filters_[index(plane)] = filter_of(corner);
 }
 
 void PlanArrangement::freeze_vertices() {
@@ -150,6 +156,7 @@ void PlanArrangement::freeze_vertices() {
 void PlanArrangement::forget_names() {
     edges_of_vertex_ = {};
     line_table_ = point_table_ = {};
+    plane_filters_ = {};
 }
 
 void PlanArrangement::forget_all() {
@@ -157,7 +164,6 @@ void PlanArrangement::forget_all() {
     points_ = {};
     space_ = {};
     planes_ = {};
-    plane_filters_ = {};
     lines_ = {};
 }
 
@@ -191,11 +197,27 @@ LineId PlanArrangement::add_line(const Line& line) {
 
 PointId PlanArrangement::add_point(const Point& wanted) {
     const PointId next(points_.size());
-    const auto found = point_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
-        return point(PointId(number)).key();
+    const auto key = [&](const Point& p) {
+        return NamedPoint(p, piercing(line(p.first), line(p.second))).key();
+    };
+    const auto found = point_table_.insert(key(wanted), next.number(), [&](std::int32_t number) {
+        return key(point(PointId(number)));
     });
     if (found.is_new) set_point(append(0, 1).point, wanted);
     return PointId(found.number);
+}
+
+Piercing PlanArrangement::piercing(const Line& first, const Line& second) const {
+    if (first.is_edge() == second.is_edge()) return {};
+    const Line &edge = first.is_edge() ? first : second, &trace = first.is_edge() ? second : first;
+    const auto standing = [&](PlaneId id) {
+        const EdgeOrPlane above = plane(id).above(edge);
+        return above.is_edge() ? above : EdgeOrPlane(id);
+    };
+    const auto [lower, upper] = trace.planes();
+    EdgeOrPlane one = standing(lower), other = standing(upper);
+    if (!one.is_edge() || (other.is_edge() && other < one)) std::swap(one, other);
+    return one.is_edge() ? Piercing{one, other} : Piercing{};
 }
 
 PlanArrangement::Appended PlanArrangement::append(std::size_t lines, std::size_t points) {

@@ -155,21 +155,30 @@ inline double rounding_error(double size) {
 /// A plan point: an input vertex, or the crossing of two lines.
 struct Point {
     LineId first = kNone, second = kNone;  ///< none of an input vertex
-    /// Where an input edge pierces a plane: known by name, since the traces of both triangles
-    /// beside that edge run through it. Where the plane's triangle has an edge over the same plan
-    /// edge, that edge stands for the plane, as the triangles beside it share it too. Neither
-    /// elsewhere.
-    EdgeOrPlane edge, pierced;
-    double x = 0, y = 0;  ///< the doubles nearest to the true position
+    double x = 0, y = 0;                   ///< the doubles nearest to the true position
 
     /// Bound on the distance from the true position in x and in y.
     double error() const {
         return first == kNone ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
     }
-    /// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
+};
+
+/// Where an input edge pierces a plane: known by name, since the traces of both triangles beside
+/// that edge run through it. Where the plane's triangle has an edge over the same plan edge, that
+/// edge stands for the plane, as the triangles beside it share it too. Neither elsewhere.
+struct Piercing {
+    EdgeOrPlane edge, pierced;
+};
+
+/// A crossing with what names it: the edge and the plane or edge that it meets, or its two lines.
+struct NamedPoint : Point {
+    NamedPoint(const Point& point, const Piercing& piercing) : Point(point), by(piercing) {}
+
+    Piercing by;
+
     KeyTable::Key key() const {
-        const auto of_edge = edge.key(), of_pierced = pierced.key();
-        if (edge.is_edge()) return {of_edge[0], of_edge[1], of_pierced[0], of_pierced[1]};
+        const auto of_edge = by.edge.key(), of_pierced = by.pierced.key();
+        if (by.edge.is_edge()) return {of_edge[0], of_edge[1], of_pierced[0], of_pierced[1]};
         return {-1, std::min(first, second).number(), std::max(first, second).number(), 0};
     }
 };
@@ -263,8 +272,9 @@ public:
     /// then on none may be added.
     void freeze_vertices();
 
-    /// Gives back the memory that finds lines and points by name. No edge may be added any more;
-    /// other lines and points become new ones, whatever their names.
+    /// Gives back the memory that finds lines and points by name, and that of gradients, which are
+    /// found anew each time. No edge and no plane may be added any more; other lines and points
+    /// become new ones, whatever their names.
     void forget_names();
     /// Gives all memory back, for when nothing but the vertex count and the counts of decisions
     /// will be asked for.
@@ -323,8 +333,12 @@ public:
                            : trace_filter(l.planes()[0], l.planes()[1]);
     }
     const Point& point(PointId id) const { return points_[index(id)]; }
+    /// What an edge pierces at the crossing of two lines.
+    Piercing piercing(const Line& first, const Line& second) const;
     const Plane& plane(PlaneId id) const { return planes_[index(id)]; }
-    const PlaneFilter& plane_filter(PlaneId id) const { return plane_filters_[index(id)]; }
+    PlaneFilter plane_filter(PlaneId id) const {
+        return plane_filters_.empty() ? filter_of(plane(id).corner) : plane_filters_[index(id)];
+    }
     const SpaceVertex& space(SpaceId id) const { return space_[index(id)]; }
 
     LineFilter edge_filter(VertexId from, VertexId to) const;
@@ -359,6 +373,7 @@ private:
     Array<Plane> planes_;
     Array<PlaneFilter> plane_filters_;
     Array<Line> lines_;
+    PlaneFilter filter_of(const std::array<SpaceId, 3>& corner) const;
     LineId find_or_add_line(const Line& line, LineId next);
 
     KeyTable vertex_table_, space_table_;

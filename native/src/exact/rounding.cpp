@@ -11,13 +11,20 @@
 namespace realmodel::exact {
 
 void LocalArrangement::locate(Point& p) {
-    const NearPoint close = near(p);
-    const Point& from = shared_.point(close.origin);
-    auto x = nearest_sum(from.x, close.x);
-    auto y = nearest_sum(from.y, close.y);
+    const Line& l = line(p.first);
+    const Line& m = line(p.second);
+    std::optional<double> x, y;
+    if (l.is_edge() && m.is_edge()) {
+        const auto known = nearest_crossing(shared_, l, m);
+        x = known[0];
+        y = known[1];
+    } else {
+        const NearPoint close = near(p);
+        const Point& from = shared_.point(close.origin);
+        x = nearest_sum(from.x, close.x);
+        y = nearest_sum(from.y, close.y);
+    }
     if (!x || !y) {
-        const Line& l = line(p.first);
-        const Line& m = line(p.second);
         const VertexId origin = anchor(shared_, l);
         const Point& o = shared_.point(origin);
         const BallArithmetic in{shared_};

@@ -21,7 +21,8 @@ _STRETCH = "realmodel_stretch"  # on an object: the vertical exaggeration that i
 _MOST = 20_000  # data of a kind shown at most
 _LIFT = 1e-3  # of a map over the ground, of the size of all, against flickering
 _DISC = 0.025  # radius of a disc, of the size of all
-_RED_LARGER = 1.6  # than other points, so that they are seen around these
+_LARGER = 1.6  # contacts than vertices of a model, so that they are seen from far
+_RED_LARGER = 1.6 * _LARGER  # so that they are seen around contacts
 _TUBE, _SIDES = 0.009, 8  # of an interval that does not fit: radius, of the size of all
 
 
@@ -93,7 +94,7 @@ def _contacts(scene):
             material = colors.of_property(scene, of_block.get(name, 0)) if is_used else None
             places.append(group.places[number])
             materials.append(material or colors.plain_material(*_OFF))
-    _add_points(scene, CONTACTS, "Contacts", np.array(places).reshape(-1, 3), materials)
+    _add_points(scene, CONTACTS, "Contacts", np.array(places).reshape(-1, 3), materials, _LARGER)
 
 
 def _property_ids(scene):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An asset library of the rock looks: a .blend with a material of each, a catalog file, and its entry in the
-preferences. It is made by the Blender that is to use it, so it always fits."""
+"""An asset library of the rock looks and of the presets of Fill with Strata: a .blend with a material of
+each, a catalog file, and its entry in the preferences. It is made by the Blender that is to use it, so it
+always fits."""
 
 import uuid
 from pathlib import Path
@@ -11,27 +12,30 @@ from ...core.base.atomic import Outputs
 from ...core.project.looks import LOOKS
 from ..host import thumbnails, versions
 from ..objects import materials
-from . import looks
+from . import looks, strata_presets
 
-LIBRARY = "RealModel Rock Looks"
-FILE = "rock_looks.blend"
+LIBRARY = "RealModel"
+FILE = "realmodel_assets.blend"
 CATALOGS = "blender_assets.cats.txt"
-CATALOG = uuid.uuid5(uuid.NAMESPACE_URL, "realmodel:rock looks")  # the same in every library
+LOOKS_CATALOG, STRATA_CATALOG = "Rock Looks", "Strata"
+_IDS = {  # the same in every library
+    name: uuid.uuid5(uuid.NAMESPACE_URL, f"realmodel:{name.lower()}")
+    for name in (LOOKS_CATALOG, STRATA_CATALOG)
+}
 _PREVIEWS = "looks.jpg"  # made by scripts/draw_looks.py
-_CATALOG_TEXT = f"""# This is an Asset Catalog Definition file for Blender.
+_CATALOG_TEXT = """# This is an Asset Catalog Definition file for Blender.
 #
 # The first non-ignored line should be the version indicator.
 # Other lines are of the format "UUID:catalog/path/for/assets:simple catalog name"
 
 VERSION 1
 
-{CATALOG}:Rock Looks:Rock Looks
-"""
+""" + "".join(f"{number}:{name}:{name}\n" for name, number in _IDS.items())
 
 
 def default_folder():
     """The default folder of this user."""
-    return Path(bpy.utils.user_resource("DATAFILES", path="realmodel_rock_looks", create=True))
+    return Path(bpy.utils.user_resource("DATAFILES", path="realmodel_assets", create=True))
 
 
 def write(folder):
@@ -39,9 +43,14 @@ def write(folder):
     folder = Path(folder)
     made = []
     try:
-        previews = thumbnails.pictures(_PREVIEWS)
-        for number, (key, look) in enumerate(LOOKS.items()):
-            made.append(_asset(key, look, previews[number]))
+        for (key, look), preview in zip(LOOKS.items(), thumbnails.pictures(_PREVIEWS), strict=True):
+            made.append(_look(key, look))
+            _mark(made[-1], LOOKS_CATALOG, looks.says(key, look), ("rock", *look.words[:1]), preview)
+        previews = thumbnails.pictures(strata_presets.PICTURES)
+        for (key, (label, _)), preview in zip(strata_presets.PRESETS.items(), previews, strict=True):
+            made.append(strata_presets.material(key))
+            says = f"About what Fill with Strata makes with the preset {label}, with which it begins then"
+            _mark(made[-1], STRATA_CATALOG, says, ("strata",), preview)
         with Outputs() as outputs:
             with outputs.path(folder / FILE) as file:
                 bpy.data.libraries.write(str(file), set(made), compress=True)
@@ -62,18 +71,21 @@ def register(folder):
     return True
 
 
-def _asset(key, look, preview):
+def _look(key, look):
     material = bpy.data.materials.new(look.label)
     material.use_nodes = True
     materials.set_color(material, look.color)
     looks.apply(material, key, 1.0, 0, looks.UNITS)  # a texture unit is one meter
+    return material
+
+
+def _mark(material, catalog, description, tags, preview):
+    """Makes a material an asset. preview: (side, side, 4) its picture."""
     material.asset_mark()
-    material.asset_data.catalog_id = str(CATALOG)
-    material.asset_data.author = "RealModel"
-    material.asset_data.description = looks.says(key, look)
-    for tag in ("rock", *look.words[:1]):
-        material.asset_data.tags.new(tag, skip_if_exists=True)
+    data = material.asset_data
+    data.catalog_id, data.author, data.description = str(_IDS[catalog]), "RealModel", description
+    for tag in tags:
+        data.tags.new(tag, skip_if_exists=True)
     image = material.preview_ensure()
     image.image_size = preview.shape[1], preview.shape[0]
     image.image_pixels_float.foreach_set(preview.ravel())
-    return material

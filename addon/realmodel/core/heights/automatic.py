@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.algebra import principal_axes
+from ..base.work import native_module
 from ..settings.methods import METHODS, checked_options
 from . import bounded, from_neighbours
 from .interpolation import Result, Task, run_method
@@ -93,6 +94,7 @@ def choose(task: Task) -> tuple[Trial, str]:
     if len(places) < _FEW and spread[1] < _IN_LINE * spread[0] and task.dips is None:
         why = f"there are {len(places)} points, nearly in one line"
         return _trial(task, Candidate("plane", {})), why
+    native_module().mean_spacing(task.points)  # refuses points that contradict others, by their own numbers
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
     able = [each for each in (_OF_FEW if len(places) < _FEW else _CANDIDATES) if _is_able(each, task)]
     if len(able) == 1:

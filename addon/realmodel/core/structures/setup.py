@@ -19,10 +19,18 @@ from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
 from ..settings.series import FIELD
 from ..surfaces.field_data import left_out_warnings
-from ..surfaces.prepare import interpolate_rock, mesh_again, mesh_rock, read_rocks, settle_methods
+from ..surfaces.prepare import (
+    interpolate_rock,
+    mesh_again,
+    mesh_rock,
+    propose_series,
+    read_rocks,
+    settle_methods,
+)
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
+from ..surfaces.surface_heights import interpolation_order
 from ..surfaces.surface_input import Reader, read_each
 from .fields import make_fields, place_level_sets
 from .gaps import close_gaps, gap_widths, tops_of_faults
@@ -93,6 +101,7 @@ def _make_whole_sheets(
     for entry in work.share_out(inputs):
         numbers: Collection[int] = ()
         if flat is not None:
+            propose_series(work, entry, interpolation_order(entry.rock, stage))
             with work.part(0.0, _CHOSEN):
                 settle_methods(work, entry)
             numbers = flat(entry.rock)
@@ -159,6 +168,7 @@ def make_structures(
     inputs[0].warnings += _warnings_of_idle(structures)
     for entry in inputs:
         entry.warnings += left_out_warnings(entry)
+        propose_series(work, entry, interpolation_order(entry.rock, stage))
     if joins:
         for entry in inputs:
             structure = entry.divided()

@@ -259,13 +259,17 @@ def settle_methods(work: Work, entry: RockInput) -> None:
             settle_method(work, entry, number)
 
 
-def _propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> None:
-    """Adds warnings about surfaces of the method "auto" that are conformable."""
+def propose_series(work: Work, entry: RockInput, numbers: Collection[int]) -> None:
+    """Adds warnings about surfaces of the method "auto" that are conformable; with faults on either side."""
     chosen = sorted(number for number in numbers if entry.rock.surfaces[number].method == "auto")
     if len(chosen) < 2:
         return
+    sides = None
+    if (structure := entry.structure) is not None:
+        faults = structure.faults
+        sides = {each: np.where(faults.active(each), structure.points[each], 0) for each in chosen}
     with work.part(0.0, 0.0), work.phase(0.0, 1.0, "comparing surfaces"):
-        entry.warnings += proposals(work, entry.rock, chosen)
+        entry.warnings += proposals(work, entry.rock, chosen, sides)
 
 
 def interpolate_rock(
@@ -287,7 +291,7 @@ def interpolate_rock(
             entry.surfaces[number] = plan
     if not flat and entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
-        _propose_series(work, entry, waiting)
+        propose_series(work, entry, waiting)
     for number in work.share_out(waiting):
         with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number)

@@ -28,6 +28,9 @@ constexpr int kMostPasses = 6;         // over the last level, until what is lef
 constexpr double kRounding = 1e-14;    // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;    // of a row: less left by others asks for absurd corrections
 constexpr double kMostCrowded = 0.02;  // of the square of a row: less left by others asks as much
+// the same where inequalities do not hold by little, as a share of the range of the data:
+// corrections of nodes stay below a fifth of it
+constexpr double kLittle = 0.005, kMostCrowdedByLittle = 6e-4;
 
 constexpr double kSteep = 1;
 constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
@@ -99,11 +102,8 @@ public:
             count += rows_.rows[row].is_contact() ? 0 : 1;
         spacing_ = std::sqrt(rows_.area / static_cast<double>(count));
         if (active_.empty()) activate_some(wrong);
-        do {
-            release_unneeded();
-            leave_out_crowded();
-            meet_active();
-        } while (activate_some(beyond()));
+        settle(kMostCrowded);
+        if (activate_some(given_up_by_little())) settle(kMostCrowdedByLittle);
     }
 
     /// By how much the sheet lies below what a row asks for; above it negative.
@@ -125,6 +125,16 @@ public:
 private:
     enum class State : std::uint8_t { kIdle, kActive, kGivenUp };
 
+    /// Meets active rows, and all that do not hold then, but for those that others leave too little
+    /// room: less than `least` of the square of a row.
+    void settle(double least) {
+        do {
+            release_unneeded();
+            leave_out_crowded(least);
+            meet_active();
+        } while (activate_some(beyond()));
+    }
+
     /// The rows that do not hold and could, the worst first.
     Members beyond() const {
         std::vector<std::pair<double, std::int32_t>> found;
@@ -138,6 +148,25 @@ private:
         for (const auto& each : found)
             numbers.push_back(each.second);
         return numbers;
+    }
+
+    /// The inequalities that were given up, and that hardly do not hold now that others are met;
+    /// the worst first. They are idle again.
+    Members given_up_by_little() {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const TieRow& row : rows_.rows) {
+            for (const double z : {row.lower, row.upper}) {
+                if (!row.is_known || std::isinf(z)) continue;
+                low = std::min(low, z);
+                high = std::max(high, z);
+            }
+        }
+        for (std::size_t i = 0; i < state_.size(); ++i) {
+            const bool is_given_up = state_[i] == State::kGivenUp && !rows_.rows[i].is_contact();
+            if (is_given_up && std::abs(missing(i)) <= kLittle * (high - low))
+                state_[i] = State::kIdle;
+        }
+        return beyond();
     }
 
     /// Makes contacts of inequalities that do not hold, of near ones only the first. Whether there
@@ -197,17 +226,17 @@ private:
 
     /// Gives up active rows that nodes cannot honor beside others: contacts beside contacts first,
     /// so that none of these yields to an inequality.
-    void leave_out_crowded() {
+    void leave_out_crowded(double least) {
         const auto is_contact = [&](std::int32_t row) { return rows_.rows[row].is_contact(); };
         Members contacts;
         std::copy_if(active_.begin(), active_.end(), std::back_inserter(contacts), is_contact);
-        if (contacts.size() < active_.size()) leave_out_crowded(std::move(contacts));
-        leave_out_crowded(active_);
+        if (contacts.size() < active_.size()) leave_out_crowded(std::move(contacts), least);
+        leave_out_crowded(active_, least);
     }
 
-    void leave_out_crowded(Members some) {
+    void leave_out_crowded(Members some, double least) {
         while (!some.empty()) {
-            const Members crowded = crowded_members(rows_, some, kMostCrowded);
+            const Members crowded = crowded_members(rows_, some, least);
             if (crowded.empty()) return;
             give_up(TieSystem(rows_, some, DBL_MIN, kRounding), some, crowded);
         }

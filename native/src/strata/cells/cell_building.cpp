@@ -87,6 +87,7 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     constexpr std::size_t kManyPoints = 1000000;
     if (geometry.point_count() > kManyPoints) give_back_memory();
     Conformed c = conform(geometry, construction, blocks, execution);
+    set_plan_positions(geometry, c.plan_vertices, execution);
     FaceList& faces = construction.faces;
     if (construction.may_lack_nodes) {
         for (auto* nodes : {&faces.above, &faces.below})

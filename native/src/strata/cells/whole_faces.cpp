@@ -86,8 +86,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     parallel_ranges(faces.size(), kFacesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
-            const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
-            for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
+            for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
                 const PointId point = faces.polygons.corners[c].point;
                 if (!geometry.is_vertex(point)) continue;
                 const std::int32_t number = conformed.vertices[conformed.entries.first(c)];

@@ -75,15 +75,18 @@ private:
     static constexpr std::size_t kFew = 16;
 
     PlanVertexId added(std::int32_t i) const { return added_[static_cast<std::size_t>(i)]; }
-    const PlanPosition& position(PlanVertexId plan_vertex) const {
-        return plan_vertices_.position[static_cast<std::size_t>(plan_vertex)];
+    PointId point(PlanVertexId plan_vertex) const {
+        return plan_vertices_.representative[static_cast<std::size_t>(plan_vertex)];
+    }
+    const exact::Point& position(PlanVertexId plan_vertex) const {
+        return scope_.shared().point(point(plan_vertex));
     }
 
     /// Whether two different plan vertices have the same x.
     bool same_x() const {
         for (std::size_t i = 1; i < order_.size(); ++i) {
             const PlanVertexId a = added(order_[i - 1]), b = added(order_[i]);
-            if (plan_vertices_.has_same_x_next(a) && a != b && position(a)[0] == position(b)[0])
+            if (plan_vertices_.has_same_x_next(a) && a != b && position(a).x == position(b).x)
                 return true;
         }
         return false;
@@ -92,9 +95,6 @@ private:
     /// Whether the vertices are in order along a line, exactly.
     bool are_sorted(LineId line) {
         const int axis = scope_.direction_signs(line)[0] != 0 ? 0 : 1;
-        const auto point = [&](PlanVertexId v) {
-            return plan_vertices_.representative[static_cast<std::size_t>(v)];
-        };
         return std::is_sorted(known_.begin(), known_.end(), [&](PlanVertexId a, PlanVertexId b) {
             return scope_.compare(axis, point(a), point(b)) > 0;
         });
@@ -103,14 +103,12 @@ private:
     /// Whether plan vertex a comes before plan vertex b along a line that runs to rising x (and
     /// rising or falling y).
     bool before(int rise, PlanVertexId a, PlanVertexId b) {
-        const PlanPosition &p = position(a), &q = position(b);
-        if (p[0] != q[0]) return p[0] < q[0];
-        if (p[1] != q[1] && rise != 0) return (p[1] < q[1]) == (rise > 0);
-        const PointId from = plan_vertices_.representative[static_cast<std::size_t>(a)];
-        const PointId to = plan_vertices_.representative[static_cast<std::size_t>(b)];
-        const int x = scope_.compare(0, from, to);
+        const exact::Point &p = position(a), &q = position(b);
+        if (p.x != q.x) return p.x < q.x;
+        if (p.y != q.y && rise != 0) return (p.y < q.y) == (rise > 0);
+        const int x = scope_.compare(0, point(a), point(b));
         if (x != 0) return x > 0;
-        return scope_.compare(1, from, to) * rise > 0;
+        return scope_.compare(1, point(a), point(b)) * rise > 0;
     }
 
     LocalArrangement scope_;

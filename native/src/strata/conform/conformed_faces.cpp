@@ -53,7 +53,7 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
 
 std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& conformed,
                           std::size_t face) {
-    return conformed.entries.first(static_cast<std::size_t>(faces.polygons.offsets[face]));
+    return conformed.entries.first(faces.polygons.offsets[face]);
 }
 
 /// Counts entries on each plan vertex. Which of a plan vertex's entries comes first depends on
@@ -115,6 +115,7 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
             const PlaneId plane = faces.plane[f];
             for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
                 counts.prefetch(vertex_of(std::min(i + 32, last)));
+                prefetch(&on.values[counts.counts()[vertex_of(std::min(i + 16, last))]]);
                 const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
                 on.values[at] = code_of(plane, plan_vertex[i] < 0);
                 plan_vertex[i] = static_cast<std::int32_t>(at);

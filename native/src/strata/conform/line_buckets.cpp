@@ -79,7 +79,7 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
     prefetch(&faces_.above[far]);
     prefetch(&faces_.below[far]);
     const auto near = static_cast<std::size_t>(faces_of_bucket_[std::min(number + 12, end - 1)]);
-    prefetch(&faces_.polygons.corners[static_cast<std::size_t>(faces_.polygons.offsets[near])]);
+    prefetch(&faces_.polygons.corners[faces_.polygons.offsets[near]]);
 }
 
 void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
@@ -99,10 +99,8 @@ void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
     for (std::size_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
         prefetch_faces(i, first_[bucket + 1]);
         const std::int32_t face = faces_of_bucket_[i];
-        const auto begin =
-            static_cast<std::size_t>(faces_.polygons.offsets[static_cast<std::size_t>(face)]);
-        const auto end =
-            static_cast<std::size_t>(faces_.polygons.offsets[static_cast<std::size_t>(face) + 1]);
+        const std::uint32_t* const offsets = &faces_.polygons.offsets[index(face)];
+        const std::size_t begin = offsets[0], end = offsets[1];
         if (count + (end - begin) > into.found_.size())
             into.found_.resize(2 * into.found_.size() + (end - begin) + kEdges);
         Found* const found = into.found_.data();

@@ -8,8 +8,6 @@
 
 namespace realmodel::strata {
 
-namespace {}  // namespace
-
 EdgeMatching::Name EdgeMatching::name(const LineEdge& edge, const exact::Line& line) const {
     const PlaneId plane = plane_of(edge);
     const Name first = geometry_.plane(plane).above(line);
@@ -146,8 +144,7 @@ bool EdgeMatching::match_all(std::span<const LineEdge> edges, LineId line) {
 std::uint32_t EdgeMatching::end_corner(const LineEdge& edge) const {
     const auto& offsets = faces_.polygons.offsets;
     const auto face = static_cast<std::size_t>(edge.face);
-    const auto next = static_cast<std::int64_t>(edge.begin) + 1;
-    return static_cast<std::uint32_t>(next < offsets[face + 1] ? next : offsets[face]);
+    return edge.begin + 1 < offsets[face + 1] ? edge.begin + 1 : offsets[face];
 }
 
 void EdgeMatching::add_walls(MatchedEdges& to) const {

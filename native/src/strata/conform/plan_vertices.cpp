@@ -146,7 +146,6 @@ Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Arr
 PlanVertices empty_vertices(std::size_t count, std::size_t points, const Execution& execution) {
     PlanVertices vertices;
     vertices.representative = Array<PointId>(count);
-    vertices.position = Array<PlanPosition>(count);
     vertices.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, execution);
     vertices.of_point = Array<PlanVertexId>(points);
     parallel_ranges(points, 1 << 18, execution, [&](std::size_t begin, std::size_t end) {
@@ -182,7 +181,6 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
                                     }
                                     of_point(i) = static_cast<PlanVertexId>(next);
                                     vertices.representative[next] = points[i].point;
-                                    vertices.position[next] = {points[i].x, points[i].y};
                                     if (next > 0 && points[i - 1].x == points[i].x) {
                                         std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
                                             .fetch_or(std::uint64_t{1} << (next - 1) % 64,
@@ -197,6 +195,18 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
     for (const auto& some : coincident)
         vertices.coincident.insert(vertices.coincident.end(), some.begin(), some.end());
     return vertices;
+}
+
+void set_plan_positions(const PlanArrangement& geometry, PlanVertices& plan_vertices,
+                        const Execution& execution) {
+    plan_vertices.position = Array<PlanPosition>(plan_vertices.size());
+    parallel_ranges(plan_vertices.size(), kVerticesAtOnce, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t p = begin; p < end; ++p) {
+                            const auto& point = geometry.point(plan_vertices.representative[p]);
+                            plan_vertices.position[p] = {point.x, point.y};
+                        }
+                    });
 }
 
 }  // namespace realmodel::strata

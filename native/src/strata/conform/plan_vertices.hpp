@@ -27,7 +27,7 @@ struct ExtraPoint {
 struct PlanVertices {
     Array<PlanVertexId> of_point;      ///< -1 for points that no face uses
     Array<PointId> representative;     ///< an input vertex where one is there
-    Array<PlanPosition> position;      ///< rounded
+    Array<PlanPosition> position;      ///< rounded; empty until set_plan_positions
     Array<std::uint64_t> same_x_bits;  ///< of 64 plan vertices each: see has_same_x_next
     std::vector<PlanVertexId>
         coincident;  ///< those that round to the position of the plan vertex before them
@@ -41,5 +41,9 @@ struct PlanVertices {
 };
 PlanVertices find_plan_vertices(const exact::PlanArrangement& geometry, const FaceList& faces,
                                 const std::vector<ExtraPoint>& extra, const Execution& execution);
+
+/// Puts the positions in one array, for when the points will be forgotten.
+void set_plan_positions(const exact::PlanArrangement& geometry, PlanVertices& plan_vertices,
+                        const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -102,16 +102,15 @@ private:
     }
 
     bool may_have_walls(const Curve& curve) {
-        const PlanVertices& plan_vertices = blocks_->plan_vertices;
-        const std::size_t from = conformed_.plan_vertex_of(curve.start),
-                          to = conformed_.plan_vertex_of(curve.end);
-        const PlanPosition &p = plan_vertices.position[from], &q = plan_vertices.position[to];
-        const TileSpan span =
-            blocks_->borders.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
-                                           std::max(p[0], q[0]), std::max(p[1], q[1])});
+        const auto point_of = [&](std::int32_t vertex) {
+            return blocks_->plan_vertices.representative[conformed_.plan_vertex_of(vertex)];
+        };
+        const PointId from = point_of(curve.start), to = point_of(curve.end);
+        const exact::Point &p = batch_.scope.point(from), &q = batch_.scope.point(to);
+        const TileSpan span = blocks_->borders.tiles().span(
+            {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)});
         return blocks_->borders.near(span) &&
-               blocks_->borders.run_between(batch_.scope, plan_vertices.representative[from],
-                                            plan_vertices.representative[to], span);
+               blocks_->borders.run_between(batch_.scope, from, to, span);
     }
 
     /// No wall: what is above the uppermost face at a height, and what is below the lowest one,

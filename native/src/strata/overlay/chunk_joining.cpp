@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "strata/overlay/shared_polygons.hpp"
 
 namespace realmodel::strata {
@@ -74,7 +74,7 @@ void put(Array<Element>& to, std::size_t at, const From& from) {
 void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
     share(scope, from, to.corners.begin() + static_cast<std::ptrdiff_t>(at.corner));
     for (std::size_t i = 1; i < from.offsets.size(); ++i)
-        to.offsets[at.polygon + i] = static_cast<std::int64_t>(at.corner) + from.offsets[i];
+        to.offsets[at.polygon + i] = static_cast<std::uint32_t>(at.corner) + from.offsets[i];
 }
 
 }  // namespace
@@ -140,6 +140,8 @@ void ChunkJoining::find_offset(std::size_t chunk) {
     start_[chunk] = end_;
     end_.pass(*chunks_[chunk]);
     check_nodes(end_.node);
+    for (const PoolStart& end : {end_.face, end_.below, end_.facet, end_.facet_face})
+        check_total(end.corner, UINT32_MAX);
     fits_[chunk] = has_room() ? 1 : 0;
 }
 

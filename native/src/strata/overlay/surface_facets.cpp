@@ -44,7 +44,7 @@ public:
         copy_corners(outline, envelope_.outlines.corners.begin() + at_.corners);
         const std::size_t facet = at_.facets;
         at_.add_facet(outline);
-        envelope_.outlines.offsets[facet + 1] = static_cast<std::int64_t>(at_.corners);
+        envelope_.outlines.offsets[facet + 1] = static_cast<std::uint32_t>(at_.corners);
         envelope_.plane[facet] = plane;
         envelope_.surface[facet] = number_;
         envelope_.block_beneath[facet] = number_;
@@ -55,7 +55,7 @@ public:
         copy_corners(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
         envelope_.face_above[at_.faces] = node_above;
         at_.add_face(outline);
-        envelope_.face_polygons.offsets[at_.faces] = static_cast<std::int64_t>(at_.face_corners);
+        envelope_.face_polygons.offsets[at_.faces] = static_cast<std::uint32_t>(at_.face_corners);
         envelope_.face_offsets[at_.facets] = static_cast<std::int64_t>(at_.faces);
     }
 
@@ -148,6 +148,7 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
         size = total;
         total += own;
     }
+    check_total(std::max(total.corners, total.face_corners), UINT32_MAX);
     resize(next, total);
     parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
         EnvelopeWriter writer(next, start[begin / kPolygons], number);

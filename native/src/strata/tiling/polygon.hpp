@@ -47,23 +47,23 @@ inline void copy_corners(PolygonView from, Corner* to) {
     }
 }
 
-/// Many polygons in one array.
+/// Many polygons in one array; of less than 2^32 corners, as joining chunks checks.
 struct PolygonPool {
-    Array<std::int64_t> offsets{0};
+    Array<std::uint32_t> offsets{0};
     Array<Corner> corners;
 
     std::size_t size() const { return offsets.size() - 1; }
     PolygonView operator[](std::size_t i) const {
-        return {corners.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+        return {corners.data() + offsets[i], offsets[i + 1] - offsets[i]};
     }
     void add(PolygonView polygon) {
         const std::size_t before = corners.size();
         corners.resize(before + polygon.size());
         copy_corners(polygon, corners.begin() + before);
-        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
     void append(const PolygonPool& other) {
-        const auto before = static_cast<std::int64_t>(corners.size());
+        const auto before = static_cast<std::uint32_t>(corners.size());
         corners.append(other.corners.begin(), other.corners.end());
         for (std::size_t i = 1; i < other.offsets.size(); ++i)
             offsets.push_back(before + other.offsets[i]);

@@ -40,7 +40,7 @@ void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const Pla
                     geometry.prefetch_edge(v[e], v[(e + 1) % 3]);
             }
             pool.offsets[polygons + ahead + 1] =
-                static_cast<std::int64_t>(corners + 3 * (ahead + 1));
+                static_cast<std::uint32_t>(corners + 3 * (ahead + 1));
         }
         if (ahead < kAhead) continue;
         const std::size_t i = ahead - kAhead;

@@ -185,6 +185,21 @@ TEST(Ties, ContactsComeBeforeBoundsThatContradictThem) {
     EXPECT_NEAR(ties.after[1], 0, 1e-10);
 }
 
+TEST(Ties, BoundsThatHardlyDoNotHoldAreMetCloseToContacts) {
+    const Grid grid(20);
+    const std::vector<double> z(grid.nodes.size(), 0);
+    Asked asked;
+    asked.contact({10.3, 10.3}, 5);
+    asked.add({10.36, 10.3}, -kNone, 4.993);
+    asked.contact({3.5, 3.2}, -5);
+    const Ties ties = tie({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), kTolerance);
+    for (const double after : ties.after)
+        EXPECT_NEAR(after, 0, 1e-10);
+    const std::vector<double> tied = tied_heights(z, grid.nodes, {}, ties.terms);
+    EXPECT_LT(*std::max_element(tied.begin(), tied.end()), 7);
+    EXPECT_GT(*std::min_element(tied.begin(), tied.end()), -7);
+}
+
 TEST(Ties, SameBytesForAnyThreadsAndForSomeNodes) {
     const Grid grid(60);
     const std::vector<double> z(grid.nodes.size(), 5e5);

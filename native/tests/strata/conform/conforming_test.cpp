@@ -21,7 +21,9 @@ struct Conformed {
                        const Array<std::uint8_t>* cell_is_thick = nullptr)
         : vertices(find_plan_vertices(small.geometry, small.faces, extra, {1, nullptr})),
           lines(find_collinear_edges(small.geometry, small.faces, vertices, extra, cell_is_thick,
-                                     {1, nullptr})) {}
+                                     {1, nullptr})) {
+        set_plan_positions(small.geometry, vertices, {1, nullptr});
+    }
 
     /// Which of the lines this is.
     std::size_t number_of(LineId representative) const {

@@ -4,9 +4,9 @@ better."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ...heights.companions import Alike, Companions
 from ...heights.cross_validation import validate
 from ...heights.interpolation import Task
 from ...project.project import Rock, Surface
+from ...settings.dips import Dips
 from ...settings.methods import METHODS, checked_options
 from ...settings.rules import RULES
 
@@ -33,6 +34,16 @@ class _Compared:
 
     alone: float
     together: float
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The data of two surfaces in a part of space: of each its points (P, 3), its dips, and what says how its
+    heights vary."""
+
+    points: list[np.ndarray]
+    dips: list[Dips | None]
+    alike: list[Alike | None]
 
 
 def conformable_run(rock: Rock, number: int) -> list[int]:
@@ -77,10 +88,13 @@ def alike_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Alike | None:
     return Alike(run.index(number), points, [each.known_dips() for each in surfaces], known)
 
 
-def proposals(work: Work, rock: Rock, numbers: Sequence[int]) -> list[BuildWarning]:
+def proposals(
+    work: Work, rock: Rock, numbers: Sequence[int], sides: Mapping[int, np.ndarray] | None = None
+) -> list[BuildWarning]:
     """A warning for each run of consecutive surfaces among those of a rock mass with these numbers whose
     contacts, left out one by one, are estimated better with those of the next surface: they are conformable,
-    and none of them is in a series."""
+    and none of them is in a series. sides: of each surface (P, F), on which side of each fault that displaces
+    it its points are; None without faults."""
     runs: list[list[int]] = []
     errors: dict[tuple[int, int], _Compared] = {}
     fits: dict[bytes, Any] = {}
@@ -88,7 +102,8 @@ def proposals(work: Work, rock: Rock, numbers: Sequence[int]) -> list[BuildWarni
     for one, other in pairwise(known):
         if other != one + 1:
             continue
-        found = _compared(work, rock, fits, one, other)
+        pair = (one, other)
+        found = _compared(work, _parts(rock, fits, pair, sides))
         if found is None or not found.together < _BETTER**2 * found.alone:
             continue
         errors[one, other] = found
@@ -105,24 +120,38 @@ def _is_known(rock: Rock, number: int) -> bool:
     return surface.series is None and _LEAST <= count <= _MOST
 
 
-def _compared(work: Work, rock: Rock, known: dict[bytes, Any], *numbers: int) -> _Compared | None:
-    """Of two surfaces; None where their points cannot be kriged. known: as of Alike."""
-    surfaces = [rock.surfaces[number] for number in numbers]
+def _parts(
+    rock: Rock, known: dict[bytes, Any], pair: tuple[int, int], sides: Mapping[int, np.ndarray] | None
+) -> list[_Part]:
+    """The data of two surfaces, by the parts of space where both have enough points. known: as of Alike."""
+    surfaces = [rock.surfaces[number] for number in pair]
     points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
-    dips = [each.known_dips() for each in surfaces]
+    if sides is None:
+        alike = [alike_of(rock, number, known) for number in pair]
+        return [_Part(points, [each.known_dips() for each in surfaces], alike)]
+    of_points = [sides[number] for number in pair]
+    found = []
+    for key in np.unique(of_points[0], axis=0):
+        own = [each[(rows == key).all(axis=1)] for each, rows in zip(points, of_points, strict=True)]
+        if min(map(len, own)) >= _LEAST:
+            found.append(_Part(own, [None, None], [None, None]))
+    return found
+
+
+def _compared(work: Work, parts: Sequence[_Part]) -> _Compared | None:
+    """Of two surfaces, whose data these are; None where their points cannot be kriged."""
     squares: list[list[np.ndarray]] = [[], []]
     settings, nodes = checked_options("kriging", {}), np.empty((0, 2))
     try:
-        for own in range(2):
-            alike = alike_of(rock, numbers[own], known)
-            for which, companions in enumerate((None, Companions(own, points, dips))):
-                task = Task(work, points[own], nodes, settings, dips=dips[own], companions=companions)
-                task = replace(task, alike=alike)
+        for part, own in product(parts, range(2)):
+            for which, companions in enumerate((None, Companions(own, part.points, part.dips))):
+                task = Task(work, part.points[own], nodes, settings, dips=part.dips[own])
+                task = replace(task, companions=companions, alike=part.alike[own])
                 error = validate("kriging", task, 2).errors
                 squares[which].append(error[np.isfinite(error)] ** 2)
     except InputRefused:  # it is said where the surface itself is interpolated
         return None
-    alone, together = (np.concatenate(each) for each in squares)
+    alone, together = (np.concatenate([np.empty(0), *each]) for each in squares)
     if not len(alone) or not len(together):
         return None
     return _Compared(float(alone.mean()), float(together.mean()))
