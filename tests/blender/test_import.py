@@ -369,6 +369,16 @@ class Region(Imported):
         for got, wanted in zip((*low, *high), (EAST, NORTH, EAST + 550, NORTH + 550), strict=True):
             self.assertAlmostEqual(abs(got - wanted), margin, places=1)
 
+    def test_it_is_over_the_points(self):
+        """On the walls of blocks it would flicker."""
+        points = grid(20.0)
+        points[0, 2] += 30.0
+        ops.surface_add(filepath=str(self.table("a.csv", points)))
+        ops.region_around()
+        height = self.model.rocks[0].region.data.splines[0].points[0].co[2]
+        height += project_settings.model_origin(self.scene)[2]
+        self.assertAlmostEqual(height, points[:, 2].max() + 0.1 * np.ptp(points[:, 2]), places=2)
+
     def test_hull(self):
         points = grid(20.0)
         corner = points[:, 0] + points[:, 1] - EAST - NORTH <= 300.0

@@ -10,6 +10,7 @@ from realmodel.core import (
     Fault,
     InputRefused,
     Model,
+    Observations,
     Project,
     Rock,
     SpaceDips,
@@ -283,6 +284,27 @@ def test_thicknesses_are_never_negative_and_contacts_are_met():
     held = Surface("S1", points=np.array([[*nodes[7], sheets[0][7] + 40.0]]), rule="conformable", series="J")
     again = build(Project("p", [rock_of([surfaces[0], held, surfaces[2]])]))
     assert again.surface(1)[0][7, 2] == pytest.approx(held.points[0, 2], abs=1e-9)
+
+
+def test_a_sheet_that_is_absent_in_holes_is_nowhere_above_them():
+    """Where it would lie below the older one it is raised at nodes: not at those around such a hole."""
+    rows = []
+    for hole, (x, y) in enumerate(np.random.default_rng(5).uniform(60, 940, (14, 2)).round(2).tolist()):
+        low = 20.0 + 0.05 * x
+        high = low + max(0.0, 12 * np.sin(x / 160) * np.cos(y / 210))
+        for block, ends in (("B2", (120.0, high)), ("B1", (high, low)), ("B0", (low, -60.0))):
+            rows += [(x, y, z, block, str(hole)) for z in ends if ends[0] > ends[1]]
+    seen = Observations([row[:3] for row in rows], [row[3] for row in rows], [row[4] for row in rows])
+    surfaces = [
+        *(Surface(f"S{k}", block=f"B{k}", rule="conformable", method="kriging", series="J") for k in (0, 1)),
+        Surface("S2", block="B2", method="constant", options={"value": 120.0}),
+    ]
+    square = [[0, 0], [1000, 0], [1000, 1000], [0, 1000]]
+    rock = Rock("R", surfaces, square, edge_length=90.0, base_elevation=-100.0, observations=seen)
+    model = build(Project("p", [replace(rock, series=[Series("J", "sheets")])]))
+    found = model.observed()
+    assert (found.share, found.violated, len(found.contacts)) == (1.0, [], 18)
+    assert (model.surface(1)[0][:, 2] >= model.surface(0)[0][:, 2]).all()
 
 
 def test_contacts_of_others_bound_a_sheet():

@@ -12,6 +12,8 @@ from ..bl.scene import built_scene, data_objects, live
 from ..core import InputRefused
 from .reporting import Reporting, a_rock
 
+_ABOVE = 0.1  # of the height of the points: how far over them a region is, as on the walls it would flicker
+
 
 class REALMODEL_OT_rock_add(Reporting, bpy.types.Operator):
     """Add a rock mass: a region in plan with surfaces of its own"""
@@ -134,5 +136,6 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
             raise InputRefused(
                 "the points lie in one line", advice="draw the region, or import further points"
             )
-        row.region = shapes.new_outline(scene, f"{row.name} region", corners, low[2])
+        above = high[2] + _ABOVE * (high[2] - low[2])
+        row.region = shapes.new_outline(scene, f"{row.name} region", corners, above)
         self.report({"INFO"}, f"{row.region.name}: a curve, which you can edit")

@@ -56,11 +56,11 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 
 /// Where on an edge of the surface a vertex may be but for its rounding.
 std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_on_edge(const Position& p,
+                                                                          const Position& tolerance,
                                                                           const Position& a,
                                                                           const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
-    const Position tolerance = tolerance_of(p);
     double from = 0, to = 1, shortest = HUGE_VAL;
     std::size_t axis = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -83,9 +83,9 @@ std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_on_edge(const 
 
 /// The same within a triangle of the surface.
 std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
-    const Position& p, const std::array<Position, 3>& corners) {
+    const Position& p, const Position& tolerance, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
-    const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
+    const Position normal = polygon_normal(corners);
     double off = 0, allowed = 0, size = 0;
     std::size_t axis = 0;  // along which the point may be off most
     for (std::size_t k = 0; k < 3; ++k) {
@@ -112,20 +112,22 @@ std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(
     std::vector<std::int32_t> near;
     tree_->find(box, [&near](std::int32_t t) { near.push_back(t); });
     std::sort(near.begin(), near.end());
+    const Position tolerance = tolerance_of(p);
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (is_within(p, corner(t, i), tolerance_of(p), 1)) return {{1, 0, {corner(t, i)}}};
+            if (is_within(p, corner(t, i), tolerance, 1)) return {{1, 0, {corner(t, i)}}};
         }
     }
     std::vector<SurfacePlace> places;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (const auto found = place_on_edge(p, corner(t, i), corner(t, i + 1)))
+            if (const auto found = place_on_edge(p, tolerance, corner(t, i), corner(t, i + 1)))
                 places.push_back(*found);
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto found = place_in_triangle(p, {corner(t, 0), corner(t, 1), corner(t, 2)}))
+        if (const auto found =
+                place_in_triangle(p, tolerance, {corner(t, 0), corner(t, 1), corner(t, 2)}))
             places.push_back(*found);
     }
     return places;

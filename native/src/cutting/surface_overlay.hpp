@@ -128,9 +128,10 @@ private:
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
-    static std::optional<SurfacePlace> place_on_edge(const Position& p, const Position& a,
-                                                     const Position& b);
+    static std::optional<SurfacePlace> place_on_edge(const Position& p, const Position& tolerance,
+                                                     const Position& a, const Position& b);
     static std::optional<SurfacePlace> place_in_triangle(const Position& p,
+                                                         const Position& tolerance,
                                                          const std::array<Position, 3>& corners);
     std::vector<SurfacePlace> places_on_surface(const Position& p) const;
     std::optional<SpacePointId> point_on_surface(const Position& p,
