@@ -101,6 +101,14 @@ class Weathering(PanelCase):
         ops.weathering(strength=0.2, grass_slope=0.0, scree_slope=0.0)
         self.assertEqual(set(self.evaluated(2)[1]), {"upper"})
 
+    def test_grass_on_a_few_large_faces(self):
+        bpy.ops.mesh.primitive_cube_add(size=20.0, location=(500.0, 0.0, 10.0))
+        ops.fill_with_strata(beds=2, dip=0.0, palette="COAL")
+        ops.weathering(strength=0.0, detail=0)
+        highest = max(bpy.context.selected_objects, key=lambda item: item.name)
+        worn = highest.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        self.assertIn("Grass", {worn.materials[p.material_index].name for p in worn.polygons})
+
     def test_only_selected_blocks_and_again_changes_them(self):
         select(self.block(2))
         ops.weathering(seed=1)

@@ -25,7 +25,7 @@ KEY = "realmodel_weathering"  # on the group: its version; on a material: its co
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
 _VERSION = 4
 _STEPS = 5  # of smoothing
-_MOST = 0.5  # share of the ground around a face that grass or scree must have for the face to have it
+_ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 # texture units (looks) at 1
 _UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 0.3}
@@ -245,9 +245,8 @@ def _covered(nodes, given, geometry, is_top, position):
         steepest = given[f"{name} Slope"]
         here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", slope, steepest), is_top)
         here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", steepest, 0.0))
-        # as most faces around, so that no cover is a few triangles alone
         around = nodes.on("FACE", nodes.on("POINT", nodes.on("FACE", here)))
-        here = nodes.math("GREATER_THAN", around, _MOST)
+        here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", around, _ALONE))
         geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=given[name])
         scattered.append((thing, here))
     joined = nodes.new("GeometryNodeJoinGeometry")
