@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import display, overlay
-from realmodel.bl.display import cuts
+from realmodel.bl.display import cuts, ensembles
 from realmodel.bl.field import data, edits, handle
 from realmodel.bl.objects import built_models
 from realmodel.bl.project import series_settings
@@ -63,6 +63,14 @@ class Series(PanelCase):
         np.testing.assert_allclose(
             [block.volume for block in again.blocks], list(expected.values()), rtol=1e-9
         )
+
+    def test_an_ensemble_draws_fields(self):
+        ops.open_project(filepath=str(self.coarse()))
+        ops.build()
+        self.assertEqual(ops.ensemble(realizations=2, seed=1), {"FINISHED"})
+        rows = ensembles.table(self.scene)["blocks"]
+        self.assertEqual(len(rows), 5)
+        self.assertTrue(all(row["percentiles"][0] < row["percentiles"][2] for row in rows))
 
     def test_sheets_keep_the_dips_of_their_series(self):
         random = np.random.default_rng(2)

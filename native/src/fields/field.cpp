@@ -17,6 +17,7 @@
 #include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
 #include "fields/lattice_weights.hpp"
+#include "fields/neighbors.hpp"
 #include "fields/random_function.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/errors.hpp"
@@ -58,15 +59,6 @@ constexpr double kCounts = 0.25;
 // Edges of the lattice over which a drawn function is averaged that has no derivatives.
 constexpr double kRough = 4;
 
-/// The cube of some size that a contact lies in, and its surface.
-using Cube = std::array<std::int64_t, 4>;
-Cube cube_of(const KnownData& known, std::size_t contact, double size) {
-    Cube cube{0, 0, 0, known.surface_of(contact)};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        cube[axis] = static_cast<std::int64_t>(std::floor(known.contacts()[contact][axis] / size));
-    return cube;
-}
-
 /// The box of a lattice with nodes farther apart, at most about `most` of them.
 Lattice coarsened(const Lattice& lattice, std::size_t most) {
     Lattice out = lattice;
@@ -78,22 +70,6 @@ Lattice coarsened(const Lattice& lattice, std::size_t most) {
         }
     }
     return out;
-}
-
-/// At most about `most` of some contacts: of each surface one in each of equal cubes.
-std::vector<std::size_t> thinned(const KnownData& known, std::size_t most) {
-    std::vector<std::size_t> kept;
-    for (double size = 1.0 / 64;; size *= 1.25) {
-        std::map<Cube, std::size_t> first;
-        for (std::size_t n = 0; n < known.contacts().size(); ++n)
-            first.emplace(cube_of(known, n, size), n);
-        if (first.size() > most && size < 4) continue;
-        kept.clear();
-        for (const auto& [cube, n] : first)
-            kept.push_back(n);
-        std::sort(kept.begin(), kept.end());
-        return kept;
-    }
 }
 
 /// The field while more of the data get into it.
@@ -120,7 +96,7 @@ public:
                 is_center_[n] = 1;
         }
         begin(0.0, 0.3, "anisotropy of the field");
-        sample_ = sample();
+        sample_ = spread_pairs(known, kSampledContacts / 2);
         refuse_wrong_order();
         find_likely();
         if (options.anisotropy != nullptr) likely_.anisotropy = *options.anisotropy;
@@ -275,33 +251,6 @@ private:
         return out;
     }
 
-    /// A part of the data that likelihoods are compared by: contacts that are spread, and those
-    /// nearest to them, without the references.
-    std::vector<std::size_t> sample() const {
-        const std::vector<Vec3>& at = known_.contacts();
-        std::set<std::size_t> numbers;
-        for (const std::size_t n : thinned(known_, kSampledContacts / 2)) {
-            numbers.insert(n);
-            std::size_t nearest = n;
-            double least = 1e300;
-            for (std::size_t m = 0; m < at.size(); ++m) {
-                const Vec3 d = minus(at[m], at[n]);
-                const double squared = dot(d, d);
-                if (m == n || known_.surface_of(m) != known_.surface_of(n) || !(squared > 0) ||
-                    squared >= least)
-                    continue;
-                least = squared;
-                nearest = m;
-            }
-            numbers.insert(nearest);
-        }
-        std::vector<std::size_t> out;
-        for (const std::size_t n : numbers) {
-            if (n != known_.reference(known_.surface_of(n))) out.push_back(n);
-        }
-        return out;
-    }
-
     /// A functional as splines of the order take it.
     Functional for_order(const Likely& likely, const Functional& functional) const {
         return likely.order == 2 ? functional.by_differences(half_spacing_) : functional;
@@ -341,7 +290,7 @@ private:
         if (known_.data().surfaces < 3) return;
         const Spline spline(sampled(gaps_, likely_), likely_.smoothness(), execution_);
         double low = 1e300, high = 0;
-        const std::vector<double> apart = distances();
+        const std::vector<double> apart = distances_between(known_, kSampledForDistance);
         for (std::int32_t k = 0; k + 1 < known_.data().surfaces; ++k) {
             const double steep = (level_in(spline, k + 1) - level_in(spline, k)) / apart[k];
             low = std::min(low, steep);
@@ -423,29 +372,6 @@ private:
                 gaps_[k] /= std::clamp(steep[k], 0.5, 2.0);
             spline.set_right(sampled(gaps_, likely));
         }
-    }
-
-    /// About how far each surface is from the next: a tenth of the contacts have one of the next
-    /// nearer to them.
-    std::vector<double> distances() const {
-        const std::vector<Vec3>& at = known_.contacts();
-        std::vector<std::vector<std::size_t>> on(known_.data().surfaces);
-        for (const std::size_t n : thinned(known_, kSampledForDistance))
-            on[known_.surface_of(n)].push_back(n);
-        std::vector<double> out;
-        for (std::size_t k = 0; k + 1 < on.size(); ++k) {
-            std::vector<double> nearest;
-            for (const std::size_t n : on[k]) {
-                double least = 1e300;
-                for (const std::size_t m : on[k + 1])
-                    least = std::min(least, length(minus(at[m], at[n])));
-                nearest.push_back(least);
-            }
-            const auto tenth = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 10);
-            std::nth_element(nearest.begin(), tenth, nearest.end());
-            out.push_back(std::max(*tenth, 1e-6));
-        }
-        return out;
     }
 
     /// How steep a field is on the two surfaces of each layer.
@@ -707,33 +633,12 @@ private:
                              -1, against, data.dips[against[0]]);
         }
         for (const std::int64_t dip : against) {
-            if (!is_against_neighbors(static_cast<std::size_t>(dip))) continue;
+            if (!is_against_neighbors(data, static_cast<std::size_t>(dip))) continue;
             throw InputError(
                 "polarity",
                 "dip " + std::to_string(dip) + " has the polarity against its neighbors", -1, {dip},
                 data.dips[dip]);
         }
-    }
-
-    /// Whether the nearest dips have the attitude of one, but the other polarity, and none a little
-    /// farther away agrees with it, as one on the same limb of a tight fold would.
-    bool is_against_neighbors(std::size_t dip) const {
-        constexpr std::size_t kNearest = 3, kNear = 8;
-        constexpr double kAlike = 0.7;
-        const FieldData& data = known_.data();
-        std::vector<std::pair<double, std::size_t>> near;
-        for (std::size_t n = 0; n < data.dips.size(); ++n) {
-            const Vec3 d = minus(data.dips[n], data.dips[dip]);
-            if (n != dip) near.emplace_back(dot(d, d), n);
-        }
-        if (near.size() < kNearest) return false;
-        std::sort(near.begin(), near.end());
-        near.resize(std::min(near.size(), kNear));
-        for (std::size_t n = 0; n < near.size(); ++n) {
-            const double cosine = dot(data.normals[near[n].second], data.normals[dip]);
-            if (n < kNearest ? cosine > -kAlike : cosine > kAlike) return false;
-        }
-        return true;
     }
 
     void report_missed(Field& out) const {

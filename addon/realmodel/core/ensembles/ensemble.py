@@ -81,7 +81,7 @@ class Ensemble:
     each block in each realization. surface_mean, surface_deviation: for each surface (V,) float64 at the
     nodes of the planar mesh, or where faults divide the rock mass at the vertices of its sheets, the mean of
     the heights and their standard deviation, NaN where not all realizations have a height; None for ready
-    meshes. places: (N, 3). probability: (N, B) float64, of each block at each place.
+    meshes and level sets. places: (N, 3). probability: (N, B) float64, of each block at each place.
     """
 
     model: Model
@@ -172,8 +172,8 @@ def ensemble(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Ensemble:
-    """Builds a project, and realizations of it: models whose interpolated heights are drawn at random, as
-    the points and each surface's variogram allow. The result depends on the seed alone.
+    """Builds a project, and realizations of it: models whose interpolated heights and fields are drawn at
+    random, as the data and each surface's variogram allow. The result depends on the seed alone.
 
     correlation: of the errors of each surface with those of the next older one, -1 to 1, for surfaces that
     have none of their own. places: (N, 3) points of which the probability of each block is wanted, or a

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Realizations of a model: its surfaces with random errors, intersected and cut as in every build."""
+"""Realizations of a model: its surfaces and fields with random errors, cut as in every build."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ class Realizer:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> Model:
-        """The model with heights drawn for the number-th time, from 0. Ready meshes, faults and bodies stay.
-        cells: as of `build`.
+        """The model with heights and fields drawn for the number-th time, from 0. Ready meshes, faults and
+        bodies stay. cells: as of `build`.
 
         Raises InputRefused, BuildFailed, Cancelled.
         """

@@ -13,7 +13,7 @@ from ..surfaces.rock_input import RockInput
 
 def heights(model: Model) -> list[np.ndarray | None]:
     """The heights (V,) float64 of each surface: at the nodes of the planar mesh, or where faults divide the
-    rock mass at the vertices of its sheets, one after another; None for ready meshes."""
+    rock mass at the vertices of its sheets, one after another; None for ready meshes and level sets."""
     return [
         None if _is_ready(entry, number) else _own(entry, number)
         for entry in model.rock_inputs

@@ -14,7 +14,7 @@ import numpy as np
 from ...base.work import Work, native_module
 from ...heights.ties import TieData
 
-_MOST_ROUNDS = 300
+_MOST_ROUNDS = 5000  # where data share two corners it takes many
 _ON_EDGE = 1e-9  # weights of corners that do not count
 
 
@@ -38,15 +38,12 @@ def honoring(
     high = np.maximum(data.upper[known] + margins - base, 0.0)
     low = np.minimum(data.lower[known] - margins - base, high)
     thickness = np.where(is_near, z - least, 0.0)
-    is_none = np.zeros(
-        len(nodes), bool
-    )  # no thickness at all within a triangle: none at its corners, for good
+    is_none = np.zeros(len(nodes), bool)  # for good, where there is none within a triangle
     for _ in range(_MOST_ROUNDS):
         work.check()
         found = (weights * thickness[corners]).sum(axis=1)
         wrong = np.flatnonzero((found < low - data.tolerance) | (found > high + data.tolerance))
-        if not len(wrong):
-            break
+        before = thickness.copy()
         for row in wrong.tolist():
             at = corners[row]
             if high[row] <= data.tolerance:
@@ -57,6 +54,8 @@ def honoring(
             if square > _ON_EDGE:
                 moved = thickness[at] + share * (min(max(own, low[row]), high[row]) - own) / square
                 thickness[at] = np.maximum(moved, 0.0)
+        if np.array_equal(thickness, before):  # all hold, or the others never will
+            break
     return np.where(is_near & (thickness != z - least), least + thickness, z)
 
 
