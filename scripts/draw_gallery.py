@@ -331,7 +331,7 @@ def quarry(folder):
     model, picture = sample("quarry", folder)
     made, origin = generator("quarry"), np.array(picture.origin)
     picture.show(model, blocks_of(model, picture), only_outside=True)
-    apply_looks(model, 1.0)
+    apply_looks(model, 1.0, {"Loam": 0.3})  # a meadow is finer than a rock
     around(made, origin, "Loam", 4000.0, 40.0)
     taken = model.eroded().taken.sum(axis=0)
     rows = [(b.name, f"{v:,.0f} m\u00b3") for b, v in zip(model.blocks, taken, strict=True) if v > 0]

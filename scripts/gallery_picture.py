@@ -299,9 +299,9 @@ def read_pixels(file):
     return pixels
 
 
-def apply_looks(model, scale):
+def apply_looks(model, scale, own=()):
     """Gives the material of each property the look that suits its rock. scale: of the texture, times that of
-    Rock Looks."""
+    Rock Looks. own: {name: scale} of some properties."""
     import bpy
     import numpy as np
     from realmodel.bl.objects import materials
@@ -312,7 +312,8 @@ def apply_looks(model, scale):
     for material in list(bpy.data.materials):
         entry = model.project.library.get(material.get(materials.KEY, 0))
         if entry is not None:
-            looks.apply(material, look_of(entry.rock or "", entry.name), scale, entry.id, diagonal)
+            look = look_of(entry.rock or "", entry.name)
+            looks.apply(material, look, dict(own).get(entry.name, scale), entry.id, diagonal)
 
 
 def part(shape, keep):
