@@ -247,7 +247,7 @@ def draw_close(folder):
     for item in scene.objects:
         item.hide_render = item not in blocks
     slopes = math.radians(34.0), math.radians(44.0)
-    weathering.put_on(scene, blocks, weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, wear=0.5))
+    weathering.put_on(scene, blocks, weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, wear=0.15))
     corners = np.array([item.matrix_world @ Vector(c) for item in blocks for c in item.bound_box])
     shown.points = [corners]
     azimuth, elevation = math.radians(205.0), math.radians(42.0)

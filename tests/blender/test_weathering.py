@@ -207,7 +207,7 @@ class Weathering(PanelCase):
         worn = self.block(2).evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         values = np.array([v.value for v in worn.attributes[edge_wear.ATTRIBUTE].data])
         unit = looks.diagonal(self.scene) / looks.UNITS
-        np.testing.assert_allclose(values, 2.0 * 0.3 * unit, rtol=1e-5)
+        np.testing.assert_allclose(values, 2.0 * unit, rtol=1e-5)
         self.assertNotIn(edge_wear.ATTRIBUTE, self.block(2).data.attributes)
         self.assertEqual([edge_wear.has(material) for material in materials], [False, True])
         ops.rock_looks(look="GRANITE")
@@ -255,7 +255,7 @@ class Weathering(PanelCase):
         given = {"strength": 0.0, "detail": 0, "grass_slope": 0.0, "scree_slope": 0.0}
         ops.weathering(wear=0.0, **given)
         sharp = self.rendered(item)
-        ops.weathering(wear=12.0, **given)
+        ops.weathering(wear=3.6, **given)
         changed = np.abs(self.rendered(item) - sharp).max(axis=2)[18:30]
         self.assertGreater(sharp[18:30, 8:].mean(), 0.02)  # the wall is seen
         self.assertLess(changed[:, 20:44].max(), 0.004)

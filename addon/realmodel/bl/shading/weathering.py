@@ -28,7 +28,7 @@ _STEPS = 5  # of smoothing
 _ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 # texture units (looks) at 1
-_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 0.3}
+_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 1.0}
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
