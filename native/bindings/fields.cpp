@@ -158,9 +158,10 @@ give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3
 combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
 draw: None, or of a field that is drawn at random its kind, as it is returned of the same data, and normal numbers:
 (lines, 3 + F), (lines, steps) and (M, 2).
-Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed, of each of the latter
-the data that it contradicts ("contact", "dip" or "bound", and the row), and the kind of random function: (axes, ratios), order, errors of values and slopes, scale of further coordinates, variance, gaps,
-centers, inequalities that are left out. Raises InputError.)");
+Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
+each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
+(axes, ratios), order, errors of values and of slopes, scale of further coordinates, variance, gaps, centers,
+inequalities that are left out. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),
         py::arg("execution") = py::none(),
