@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "fields/active_inequalities.hpp"
 #include "fields/anisotropy.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/known_data.hpp"
@@ -32,16 +33,9 @@ using Kind = Inequality::Kind;
 constexpr double kMet = 1e-9;  // in the frame: what is left by rounding
 constexpr std::size_t kFirstCenters = 600;
 constexpr int kMostRounds = 40;
-constexpr std::size_t kSampledMisfits = 128;
-// Data are suspected if the field would miss them by more, as squares, than this times what four
-// fifths of the data are missed by without themselves, and than this share of the most.
-constexpr double kSuspect = 8, kAsMuch = 0.1;
-// What it takes to keep them, in variances of what is left. Exact data have up to 120, wrong ones
-// millions.
+// What leaving out each of the suspected must save, in variances of what is left. Exact data save up
+// to 120, wrong ones millions.
 constexpr double kPays = 400;
-constexpr double kApart = 0.1;  // of half of the lattice's diagonal
-// So many inequalities become active in one round, those that are missed most.
-constexpr std::size_t kMostActivated = 200;
 // What a bound contradicts: so many data at most, and those that count this much of the first one.
 constexpr std::size_t kMostContradicted = 4;
 constexpr double kCounts = 0.25;
@@ -79,12 +73,15 @@ public:
     /// Rounds until all data are met, but for those that contradict others.
     void solve() {
         fit();
-        inequalities_ = known_.inequalities();
-        for (Inequality& inequality : inequalities_)
+        std::vector<Inequality> inequalities = known_.inequalities();
+        for (Inequality& inequality : inequalities) {
             inequality.functional = known_.for_order(likely_.order, inequality.functional);
-        states_.assign(inequalities_.size(), {});
+            if (drawn_) inequality.least -= drawn_->of(inequality.functional);
+        }
+        active_ = ActiveInequalities(std::move(inequalities));
         if (drawn_) {
-            meet_drawn(options_.draw->kind.left_out);
+            leave_out_as_found();
+            meet();
             return;
         }
         refuse_contradictions();
@@ -121,11 +118,6 @@ public:
     }
 
 private:
-    struct State {
-        bool active = false, was_released = false, stays = false;
-        bool left_out = false;  ///< it contradicts other data
-    };
-
     /// A function of the kind that was found, which the data condition.
     void draw(const FieldDraw& given) {
         const FunctionKind& kind = given.kind;
@@ -159,15 +151,16 @@ private:
         return std::abs(likely_.lift) * sum * static_cast<double>(slits.count);
     }
 
-    /// As meet(), where what the drawn function is at the data is not to be met again.
-    void meet_drawn(std::span<const std::uint8_t> left_out) {
-        if (left_out.size() != inequalities_.size())
+    /// The inequalities that the field left out whose kind is drawn.
+    void leave_out_as_found() {
+        const std::span<const std::uint8_t> left_out = options_.draw->kind.left_out;
+        if (left_out.size() != active_.all().size())
             throw InputError("option", "a field is drawn with the bounds that it was found of");
-        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
-            inequalities_[n].least -= drawn_->of(inequalities_[n].functional);
-            states_[n].left_out = left_out[n] != 0;
+        std::vector<std::size_t> numbers;
+        for (std::size_t n = 0; n < left_out.size(); ++n) {
+            if (left_out[n] != 0) numbers.push_back(n);
         }
-        meet();
+        active_.leave_out(numbers);
     }
 
     FunctionKind kind() const {
@@ -180,7 +173,7 @@ private:
                          gaps_,
                          {is_center_.begin(), is_center_.end()},
                          {}};
-        for (const State& state : states_)
+        for (const auto& state : active_.states())
             out.left_out.push_back(state.left_out ? 1 : 0);
         return out;
     }
@@ -189,8 +182,9 @@ private:
     void meet() {
         for (int round = 0; round < kMostRounds; ++round) {
             const bool more_contacts = add_centers();
-            const bool more_bounds = activate();
-            const bool fewer = !more_bounds && !more_contacts && release();
+            const bool more_bounds = active_.activate(*spline_, kMet);
+            const bool fewer =
+                !more_bounds && !more_contacts && active_.release(*spline_, first_active_);
             if (!more_contacts && !more_bounds && !fewer) break;
             fit();
         }
@@ -226,11 +220,7 @@ private:
                 all.push_back(known_.on_surface(n));
         }
         first_active_ = all.size();
-        for (std::size_t n = 0; n < states_.size(); ++n) {
-            if (!states_[n].active) continue;
-            all.push_back(inequalities_[n].functional);
-            all.back().right = inequalities_[n].least;
-        }
+        active_.append_to(all);
         for (std::size_t row = 0; drawn_ && row < first_active_; ++row) {
             all[row].right -= drawn_->of(all[row]);
             if (row < dip_errors.size()) all[row].right -= error * dip_errors[row];
@@ -306,98 +296,22 @@ private:
         return out;
     }
 
-    /// Inequalities that do not hold.
-    bool activate() {
-        std::vector<std::pair<double, std::size_t>> missed;
-        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
-            if (states_[n].active || states_[n].left_out) continue;
-            const double lack = inequalities_[n].least - spline_->of(inequalities_[n].functional);
-            if (lack > kMet) missed.emplace_back(-lack, n);
-        }
-        std::sort(missed.begin(), missed.end());
-        missed.resize(std::min(missed.size(), kMostActivated));
-        for (const auto& [lack, n] : missed) {
-            if (states_[n].was_released) states_[n].stays = true;
-            states_[n].active = true;
-        }
-        return !missed.empty();
-    }
-
-    /// Active inequalities that would hold by themselves. One that did not once it was released
-    /// stays.
-    bool release() {
-        bool any = false;
-        std::size_t row = first_active_;
-        for (std::size_t n = 0; n < states_.size(); ++n) {
-            if (!states_[n].active) continue;
-            const double force = spline_->force(row++);
-            if (force >= 0 || states_[n].stays) continue;
-            states_[n].active = false;
-            states_[n].was_released = true;
-            any = true;
-        }
-        return any;
-    }
-
     /// Takes out inequalities that contradict other data, if there are any: those that the field
     /// would miss most without them. It pays if what is left needs so much less bending that each
     /// of them had taken far more than chance; else they stay.
     bool leave_out() {
-        const std::vector<std::size_t> suspects = suspected();
+        const std::vector<std::size_t> suspects = active_.suspected(*spline_, first_active_);
         if (suspects.empty()) return false;
-        const std::vector<State> before = states_;
+        const std::vector<ActiveInequalities::State> before = active_.states();
         const double energy = spline_->energy();
-        for (State& state : states_)  // what was bent for those may be right again
-            state = {false, false, false, state.left_out};
-        for (const std::size_t n : suspects)
-            states_[n].left_out = true;
+        active_.leave_out(suspects);
         fit();
         meet();
         const double least = kPays * static_cast<double>(suspects.size()) * spline_->scale();
         if (energy - spline_->energy() > least) return true;
-        states_ = before;
+        active_.set_states(before);
         fit();
         return false;
-    }
-
-    /// Active bounds and polarities that the field would miss most if they were left out, of
-    /// several near each other only one, since the others may be right.
-    std::vector<std::size_t> suspected() const {
-        std::vector<std::size_t> rows, numbers;
-        const std::size_t step = std::max<std::size_t>(1, first_active_ / kSampledMisfits);
-        for (std::size_t row = 0; row < first_active_; row += step)
-            rows.push_back(row);
-        const std::size_t sampled = rows.size();
-        std::size_t row = first_active_;
-        for (std::size_t n = 0; n < states_.size(); ++n) {
-            if (!states_[n].active) continue;
-            if (inequalities_[n].kind != Kind::kOrder) {
-                rows.push_back(row);
-                numbers.push_back(n);
-            }
-            ++row;
-        }
-        if (numbers.empty()) return {};
-        const std::vector<double> misfits = spline_->misfits_without(rows);
-        std::vector<double> sorted = misfits;
-        const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 4 / 5);
-        std::nth_element(sorted.begin(), usual, sorted.end());
-        const double most = *std::max_element(misfits.begin() + sampled, misfits.end());
-        const double least = std::max(kSuspect * *usual, kAsMuch * most);
-        std::vector<std::pair<double, std::size_t>> found;
-        for (std::size_t k = 0; k < numbers.size(); ++k) {
-            if (misfits[sampled + k] > least) found.emplace_back(-misfits[sampled + k], numbers[k]);
-        }
-        std::sort(found.begin(), found.end());
-        std::vector<std::size_t> out;
-        for (const auto& suspect : found) {
-            const std::size_t n = suspect.second;
-            const auto is_near = [&](std::size_t other) {
-                return length(minus(inequalities_[n].at, inequalities_[other].at)) < kApart;
-            };
-            if (std::ranges::none_of(out, is_near)) out.push_back(n);
-        }
-        return out;
     }
 
     void refuse_contradictions() const {
@@ -418,7 +332,7 @@ private:
     /// but the other polarity.
     void refuse_polarities() {
         std::vector<std::int64_t> against;
-        for (const Inequality& inequality : inequalities_) {
+        for (const Inequality& inequality : active_.all()) {
             if (inequality.kind == Kind::kPolarity && spline_->of(inequality.functional) < 0)
                 against.push_back(inequality.item);
         }
@@ -440,21 +354,20 @@ private:
     }
 
     void report_missed(Field& out) const {
-        for (std::size_t n = 0; n < inequalities_.size(); ++n) {
-            const Inequality& inequality = inequalities_[n];
+        for (const Inequality& inequality : active_.all()) {
             const double lack = inequality.least - spline_->of(inequality.functional);
             if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
             const bool is_dip = inequality.kind == Kind::kPolarity;
             auto& missed = is_dip ? out.dips_missed : out.bounds_missed;
             if (!missed.empty() && missed.back() == inequality.item) continue;
             missed.push_back(inequality.item);
-            if (!is_dip) out.contradicted.push_back(contradicted(n));
+            if (!is_dip) out.contradicted.push_back(contradicted(inequality));
         }
     }
 
     /// The data that say where the field is at a bound that is missed.
-    std::vector<Datum> contradicted(std::size_t bound) const {
-        const Functional& of_bound = inequalities_[bound].functional;
+    std::vector<Datum> contradicted(const Inequality& bound) const {
+        const Functional& of_bound = bound.functional;
         const std::vector<double> weights = spline_->weights_for(of_bound);
         std::map<std::pair<Datum::Kind, std::int64_t>, double> counts;
         for (std::size_t row = 0; row < 2 * known_.data().dips.size(); ++row)
@@ -467,9 +380,9 @@ private:
                     std::abs(weights[row++]);
         }
         const auto is_bound = [](const Inequality& each) { return each.kind == Kind::kBound; };
-        for (std::size_t n = 0; n < states_.size(); ++n) {
-            if (!states_[n].active) continue;
-            const Inequality& other = inequalities_[n];
+        for (std::size_t n = 0; n < active_.all().size(); ++n) {
+            if (!active_.states()[n].active) continue;
+            const Inequality& other = active_.all()[n];
             const double count = std::abs(weights[row++]);
             if (other.kind == Kind::kPolarity) counts[{Datum::Kind::kDip, other.item}] += count;
             // one on the same side says the same
@@ -495,8 +408,7 @@ private:
     std::vector<char> is_center_;
     std::vector<double> gaps_;
     Likely likely_;
-    std::vector<Inequality> inequalities_;
-    std::vector<State> states_;
+    ActiveInequalities active_;
     std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;
