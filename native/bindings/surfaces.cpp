@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hull_corners, hull_border, outside_hull, tin, natural_neighbour, and both of parts of points;
-// surface_heights, dsi, ties, tied_heights, nodes_around, crowded_data.
+// surface_heights, dsi, ties, tied_heights, raised_heights, nodes_around, crowded_data.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -150,6 +150,8 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
 using SheetArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
 /// Places (C, 2), lower and upper bounds (C,), sheets (C,).
 using TieArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<std::int32_t>>;
+/// Places (C, 2), lower and upper bounds (C,), margins (C,).
+using RaisedArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
 /// Radii (L,), positions (M, 2), sided (M, F), coefficients (L, M).
 using TermArrays = std::tuple<Array<double>, Array<double>, Array<double>, Array<double>>;
 
@@ -194,6 +196,23 @@ Array<double> tied_heights(const Array<double>& heights, const Array<double>& no
         z = interpolation::tied_heights(view(heights), to, view(sided), given, run(execution));
     }
     return to_array(std::move(z));
+}
+
+Array<double> raised_heights(const Array<double>& nodes, const Array<std::int32_t>& triangles,
+                             const std::pair<Array<double>, Array<double>>& heights,
+                             const RaisedArrays& data, double tolerance,
+                             WatchedExecution* execution) {
+    const auto& [z, least] = heights;
+    const auto& [places, lower, upper, margins] = data;
+    const interpolation::RaisedSheet sheet{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
+                                           view(z), view(least)};
+    const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), {}};
+    std::vector<double> out;
+    {
+        const py::gil_scoped_release unlocked;
+        out = interpolation::raised_heights(sheet, asked, view(margins), tolerance, run(execution));
+    }
+    return to_array(std::move(out));
 }
 
 Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::int32_t>& triangles,
@@ -308,6 +327,16 @@ sided  (N, F): the sheet's sides of faults times their weights at the nodes
 terms  radii (L,), positions (M, 2), sided (M, F), coefficients (L, M), of ties
 
 Returns (N,). Those of some nodes are the same as among all, to the last bit.)");
+    module.def(
+        "raised_heights", &raised_heights, arg("nodes"), arg("triangles"), arg("heights"),
+        arg("data"), arg("tolerance"), arg("execution") = py::none(),
+        R"(The heights of a sheet that was raised at nodes, so that it honors data within triangles, too.
+
+heights    at nodes (N, 2), of triangles (T, 3): as raised (N,), and the least ones (N,), NaN where there is none
+data       places (C, 2); lower and upper bounds (C,); margins (C,), by how much these are narrowed
+tolerance  heights so near to what is asked for are right
+
+Returns (N,). Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
     module.def(
         "nodes_around", &nodes_around, arg("nodes"), arg("triangles"), arg("places"),
         R"(The nodes (K,) of the triangles that places (C, 2) lie in, of nodes (N, 2), triangles (T, 3).

@@ -121,6 +121,15 @@ def tied_heights(
     return work.native(native_module().tied_heights, z, np.ascontiguousarray(nodes), sided, as_given)
 
 
+def raised_heights(
+    work: Work, nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray, least: np.ndarray, data: TieData
+) -> np.ndarray:
+    """Heights (N,) at nodes (N, 2), at or above the least ones (N,), NaN where there is none, with which a
+    sheet that was raised to these honors its data within triangles as far as they leave room."""
+    asked = (data.places, data.lower, data.upper, data.margins)
+    return work.native(native_module().raised_heights, nodes, triangles, (z, least), asked, data.tolerance)
+
+
 def missed_warnings(data: TieData, after: np.ndarray) -> list[str]:
     """The warnings about data that a surface does not honor. after: as of correction."""
     warnings = []

@@ -18,12 +18,11 @@ from ..heights.mis_ties import without_mis_ties
 from ..heights.on_mesh import BOUNDS, within_bounds
 from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
-from ..heights.ties import corrected, tie_data
+from ..heights.ties import corrected, raised_heights, tie_data
 from ..heights.true_thickness import Base
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import checked_options
 from .observed.conformable import alike_of
-from .observed.raised_sheets import honoring
 from .observed.sheet_series import bounds_beside, companions_of
 from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
@@ -236,7 +235,7 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     if surface.series is not None and surface.ties and not has_limits:
         plan = np.ascontiguousarray(vertices[:, :2])
         data = tie_data(surface.tied_points, surface.bounds)
-        raised = honoring(work, plan, triangles, raised, least, data)
+        raised = raised_heights(work, plan, triangles, raised, least, data)
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())
     warning = raised_above(rock, number, int((lift > 0).sum()), len(vertices), thickness, lift[worst], place)

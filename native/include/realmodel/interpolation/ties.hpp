@@ -76,6 +76,29 @@ std::vector<std::int32_t> nodes_around(std::span<const std::array<double, 2>> no
                                        std::span<const std::array<std::int32_t, 3>> triangles,
                                        std::span<const std::array<double, 2>> places);
 
+/// A sheet that was raised at the nodes of a planar mesh to least heights.
+struct RaisedSheet {
+    std::span<const std::array<double, 2>> nodes;
+    std::span<const std::array<std::int32_t, 3>> triangles;
+    std::span<const double> heights;
+    std::span<const double> least;  ///< of the nodes; NaN: none
+};
+
+/// The heights of a raised sheet at its nodes with which it honors data within triangles, too, as
+/// far as the least heights leave room; as they are where it does already.
+///
+/// Of how far the sheet is above the least heights at the corners of a triangle, each datum asks
+/// that it lies between two planes. What is there is projected onto these, one after another, until
+/// all hold (Kaczmarz 1937; Agmon 1954, "The relaxation method for linear inequalities", Canadian
+/// Journal of Mathematics 6).
+/// @param margins    by how much bounds of the data are narrowed, for which there may be no room
+/// @param tolerance  heights nearer than this to what is asked for are right
+/// @throws InputError kind "not_finite" (items: the node), "bad_index" (items: the triangle)
+/// @throws Cancelled
+std::vector<double> raised_heights(const RaisedSheet& sheet, const TieData& data,
+                                   std::span<const double> margins, double tolerance,
+                                   const Execution& execution = {});
+
 /// Data that a mesh cannot honor beside others.
 struct CrowdedData {
     std::vector<std::int32_t> numbers;  ///< ascending
