@@ -36,8 +36,8 @@ def test_points_in_every_spelling(write, text):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("", None, "no points"),
-        ("\n# only\n", None, "no points"),
+        ("", None, "no rows"),
+        ("\n# only\n", None, "no rows"),
         ("x,y,z\n", None, "no points"),
         ("1,2,3\n1,2\n", 2, "3 values are needed, there are 2"),
         ("1,2,3\n\n1,,3\n", 3, "y is not a number: ''"),
