@@ -33,8 +33,8 @@ using Kind = Inequality::Kind;
 constexpr double kMet = 1e-9;  // in the frame: what is left by rounding
 constexpr std::size_t kFirstCenters = 600;
 constexpr int kMostRounds = 40;
-// What leaving out each of the suspected must save, in variances of what is left. Exact data save up
-// to 120, wrong ones millions.
+// What leaving out each of the suspected must save, in variances of what is left. Exact data save
+// up to 120, wrong ones millions.
 constexpr double kPays = 400;
 // What a bound contradicts: so many data at most, and those that count this much of the first one.
 constexpr std::size_t kMostContradicted = 4;
