@@ -36,7 +36,7 @@ def package():
 
 
 def part(path):
-    """A part of the installed package, e.g. "bl.batch"."""
+    """A part of the installed package, e.g. "bl.pictures.batch"."""
     return importlib.import_module(f"{name()}.{path}")
 
 

@@ -42,7 +42,7 @@ def block_volumes():
 def exact_volumes():
     """{block: volume} of the same example, built without Blender's meshes."""
     core = installed.part("core")
-    model = core.build(core.load_project(installed.part("bl.samples").project_file(SAMPLE)))
+    model = core.build(core.load_project(installed.part("bl.project.samples").project_file(SAMPLE)))
     check(model.validate().passed, "the model is not a valid one")
     return {block.name: block.volume for block in model.blocks if block.cells}
 
@@ -86,7 +86,7 @@ def main(folder):
     with np.load(folder / "model.npz") as arrays:
         check(len(arrays["block_names"]) == len(expected), "model.npz has other blocks")
     check_vendored(package)
-    installed.part("bl.batch").render(folder / "picture.png", size=(480, 300), samples=16)
+    installed.part("bl.pictures.batch").render(folder / "picture.png", size=(480, 300), samples=16)
     check_picture(folder / "picture.png")
 
     blend = str(folder / "walk.blend")
