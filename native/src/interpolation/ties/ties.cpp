@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -28,9 +29,9 @@ constexpr int kMostPasses = 6;         // over the last level, until what is lef
 constexpr double kRounding = 1e-14;    // of the diagonal: no pivot is exactly 0
 constexpr double kDependent = 1e-5;    // of a row: less left by others asks for absurd corrections
 constexpr double kMostCrowded = 0.02;  // of the square of a row: less left by others asks as much
-// the same where inequalities do not hold by little, as a share of the range of the data:
-// corrections of nodes stay below a fifth of it
-constexpr double kLittle = 0.005, kMostCrowdedByLittle = 6e-4;
+// the same where inequalities do not hold by little, as a share of the range of the data; nodes may
+// be moved by another share of it for them
+constexpr double kLittle = 0.005, kMostCrowdedByLittle = 6e-4, kMostMoved = 0.2;
 
 constexpr double kSteep = 1;
 constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
@@ -103,7 +104,23 @@ public:
         spacing_ = std::sqrt(rows_.area / static_cast<double>(count));
         if (active_.empty()) activate_some(wrong);
         settle(kMostCrowded);
-        if (activate_some(given_up_by_little())) settle(kMostCrowdedByLittle);
+    }
+
+    /// The same, with inequalities met, too, that were given up and hardly do not hold; none where
+    /// there are none of these, or where nodes would be moved far for them.
+    std::optional<Tying> closer() const {
+        const double range = range_of_data();
+        const Members little = given_up_by(kLittle * range);
+        if (little.empty()) return {};
+        Tying found = *this;
+        for (const std::int32_t row : little)
+            found.state_[row] = State::kIdle;
+        if (!found.activate_some(found.beyond())) return {};
+        found.settle(kMostCrowdedByLittle);
+        for (std::size_t i = 0; i < z_.size(); ++i) {
+            if (!(std::abs(found.z_[i] - z_[i]) <= kMostMoved * range)) return {};
+        }
+        return found;
     }
 
     /// By how much the sheet lies below what a row asks for; above it negative.
@@ -150,9 +167,7 @@ private:
         return numbers;
     }
 
-    /// The inequalities that were given up, and that hardly do not hold now that others are met;
-    /// the worst first. They are idle again.
-    Members given_up_by_little() {
+    double range_of_data() const {
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (const TieRow& row : rows_.rows) {
             for (const double z : {row.lower, row.upper}) {
@@ -161,12 +176,18 @@ private:
                 high = std::max(high, z);
             }
         }
+        return high - low;
+    }
+
+    /// The inequalities that were given up, and that do not hold by so much at most.
+    Members given_up_by(double most) const {
+        Members found;
         for (std::size_t i = 0; i < state_.size(); ++i) {
             const bool is_given_up = state_[i] == State::kGivenUp && !rows_.rows[i].is_contact();
-            if (is_given_up && std::abs(missing(i)) <= kLittle * (high - low))
-                state_[i] = State::kIdle;
+            if (is_given_up && std::abs(missing(i)) <= most)
+                found.push_back(static_cast<std::int32_t>(i));
         }
-        return beyond();
+        return found;
     }
 
     /// Makes contacts of inequalities that do not hold, of near ones only the first. Whether there
@@ -449,18 +470,19 @@ std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> no
 Ties tie(const TiedSheets& sheets, const TieData& data, double tolerance,
          const Execution& execution) {
     const TieRows rows(sheets, data);
-    Tying tying(rows, tolerance, execution);
+    std::optional<Tying> tying(std::in_place, rows, tolerance, execution);
     const auto missing = [&] {
         std::vector<double> found(rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
         for (std::size_t i = 0; i < found.size(); ++i)
-            if (rows.rows[i].is_known) found[i] = tying.missing(i);
+            if (rows.rows[i].is_known) found[i] = tying->missing(i);
         return found;
     };
     Ties ties;
     ties.before = missing();
-    tying.run();
+    tying->run();
+    if (std::optional<Tying> closer = tying->closer()) tying.emplace(std::move(*closer));
     ties.after = missing();
-    ties.terms = std::move(tying).terms();
+    ties.terms = std::move(*tying).terms();
     return ties;
 }
 

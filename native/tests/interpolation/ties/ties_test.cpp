@@ -200,6 +200,27 @@ TEST(Ties, BoundsThatHardlyDoNotHoldAreMetCloseToContacts) {
     EXPECT_GT(*std::min_element(tied.begin(), tied.end()), -7);
 }
 
+TEST(Ties, NodesAreNotMovedFarForBoundsThatHardlyDoNotHold) {
+    const Grid grid(5);
+    const std::vector<double> z(grid.nodes.size(), 0);
+    for (const unsigned seed : {11u, 36u, 38u}) {
+        std::mt19937 random(seed);
+        const auto drawn = [&] { return static_cast<double>(random()) / 4294967296.0; };
+        Asked asked;
+        for (int n = 0; n < 60; ++n) {
+            const std::array<double, 2> at{4 * drawn(), 4 * drawn()};
+            const double height = at[0] + 0.02 * drawn();
+            if (n % 6 == 0) asked.contact(at, height);
+            if (n % 6 != 0)
+                asked.add(at, n % 2 == 0 ? height : -kNone, n % 2 == 0 ? kNone : height);
+        }
+        const Ties ties = tie({grid.nodes, grid.triangles, z, {}, {}}, asked.data(), kTolerance);
+        const std::vector<double> tied = tied_heights(z, grid.nodes, {}, ties.terms);
+        EXPECT_LT(*std::max_element(tied.begin(), tied.end()), 8) << seed;
+        EXPECT_GT(*std::min_element(tied.begin(), tied.end()), -4) << seed;
+    }
+}
+
 TEST(Ties, SameBytesForAnyThreadsAndForSomeNodes) {
     const Grid grid(60);
     const std::vector<double> z(grid.nodes.size(), 5e5);
