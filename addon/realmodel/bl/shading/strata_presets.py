@@ -12,6 +12,7 @@ import bpy
 from ...core.filling import PALETTES
 from ...core.filling.strata import UPRIGHT
 from ..host.nodes import Nodes
+from ..objects.materials import linear_color
 
 KEY = "realmodel_strata"  # on a material: its preset
 PICTURES = "filling.jpg"  # of the presets in their order, made by scripts/draw_filling.py
@@ -76,10 +77,7 @@ def material(preset):
     made = bpy.data.materials.new(f"{label} Strata")
     made.use_nodes = True
     made[KEY] = preset
-    colors = [
-        tuple(int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
-        for _, color in PALETTES[values(preset)["palette"].lower()]
-    ]
+    colors = [linear_color(color) for _, color in PALETTES[values(preset)["palette"].lower()]]
     made.diffuse_color = (*colors[0], 1.0)
     nodes = Nodes(made.node_tree)
     shader = next(node for node in made.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
@@ -92,7 +90,7 @@ def material(preset):
         stops.new(1.0)
     for number, color in enumerate(colors):
         stops[number].position = number / len(colors)
-        stops[number].color = (*(channel**2.2 for channel in color), 1.0)
+        stops[number].color = (*color, 1.0)
     nodes.link(share, ramp.inputs["Fac"])
     nodes.link(ramp.outputs["Color"], shader.inputs["Base Color"])
     return made
