@@ -28,12 +28,6 @@ class HoleValidationJob(ThreadJob):
         self._folds = folds
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
 
-    def run(self):
-        return self._put(super().run())
-
-    def finish(self):
-        return self._put(super().finish())
-
     def _work(self, job):
         with job.part(0.0, _BUILT):
             model = self._request.make()

@@ -17,9 +17,9 @@ class ThreadJob:
     _job = None
 
     def run(self):
-        """Runs `_work(job)` in this thread; returns its result, and raises its errors."""
+        """Works in this thread; returns as `finish`."""
         self._threads = threads()
-        return work.run(self._work, threads=self._threads)
+        return self._put(work.run(self._work, threads=self._threads))
 
     def start(self, is_short=False):
         """Starts the work. is_short: it is expected to take less than half a second."""
@@ -50,5 +50,10 @@ class ThreadJob:
         """Removes the data-blocks that `hand_over` prepared."""
 
     def finish(self):
-        """The result of `_work(job)`; raises Cancelled, and its errors."""
-        return self._job.result()
+        """Puts the result into the scene, and returns it as `_put` does. Raises Cancelled, and the errors of
+        `_work(job)`."""
+        return self._put(self._job.result())
+
+    def _put(self, made):
+        """Puts the result of `_work(job)` into the scene, in the main thread. Here it is only returned."""
+        return made

@@ -37,13 +37,6 @@ class EnsembleJob(ThreadJob):
             low, high = explosion.bounds(scene)
             self._plane = (np.asarray(low) + high) / 2 + origin, (0.0, -1.0, 0.0)
 
-    def run(self):
-        """Makes the ensemble in this thread and puts it into the scene."""
-        return self._put(super().run())
-
-    def finish(self):
-        return self._put(super().finish())
-
     def state(self):
         fraction, text = super().state()
         return fraction, f"{self._done} of {self._count} realizations" if self._done else text

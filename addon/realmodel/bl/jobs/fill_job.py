@@ -101,7 +101,7 @@ class named:
 
 
 class FillJob(ThreadJob):
-    """Fills a shape with strata.
+    """Fills a shape with strata. `run` and `finish` return the collection of the beds.
 
     shape: FilledShape. strata: core.Strata. depth: as of FilledShape.closed. has_looks: the rocks get looks,
     otherwise their colors alone. has_masks: a copy of the object gets a mask of each bed. warnings: of what
@@ -115,14 +115,6 @@ class FillJob(ThreadJob):
         self._scene, self._shape, self._strata = scene.name, shape, strata
         self._mesh = shape.closed(depth)
         self._has_looks, self._has_masks = has_looks, has_masks
-
-    def run(self):
-        """Fills in this thread and puts the beds into the scene; returns their collection."""
-        return self._put(super().run())
-
-    def finish(self):
-        """Adds the beds to the scene. Raises Cancelled, and the errors of the job."""
-        return self._put(self._job.result())
 
     def _work(self, job):
         with job.part(0.0, _SHARE), named(self._shape.name):

@@ -30,13 +30,6 @@ class PlannedJob(ThreadJob):
         self._axis = planned_holes.axis_of(row)
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
 
-    def run(self):
-        """Asks in this thread."""
-        return self._put(super().run())
-
-    def finish(self):
-        return self._put(super().finish())
-
     def _work(self, job):
         axis = self._axis
         with job.part(0.0, _BUILT):

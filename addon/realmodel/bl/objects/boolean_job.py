@@ -71,14 +71,6 @@ class BooleanJob(ThreadJob):
         self._operands = tuple(entry[0] for entry in read)
         self._layers = tuple(entry[1] for entry in read)
 
-    def run(self):
-        """Intersects in this thread and puts the result into the scene."""
-        return self._put(super().run())
-
-    def finish(self):
-        """Adds the result to the scene. Raises Cancelled, and the errors of the job."""
-        return self._put(self._job.result())
-
     # -- in the thread
 
     def _work(self, job):
