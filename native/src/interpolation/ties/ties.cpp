@@ -38,6 +38,20 @@ constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
 constexpr double kSignRidge = 1e-9;    // of the diagonal, where only signs of terms are wanted
 constexpr std::size_t kLookedAt = 32;  // data around an inequality
 
+/// The range of finite bounds.
+struct BoundRange {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+
+    void add(double lower, double upper) {
+        for (const double z : {lower, upper}) {
+            if (std::isinf(z)) continue;
+            low = std::min(low, z);
+            high = std::max(high, z);
+        }
+    }
+    double size() const { return high - low; }
+};
+
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
 class Thinning {
 public:
@@ -168,15 +182,11 @@ private:
     }
 
     double range_of_data() const {
-        double low = HUGE_VAL, high = -HUGE_VAL;
+        BoundRange range;
         for (const TieRow& row : rows_.rows) {
-            for (const double z : {row.lower, row.upper}) {
-                if (!row.is_known || std::isinf(z)) continue;
-                low = std::min(low, z);
-                high = std::max(high, z);
-            }
+            if (row.is_known) range.add(row.lower, row.upper);
         }
-        return high - low;
+        return range.size();
     }
 
     /// The inequalities that were given up, and that do not hold by so much at most.
@@ -445,16 +455,11 @@ bool is_steep(const TieData& data, std::size_t i, std::span<const spatial::Neigh
 std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> nodes) {
     std::vector<bool> found(data.places.size(), false);
     if (data.places.empty()) return found;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        for (const double z : {data.lower[i], data.upper[i]}) {
-            if (std::isinf(z)) continue;
-            low = std::min(low, z);
-            high = std::max(high, z);
-        }
-    }
+    BoundRange range;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        range.add(data.lower[i], data.upper[i]);
     const spatial::PlanBox box = spatial::box_around(nodes);
-    const double slope = kSteep * (high - low) / std::max(box.width(), box.height());
+    const double slope = kSteep * range.size() / std::max(box.width(), box.height());
     const spatial::NearestPoints tree(data.places);
     std::vector<spatial::Neighbor> near;
     for (std::size_t i = 0; i < found.size(); ++i) {
