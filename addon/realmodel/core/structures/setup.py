@@ -16,8 +16,8 @@ from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
+from ..project.series import has_fields
 from ..project.structure_entries import Fault
-from ..settings.series import FIELD
 from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
     interpolate_rock,
@@ -83,8 +83,7 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
-    has_fields = any(series.kind == FIELD for rock in project.rocks for series in rock.series)
-    middle = _SHEETS if has_fields else 1.0
+    middle = _SHEETS if any(map(has_fields, project.rocks)) else 1.0
     with work.part(0.0, middle):
         if project.faults or project.bodies:
             structures = make_structures(work, project, inputs, stage, joins, keep)
