@@ -17,7 +17,7 @@ from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import progress_bar, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.project.series import refuse_fields
+from ..core.project.series import has_fields
 from ..core.surfaces.local_heights import PartHeights
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
@@ -91,7 +91,6 @@ def build(
                 project, folder, tile_size, client, workers=workers, cells=cells, progress=bar, cancel=cancel
             )
     check_cells(cells)
-    refuse_fields(project.rocks, "a model in tiles")
     size = checked_size(tile_size)
     folder = Path(folder)
     progress = progress or (lambda _share, _text: None)
@@ -100,7 +99,7 @@ def build(
     if not is_finished:
         require_this_version(client)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
-        if project.faults or project.bodies:
+        if project.faults or project.bodies or any(has_fields(rock) for rock in project.rocks):
             return build_faulted(project, folder, size, cells, done_by, progress, cancel)
         with mapped_arrays(folder) as arrays:
             found = prepared(

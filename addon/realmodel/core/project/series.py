@@ -149,11 +149,6 @@ def check_names_series(rock, surface, refuse: Refuse) -> None:
         raise refuse(f"{rock.item} has no series '{surface.series}'", "series", advice)
 
 
-def refuse_fields(rocks, what: str) -> None:
-    """Refuses rock masses (Rock) with fields where `what` cannot be made of them yet. Raises InputRefused."""
-    for rock in rocks:
-        for series in rock.series:
-            if series.kind == FIELD:
-                item = f"{rock.item}, {series.item}"
-                advice = "use sheets instead of the series, or leave it out"
-                raise series.refused(f"{what} cannot have series of fields yet", "name", advice, item)
+def has_fields(rock) -> bool:
+    """Whether surfaces of a rock mass (Rock) are level sets of fields."""
+    return any(series.kind == FIELD for series in rock.series)
