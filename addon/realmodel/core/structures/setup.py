@@ -18,7 +18,7 @@ from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.series import has_fields
 from ..project.structure_entries import Fault
-from ..surfaces.field_data import left_out_warnings
+from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
     interpolate_rock,
     mesh_again,
@@ -63,6 +63,8 @@ def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is
             mesh_rock(work, entry)
         if entry.region is not None:
             entry.region = Sheet(*map(keep, entry.region))
+        if entry.rock.observed is not None and entry.rock.interpolates:
+            apply_observations(work, entry)
 
 
 def make_surfaces(
@@ -181,8 +183,9 @@ def _divide_inputs(work: Work, structures: Structures, inputs: list[RockInput], 
     """Gives each rock mass its compartments, and its surfaces what observations say there."""
     add_compartments(structures, inputs)
     apply_in_compartments(work, structures, inputs)
-    for entry in inputs:
-        mesh_again(work, entry, keep)
+    again = [mesh_again(work, entry, keep) for entry in inputs]
+    if any(again):  # along inclined holes their bounds follow the mesh
+        apply_in_compartments(work, structures, inputs)
 
 
 def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage, keep) -> None:
