@@ -17,7 +17,7 @@ from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import progress_bar, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.project.series import refuse_fields
+from ..core.project.series_checks import refuse_fields
 from ..core.surfaces.local_heights import PartHeights
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel

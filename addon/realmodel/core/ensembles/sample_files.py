@@ -107,7 +107,11 @@ def _write_vti(samples: GridSamples, found: Probabilities, file: BinaryIO) -> No
 
 
 def _write_drawing(
-    samples: SectionSamples, found: Probabilities, file: BinaryIO, write, exaggeration: float
+    samples: SectionSamples,
+    found: Probabilities,
+    file: BinaryIO,
+    write: Callable[[drawing.Drawing, BinaryIO], None],
+    exaggeration: float,
 ) -> None:
     write(draw_probabilities(samples, found, exaggeration), file)
 

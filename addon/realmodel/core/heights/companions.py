@@ -20,6 +20,7 @@ import numpy as np
 from ..base.work import Work, native_module
 from ..settings.dips import Dips
 from ..settings.variogram import Variogram
+from .interpolation import Task
 from .mis_ties import mean_heights, without_mis_ties
 
 Fit = TypeVar("Fit")
@@ -76,7 +77,7 @@ class SheetModel:
     variances: np.ndarray
     thickness: Variogram
 
-    def native(self, sheets: np.ndarray, of_dips: np.ndarray, asked: int, anisotropy) -> tuple:
+    def native(self, sheets: np.ndarray, of_dips: np.ndarray, asked: int, anisotropy: dict | None) -> tuple:
         """The argument of native functions. sheets: of the points; of_dips: of the dips."""
         return (
             sheets,
@@ -118,7 +119,7 @@ def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     return mean_heights(every + 0.0)
 
 
-def likeliest(task, companions: Companions, data: JointData, spacing: float) -> dict | None:
+def likeliest(task: Task, companions: Companions, data: JointData, spacing: float) -> dict | None:
     """What native fit_sheets finds in the data of all sheets, in their order, for the settings of a Task;
     None where they are too few. spacing: of points and dips."""
     settings = task.settings

@@ -95,7 +95,11 @@ def make_surfaces(
 
 
 def _make_whole_sheets(
-    work: Work, inputs: list[RockInput], stage: int | None, keep: StoreArray, flat
+    work: Work,
+    inputs: list[RockInput],
+    stage: int | None,
+    keep: StoreArray,
+    flat: Callable[[Rock], Collection[int]] | None,
 ) -> None:
     """As make_surfaces, where nothing divides rock masses."""
     for entry in work.share_out(inputs):
@@ -186,7 +190,9 @@ def _divide_inputs(work: Work, structures: Structures, inputs: list[RockInput], 
         mesh_again(work, entry, keep)
 
 
-def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage, keep) -> None:
+def _make_all(
+    work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage: int | None, keep: StoreArray
+) -> None:
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     for number, entry in enumerate(work.share_out(inputs)):
         make_sheets(work, entry, stage, keep, numbers[number] if numbers else None)

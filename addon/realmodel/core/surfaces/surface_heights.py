@@ -187,7 +187,7 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     if method != "auto":
         return
     with naming(surface_item(rock, surface), surface.shape_source):
-        method, options = chosen(work, surface.points, settings, surface.known_dips())
+        method, options = chosen(work, surface.point_array(), settings, surface.known_dips())
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 

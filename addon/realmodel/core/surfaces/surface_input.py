@@ -85,7 +85,7 @@ class SurfaceInput:
 
     def _points(self, file: Path | None, step: Step, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
-        points: object = surface.points
+        points: Any = surface.points
         warnings: list[str] = []
         if surface.point_file is not None:
             points, warnings = read_point_file(surface.point_file, self.units, step, gather)
@@ -113,7 +113,7 @@ class SurfaceInput:
     def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface
         if surface.mesh_file is None:
-            return *checked_triangulation(surface.vertices, surface.triangles), None, []
+            return *checked_triangulation(*surface.triangulation()), None, []
         if arrays is None:
             mesh = read_mesh(surface.mesh_file, step)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units)

@@ -132,7 +132,7 @@ class Observations(ShortRepr):
         return cls(*(np.concatenate(array) for array in (*arrays, intervals, used)))
 
 
-def source_text(hole: str, depth: float, place) -> str:
+def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) -> str:
     """The hole with the depth, or the place where there is none: hole 'B1' at 12.5; else the place alone."""
     at = place_text(np.asarray(place).tolist())
     if not hole:
