@@ -24,7 +24,8 @@ from .packages import extra
 if TYPE_CHECKING:
     from ..._native import Native
 
-Progress = Callable[[float, str], None] | Literal[True]  # True: a bar
+Report = Callable[[float, str], None]  # of the share that is done, and what is being done
+Progress = Report | Literal[True]  # True: a bar
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
 Arguments = ParamSpec("Arguments")
@@ -282,8 +283,12 @@ def start(task: Callable[[Work], Result], threads: int = 0) -> Job:
     return Job(task, threads)
 
 
+def report_nothing(_share: float, _text: str) -> None:
+    """A Report for a caller that wants none."""
+
+
 @contextmanager
-def progress_bar() -> Iterator[Callable[[float, str], None]]:
+def progress_bar() -> Iterator[Report]:
     """progress(fraction, text) as a bar of tqdm: a widget in a notebook that has ipywidgets, else text.
 
     Raises UsageError where tqdm is missing.

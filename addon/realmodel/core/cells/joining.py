@@ -78,7 +78,7 @@ def _refused(
     if error.kind == "rocks_overlap" or 0 <= error.surface < surfaces:
         return refused_stack(error, inputs)
     error.surface -= surfaces
-    return refused_structure(error, structures)
+    return refused_structure(error, structures.faults, structures.bodies)
 
 
 def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:

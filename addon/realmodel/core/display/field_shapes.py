@@ -17,7 +17,7 @@ from ..fields import level_solids, within_lattice
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..results.model_fields import local_compartments
-from ..results.section_data import SectionData
+from ..results.sections.section_data import SectionData
 from ..surfaces.rock_input import RockInput
 
 _FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice

@@ -16,7 +16,7 @@ from ..cells.model_data import ModelData
 from ..model.section import Fence, Section
 from ..results.planned_holes import HoleAxis
 from ..results.regular_cells import checked_size, frame_of
-from ..results.section_drawing import directions, flattened, is_vertical, plane_of
+from ..results.sections.section_drawing import directions, flattened, is_vertical, plane_of
 
 MOST_PLACES = 20_000_000  # times blocks
 _COLUMNS, _ROWS = 200, 100  # of a section, where no size is given

@@ -20,8 +20,8 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
-from ..results.section_data import FenceData, SectionData
-from ..results.section_drawing import draw_section
+from ..results.sections.section_data import FenceData, SectionData
+from ..results.sections.section_drawing import draw_section
 from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_grid
 from .endings import by_ending

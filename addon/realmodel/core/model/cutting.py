@@ -19,8 +19,8 @@ from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
-from ..results.section_faults import traces_on_fence, traces_on_plane
-from ..results.section_holes import hole_lines, hole_places, line_through
+from ..results.sections.section_faults import traces_on_fence, traces_on_plane
+from ..results.sections.section_holes import hole_lines, hole_places, line_through
 from ..settings.method_options import check_threads
 from .section import Fence, Section
 

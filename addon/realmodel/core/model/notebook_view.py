@@ -16,8 +16,8 @@ from ..drawing.drawing import BLACK, Drawing
 from ..drawing.png import write_png
 from ..notebook import blocks_of_meshes, polygon_mesh, with_data
 from ..results.automatic_library import model_with_library
-from ..results.section_data import SectionData, rgb_bytes
-from ..results.section_drawing import block_outlines, flat_of, flattened
+from ..results.sections.section_data import SectionData, rgb_bytes
+from ..results.sections.section_drawing import block_outlines, flat_of, flattened
 from ..simulation import PolyhedralMesh
 from .cutting import section
 

@@ -16,7 +16,7 @@ from ..base.elementary import cos, sin
 from ..base.errors import UsageError
 from ..cells.model_data import ModelData
 from ..notebook import data_frame
-from .section_data import SectionData
+from .sections.section_data import SectionData
 
 if TYPE_CHECKING:
     import pandas

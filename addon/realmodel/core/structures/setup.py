@@ -240,7 +240,7 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
         side = fault_sides(work, beside[None], FaultShape(vertices, triangles, fault.dies_out))
     except native.InputError as error:
         error.surface = 0
-        raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error
+        raise refused_structure(error, [fault], []) from error
     if side[0] > 0:
         return fault
     return replace(fault, triangles=np.ascontiguousarray(triangles[:, ::-1]))

@@ -18,7 +18,7 @@ from ...base.atomic import Outputs
 from ...base.packages import extra
 from ...cells.model_data import ModelData
 from ...results.regular_cells import RegularCells, regular_cells
-from ...results.section_data import rgb_bytes
+from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _UNITS = {"m": "meter", "ft": "feet"}  # those that a workspace has

@@ -18,7 +18,7 @@ import numpy as np
 from ...base.atomic import Outputs
 from ...base.packages import extra
 from ...cells.model_data import ModelData
-from ...results.section_data import rgb_bytes
+from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole
 from .ifc_entities import Entities
 

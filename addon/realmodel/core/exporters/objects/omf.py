@@ -21,7 +21,7 @@ from ...base.atomic import Outputs
 from ...base.packages import omf_library, quiet
 from ...cells.model_data import ModelData
 from ...results.regular_cells import RegularCells, regular_cells
-from ...results.section_data import rgb_bytes
+from ...results.sections.section_data import rgb_bytes
 from ..shapes.parts import Part
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.work import native_module
 from ...cells.model_data import ModelData, UsedSurfaces
-from ...results.section_data import SectionData
+from ...results.sections.section_data import SectionData
 
 _PLAIN = (0.7, 0.7, 0.7)  # for parts without a property
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...base.errors import InputRefused, number_list, place_text
 from ...base.work import NativeError
-from ...project.structure_entries import Fault
-from .parts import Structures
+from ...project.structure_entries import Body, Fault
 
 _ADVICE = {
     "not_closed": "close its surface: each edge must belong to two triangles",
@@ -28,20 +29,19 @@ def ends_inside(fault: Fault, place: tuple[float, ...] | None) -> InputRefused:
     return InputRefused(what, file=file, line=line, item=fault.item, advice=advice, place=place)
 
 
-def refused_structure(error: NativeError, structures: Structures) -> InputRefused:
+def refused_structure(error: NativeError, faults: Sequence[Fault], bodies: Sequence[Body]) -> InputRefused:
     """The refusal for a native InputError about structures; the caller raises it."""
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
     advice: str | None = _ADVICE.get(error.kind)
-    if not 0 <= error.surface < len(structures):
+    if not 0 <= error.surface < len(faults) + len(bodies):
         return InputRefused(f"{error}{near}", advice=advice, place=place)
-    count = len(structures.faults)
-    fault = structures.faults[error.surface] if error.surface < count else None
-    entry = fault or structures.bodies[error.surface - count]
+    fault = faults[error.surface] if error.surface < len(faults) else None
+    entry = fault or bodies[error.surface - len(faults)]
     file, line = entry.shape_source()
     what, items = str(error), [int(item) for item in error.items]
     if error.kind == "does_not_meet" and items:
-        what = f"it ends at fault '{structures.faults[items[0]].name}', but does not meet it"
+        what = f"it ends at fault '{faults[items[0]].name}', but does not meet it"
     elif error.kind == "ends_inside" and fault is not None and fault.dies_out:
         what = "beyond its tip the surfaces differ on its two sides"
         advice = "extend it, or give data beyond the tip that agree"

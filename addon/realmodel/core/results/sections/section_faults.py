@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.algebra import dot
-from ..cells.model_data import ModelData
+from ...base.algebra import dot
+from ...cells.model_data import ModelData
 
 _FAULT = 1  # of `surface_kind`
 

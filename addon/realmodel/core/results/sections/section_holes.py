@@ -10,11 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.algebra import begins_run, norm
-from ..base.errors import InputRefused, UsageError, number_list
-from ..cells.model_data import ModelData
-from ..project.project import Project, Rock
-from ..readers.tables.observations import Observations
+from ...base.algebra import begins_run, norm
+from ...base.errors import InputRefused, UsageError, number_list
+from ...cells.model_data import ModelData
+from ...project.project import Project, Rock
+from ...readers.tables.observations import Observations
 
 UNKNOWN = -1  # block of a part of a hole that nothing is known of
 _BEYOND = 0.05  # of its length: how far a line goes on at both ends, where nothing is given
