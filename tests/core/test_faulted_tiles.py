@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import structure_cases
 from faulted.generate import random_case
+from folded_rocks import dome, folded_project, given_field, sheet
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, open_tiles
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
@@ -146,6 +147,25 @@ def test_sections_boreholes_and_warnings_are_those_of_the_whole(in_six):
         areas = [areas_of(section, len(whole.blocks)) for section in sections]
         assert np.allclose(areas[0], areas[1], rtol=1e-12)
     assert {w.text for w in tiled.warnings} == {w.text for w in whole.warnings}
+
+
+@pytest.mark.parametrize("fault", [(), (Fault("F", *structure_cases.plane_fault(5.3, 0.4)),)])
+def test_series_have_the_cells_of_the_undivided_model(fault, monkeypatch, tmp_path):
+    """The second level lies in one corner alone: most tiles have none of it."""
+    given_field(monkeypatch, dome, (3.0, 11.0))
+    younger = [sheet("base of B", lambda x, y: 6.0 + 0.2 * y)]
+    project = folded_project(dome, (3.0, 11.0), younger, faults=list(fault))
+    project.rocks[0].edge_length = 1.0
+    whole, found = build(project), []
+    for folder, size in (("one", (20.0, 20.0)), ("eight", (3.4, 5.6))):
+        tiled = build_tiles(project, tmp_path / folder, size)
+        assert_same_blocks(tiled, whole, 0.02)
+        assert {str(warning) for warning in tiled.warnings} == {str(warning) for warning in whole.warnings}
+        models = [tile.model() for tile in open_tiles(tmp_path / folder).tiles]
+        assert all(model.validate().passed for model in models)
+        found.append({key for model in models for key in cell_keys(model)})
+    assert len(models) == 8
+    assert found[0] == found[1]
 
 
 def areas_of(section, blocks):

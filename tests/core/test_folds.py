@@ -26,7 +26,6 @@ from realmodel.core.base.work import native_module
 from realmodel.core.exporters.fields import write_fields
 from realmodel.core.fields import are_on
 from realmodel.core.project.project_writer import save_project
-from realmodel.distributed import build as build_tiles
 
 LEVELS = {recumbent: (1.5, 2.5, 4.0), dome: (3.0, 4.5, 6.0), plunging: (2.5, 4.0, 6.0)}
 
@@ -229,11 +228,9 @@ def test_a_model_without_a_field_says_so(tmp_path):
         write_fields(model, file)
 
 
-def test_what_cannot_be_made_of_fields_yet_is_refused(monkeypatch, tmp_path):
+def test_what_cannot_be_made_of_fields_is_refused(monkeypatch):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     project = folded_project()
-    with pytest.raises(InputRefused, match="a model in tiles cannot have series of fields yet"):
-        build_tiles(project, tmp_path / "tiles", (5, 5))
     project.faults = [Fault("F", *plane((5.3, -2), (4.1, 12)), youngest="f")]
     with pytest.raises(InputRefused, match="displaces some of its surfaces, but not all"):
         build(project)

@@ -158,6 +158,18 @@ def test_inclined_holes_have_places_between_the_ends(write):
     assert observations.places[4].tolist() == observations.places[5].tolist()
 
 
+def test_a_hole_that_bends_has_places_close_enough_to_follow_it(write):
+    survey = "hole,depth,azimuth,inclination\nB1,0,90,0\nB1,12,90,90\n"  # a quarter of a circle
+    log = "hole,from,to,block\nB1,0,12,sand\n"
+    (observations,) = read(write, log, survey=survey, step=2.0).observations
+    assert 20 < len(observations) < 40
+    x, _, z = (observations.places - observations.places[0]).T
+    radius = 12 / (np.pi / 2)
+    np.testing.assert_allclose(np.hypot(x - radius, z), radius, rtol=1e-12)
+    half = 0.5 * np.diff(observations.depths) / radius
+    assert (radius * (1 - np.cos(half))).max() < 2e-3 * 1.01
+
+
 @pytest.mark.parametrize(
     ("more", "kind", "depth", "words"),
     [

@@ -53,6 +53,26 @@ def test_contacts_are_vertices_of_closed_level_sets(through):
         assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
 
 
+def test_a_part_of_a_field_has_the_same_triangles_to_the_bit(through):
+    _, places, surfaces = through
+    lattice = Lattice((-0.375, -0.5, -0.25), (0.875, 0.875, 0.875), (13, 13, 13))  # sums are exact
+    own = with_contacts(ScalarField(lattice, recumbent(lattice.positions()), LEVELS), places, surfaces)
+    box = np.array([[2.0, 3.1, -np.inf], [6.2, 4.7, np.inf]])
+    part = own.within(box)
+    assert part.lattice.counts[2] == own.lattice.counts[2] and part.lattice.nodes < own.lattice.nodes / 2
+
+    def in_box(field):
+        found = []
+        for solid in run(lambda work: level_solids(work, field)):
+            corners = within_lattice(field, solid).corners
+            there = ((corners >= box[0]) & (corners <= box[1])).all(axis=(1, 2))
+            found.append(corners[there].tolist())
+        return found
+
+    assert in_box(part) == in_box(own)
+    assert min(map(len, in_box(part))) > 20
+
+
 def test_contacts_denser_than_nodes_are_vertices_and_bend_it_no_more_than_they_miss_it():
     """Forty contacts in one cell of a surface that they miss by a tenth of it, here and there."""
     lattice = Lattice((-0.375, -0.5, -0.25), (1.0, 1.0, 1.0), (12, 12, 12))

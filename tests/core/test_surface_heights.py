@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, interpolate, load_project
 from realmodel.core.exporters.report import model_report
+from realmodel.core.results.layer_values import at_places
 from realmodel.core.settings.rules import RULES
 from realmodel.core.surfaces import wrong_sides as wrong_side_module
 
@@ -69,6 +70,20 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
         raised
     )
     assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
+
+
+def test_what_is_raised_honors_its_points_within_triangles():
+    """Points lie 0.6 above a plane or more; a spline through them would lie below that beside them."""
+    rng = np.random.default_rng(3)
+    at = np.concatenate([CORNERS[:, :2], rng.uniform(0, 10, (12, 2))])
+    z = 0.4 * at[:, 0] + 0.6 + 2.0 * (rng.random(len(at)) < 0.4)
+    low = Surface("low", points=points(0, 4, 4, 0), method="plane")
+    high = Surface("high", points=np.column_stack([at, z]), method="spline", minimum_thickness=0.5)
+    model = build(rock(low, high))
+    assert [warning.kind for warning in model.warnings] == ["minimum_thickness"]
+    thickness = model.surface(1)[0][:, 2] - model.surface(0)[0][:, 2]
+    assert thickness.min() == pytest.approx(0.5, abs=1e-12)
+    assert np.abs(at_places(*model.surface(1), at) - z).max() < 1e-9
 
 
 def test_points_of_surfaces_that_meet_there_are_not_on_the_wrong_side():

@@ -47,7 +47,7 @@ def from_points(count=900):
             options={"neighbours": 10, "smoothing": 0.1},
         ),
         Surface("triangles", points=scattered(count, 5, 12), method="tin"),
-        Surface("above", points=scattered(count, 6, 12), minimum_thickness=0.5),
+        Surface("above", points=scattered(count, 6, 12), minimum_thickness=0.5, tie=False),
     ]
     lattice = surfaces[3]  # many points at one distance from a node, each place once
     lattice.points = lattice.points[np.unique(lattice.points[:, :2], axis=0, return_index=True)[1]]
@@ -73,7 +73,7 @@ def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
     assert_same_warnings(tiled, whole)
     assert count == 9 or any(warning.kind == "wrong_side" for warning in tiled.warnings)
     of_tiles = [points for nodes, points in seen if nodes]
-    assert len(of_tiles) == 6 * (len(tiled.tiles) + 1)  # and around the points, for ties
+    assert len(of_tiles) == 6 * len(tiled.tiles) + 5  # and around the points, for ties
     assert count == 9 or np.mean(of_tiles) < 0.7 * count
     assert_same_heights(tiled, whole)
 
@@ -98,7 +98,7 @@ def of_all_kinds():
         Surface(
             "mean", points=np.concatenate([scattered(60, 1, -6), scattered(6, 1, -6)]), method="constant"
         ),
-        Surface("fitted", points=scattered(300, 2, -3), method="plane", minimum_thickness=0.5),
+        Surface("fitted", points=scattered(300, 2, -3), method="plane", minimum_thickness=0.5, tie=False),
         Surface(
             "dipping", points=scattered(9, 3, 0), method="plane", options={"dip": 2.0, "dip_direction": 70.0}
         ),
@@ -133,7 +133,7 @@ def of_all_kinds():
         Surface("flat", points=np.add(far, [0, 0, 22]), method="plane", options={"extrapolate": "none"}),
         Surface("patch", points=patch, method="grid", options={"extrapolate": "none"}),
     ]
-    surfaces[3].minimum_thickness = 1.0
+    surfaces[3].minimum_thickness, surfaces[3].tie = 1.0, False
     return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
 
 
@@ -183,7 +183,7 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
         Surface("natural", points=scattered(3000, 1), method="natural_neighbour"),
         Surface("linear", points=scattered(3000, 2, 4), method="tin"),
         Surface("lattice", points=lattice, method="natural_neighbour"),
-        Surface("cells", points=np.add(lattice, [0, 0, 3]), method="tin", minimum_thickness=0.5),
+        Surface("cells", points=np.add(lattice, [0, 0, 3]), method="tin", minimum_thickness=0.5, tie=False),
         Surface("aside", points=aside, method="natural_neighbour"),
         Surface("near", points=np.add(aside, [0, 0, 4]), method="natural_neighbour", options=nearest),
         Surface("nearer", points=np.add(aside, [0, 0, 7]), method="tin", options=nearest),
@@ -215,15 +215,17 @@ def test_surfaces_that_tiles_leave_to_the_lead():
         Surface("on it", method="parallel", options={"to": "ends", "thickness": 1.0}),
         Surface("bound", points=points),
         Surface("smooth", points=points, method="dsi", options={"above": "bound"}),
-        Surface("free", points=points, minimum_thickness=1.0),
+        Surface("free", points=points, minimum_thickness=1.0, tie=False),
         Surface("under", method="parallel", options={"to": "on it", "thickness": 1.0}),
         Surface("shown", points=points, method="parallel", options={"to": "free"}),
-        Surface("last", points=points, minimum_thickness=1.0),
+        Surface("last", points=points, minimum_thickness=1.0, tie=False),
     ]
     rock = Rock("r", surfaces, region=OUTLINE, edge_length=4.0)
     assert local_surfaces(rock) == set()
     surfaces[6] = Surface("apart", points=points)
     assert local_surfaces(rock) == {4, 6, 7}
+    surfaces[7].tie = True  # raised, it is tied again; it needs the one before
+    assert local_surfaces(rock) == {4}
 
 
 def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):

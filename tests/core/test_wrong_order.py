@@ -121,3 +121,14 @@ def test_each_contradiction_is_said_once(old_rule, rule):
 def test_samples_have_none(sample):
     model = build(load_project(SAMPLES / sample / "project.toml"))
     assert [w for w in model.warnings if "at the same place" in w.text] == []
+
+
+@pytest.mark.parametrize(("below", "kind"), [(1, "wrong_side"), (40, "ends"), (90, "wrong_side")])
+def test_where_many_points_of_a_survey_lie_below_the_top_a_surface_that_does_not_cut_ends(below, kind):
+    plan = np.random.default_rng(6).random((90, 2)) * 100.0
+    x = np.append(np.sort(plan[:, 0]), 101.0)
+    soil = top("soil", 0.1 * (plan[:, 0] - x[below - 1 : below + 1].mean()), plan, rule="conformable")
+    rock = Rock("r", [top("low", 0.0), soil], region=SQUARE, edge_length=20.0, base_elevation=-100.0)
+    (warning,) = [w for w in build(Project("p", [rock])).warnings if w.surface == "soil"]
+    assert (warning.kind, len(warning.items)) == (kind, below)
+    assert ("its rule is conformable: it ends there" in warning.text) == (kind == "ends")

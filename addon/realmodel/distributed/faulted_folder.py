@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model with faults or bodies built tile by tile into a folder (docs/dev/tiles.md)."""
+"""A model with faults, bodies or series of fields built tile by tile into a folder (docs/dev/tiles.md)."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.work import Cancel, Report, Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
+from ..core.structures.parts.parts import box_around, divide
 from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..core.tiles import TiledModel
 from ..core.tiles.catalog import CATALOG, Catalog
@@ -56,7 +57,7 @@ def build_faulted(
     report: Report,
     cancel: Cancel | None,
 ) -> TiledModel:
-    """tile_folder.build for a project with faults or bodies. size: of tiles."""
+    """tile_folder.build for a project with faults, bodies or fields. size: of tiles."""
     with mapped_arrays(folder) as arrays:
         built = _built(project, folder, size, cells, arrays, workers, report, cancel)
     return built if isinstance(built, TiledModel) else finish(*built)
@@ -83,6 +84,8 @@ def _built(
             mesh_inputs(work, inputs, arrays.keep)
         with work.part(_MESHED, 1.0):
             structures = make_surfaces(work, with_arrays, inputs, None, arrays.keep, joins=False)
+        if not structures.is_divided:  # fields alone
+            structures = divide(work, structures, box_around(inputs, structures, has_sheets=True))
         warnings = [warning for entry in inputs for warning in entry.warnings]
         return Windows(work, inputs, structures, arrays.keep), structures, warnings
 

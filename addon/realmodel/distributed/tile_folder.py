@@ -18,7 +18,6 @@ from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import Cancel, Progress, Report, progress_bar, report_nothing, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.project.series_checks import refuse_fields
 from ..core.surfaces.local_heights import PartHeights
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
@@ -92,7 +91,6 @@ def build(
                 project, folder, tile_size, client, workers=workers, cells=cells, progress=bar, cancel=cancel
             )
     check_cells(cells)
-    refuse_fields(project.rocks, "a model in tiles")
     size = checked_size(tile_size)
     folder = Path(folder)
     report = progress or report_nothing
@@ -101,7 +99,7 @@ def build(
     if not is_finished:
         require_this_version(client)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
-        if project.faults or project.bodies:
+        if project.faults or project.bodies or any(rock.has_fields for rock in project.rocks):
             return build_faulted(project, folder, size, cells, done_by, report, cancel)
         with mapped_arrays(folder) as arrays:
             found = prepared(

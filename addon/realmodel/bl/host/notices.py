@@ -24,7 +24,7 @@ _QUOTED = re.compile(
 )
 _PLAIN = re.compile(r"(?<![\w'/.-])(" + "|".join(key for key in _LABELS if "_" in key) + r")(?![\w'/-]|\.\w)")
 _BODY = re.compile(r"write \[\[body\]\]")
-_NO_ACTION = "joined"  # the kind of a warning after which nothing is to be done
+_NO_ACTION = {"joined", "ends"}  # the kinds of warnings after which nothing is to be done
 _PATH = re.compile(r"(?<!\S)/(?:[^\s:]+/)+([^\s:/]+\.\w+)")
 
 
@@ -34,7 +34,7 @@ def of_model(model):
     alike = {}
     several = len(model.project.rocks) > 1
     for warning in shown(model):
-        if warning.kind == _NO_ACTION:
+        if warning.kind in _NO_ACTION:
             continue
         alike.setdefault(re.sub(r"\d[\d.,e+-]*", "0", warning.text), []).append(warning)
     lines = []

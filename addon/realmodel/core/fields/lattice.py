@@ -56,6 +56,14 @@ class Lattice:
         low = np.asarray(self.origin, float)
         return low, low + np.multiply(self.spacing, np.subtract(self.counts, 1))
 
+    def _range_around(self, box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The first and the last node (3,) along each axis around what of a box (2, 3) lies in the lattice,
+        with a cell of margin; two apart at least."""
+        steps = (np.asarray(box, float) - self.origin) / self.spacing
+        last = np.subtract(self.counts, 1)
+        low = np.clip(np.floor(steps[0]) - 1, 0, last - 1).astype(np.int64)
+        return low, np.clip(np.ceil(steps[1]) + 1, low + 1, last).astype(np.int64)
+
     def positions(self) -> np.ndarray:
         """(nodes, 3) float64."""
         x, y, z = (
@@ -116,6 +124,24 @@ class ScalarField:
             (lattice.origin, lattice.spacing, lattice.counts),
             self.values,
             (self.points, self.point_values),
+        )
+
+    def within(self, box: np.ndarray) -> ScalarField:
+        """The field on the cells of its lattice around a box (2, 3): with the same tetrahedra and values."""
+        lattice = self.lattice
+        low, high = lattice._range_around(box)
+        origin = lattice.origin + low * np.array(lattice.spacing)
+        part = Lattice(tuple(origin.tolist()), lattice.spacing, tuple((high - low + 1).tolist()))
+        chosen = tuple(slice(a, b + 1) for a, b in zip(low[::-1], high[::-1], strict=True))
+        values = self.values.reshape(lattice.counts[::-1])[chosen]
+        least, most = part.corners
+        inside = ((self.points >= least) & (self.points <= most)).all(axis=1)
+        return ScalarField(
+            part,
+            np.ascontiguousarray(values).ravel(),
+            self.levels,
+            points=self.points[inside],
+            point_values=self.point_values[inside],
         )
 
     def at(self, points: np.ndarray) -> np.ndarray:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +33,11 @@ class SeriesField:
         """With the surfaces up to m of the rock mass; None where there are none."""
         count = min(self.count, m + 1 - self.first)
         return replace(self, count=count) if count > 0 else None
+
+    def within(self, box: np.ndarray, compartments: Sequence[int]) -> SeriesField:
+        """The fields of some compartments, by their numbers, around a box (2, 3)."""
+        some = {field: field.within(box) for field in {self.fields[each]: None for each in compartments}}
+        return replace(self, fields=[some[self.fields[each]] for each in compartments])
 
     def distinct(self) -> dict[ScalarField, list[int]]:
         """The different fields, with the compartments of each."""

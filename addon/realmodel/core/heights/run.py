@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.algebra import norm
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import NativeError, Work, refused_as
@@ -39,7 +40,7 @@ def heights(method: str, task: Task) -> Interpolation:
     warnings += [*(few_points(points, method) if task.dips is None else []), *elsewhere(points, nodes)]
     warnings += result.warnings
     if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
-        warnings += runs_away(points, result.z, method)
+        warnings += runs_away(points, result.z, method, _rise(task))
     share = float(outside.mean()) if len(outside) else 0.0
     return Interpolation(
         result.z,
@@ -116,16 +117,25 @@ def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
     return []
 
 
-def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
-    """A warning if heights go far beyond those of the points, by more than twice their range. Points that
-    differ by rounding alone are level, and have none."""
+def _rise(task: Task) -> float:
+    """How far a surface rises over points and nodes that has the steepest dip of a task everywhere; 0 without
+    dips."""
+    if task.dips is None:
+        return 0.0
+    plan = np.concatenate([task.points[:, :2], task.nodes])
+    return float(norm(task.dips.gradients).max() * norm(np.ptp(plan, axis=0)))
+
+
+def runs_away(points: np.ndarray, z: np.ndarray, method: str, rise: float = 0.0) -> list[str]:
+    """A warning if heights go far beyond those of the points, by more than twice their range and the rise
+    that dips let expect. Points that differ by rounding alone are level, and have none."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
     low, high = points[:, 2].min(), points[:, 2].max()
     lowest, highest = np.nanmin(z), np.nanmax(z)
     rounding = 1e-12 * max(abs(low), abs(high))
-    if not max(low - lowest, highest - high) > 2 * (high - low) > rounding:
+    if not max(low - lowest, highest - high) > 2 * (high - low) + rise or not 2 * (high - low) > rounding:
         return []
     return [
         f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "

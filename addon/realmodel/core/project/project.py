@@ -241,6 +241,11 @@ class Rock(Entry):
         for surface in self.surfaces:
             surface.is_level_set = surface.series in fields
 
+    @property
+    def has_fields(self) -> bool:
+        """Whether some of its surfaces are level sets of a field."""
+        return any(series.kind == FIELD for series in self.series)
+
     def members(self, series: Series) -> list[int]:
         """The numbers of the surfaces of a series."""
         return [number for number, surface in enumerate(self.surfaces) if surface.series == series.name]

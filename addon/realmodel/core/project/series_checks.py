@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import partial
 from itertools import pairwise
 
@@ -95,13 +94,3 @@ def check_names_series(rock: Rock, surface: Surface, refuse: Refuse) -> None:
     if surface.series is not None and surface.series not in names:
         advice = f"it has {', '.join(names)}" if names else "add [[rock.series]]"
         raise refuse(f"{rock.item} has no series '{surface.series}'", "series", advice)
-
-
-def refuse_fields(rocks: Iterable[Rock], what: str) -> None:
-    """Refuses rock masses with fields where `what` cannot be made of them yet. Raises InputRefused."""
-    for rock in rocks:
-        for series in rock.series:
-            if series.kind == FIELD:
-                item = f"{rock.item}, {series.item}"
-                advice = "use sheets instead of the series, or leave it out"
-                raise series.refused(f"{what} cannot have series of fields yet", "name", advice, item)

@@ -13,12 +13,12 @@ from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.model_data import ModelData
 from ..project.project import Project, Rock, Surface
-from ..readers.tables.observations import Observations
+from ..readers.tables.observations import Observations, in_one_interval
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.observed.derived import BlockNumbers
 from .closed_form import AIR, ClosedForm, surface_forms
 from .observed import sources_of
-from .seen_places import PLACES, in_one_interval, places_along
+from .seen_places import PLACES, places_along
 
 DEFAULT_FOLDS = 20  # holes are left out in so many groups, where they are more
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.work import Work
 from ..cells.model_data import ModelData
-from ..readers.tables.observations import Observations
+from ..readers.tables.observations import Observations, in_one_interval
 from ..results.layer_values import at_places
 from ..surfaces.observed.derived import BlockNumbers
 from ..surfaces.rock_input import RockInput
@@ -94,13 +94,6 @@ def _lowered(work: Work, entry: RockInput, form: ClosedForm, places: np.ndarray)
         places[:, 2] - above,
         places[:, 2],
     )
-
-
-def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:
-    """(R,) bool, the rows that are in one interval with the one before. used: (R,) bool, those that count."""
-    follows = given.goes_on & used
-    follows[1:] &= used[:-1]
-    return follows
 
 
 def places_along(given: Observations, ends: np.ndarray) -> np.ndarray:

@@ -280,7 +280,7 @@ def _bases(model: ModelData) -> np.ndarray:
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
     found = []
     for block in model.blocks:
-        folded = bool(model.rock_inputs) and bool(model.rock_inputs[block.rock].fields)
+        folded = any(surface.is_level_set for surface in model.project.rocks[block.rock].surfaces)
         rocks = [block.rock] if folded or block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
             if not model.structures.times:

@@ -11,7 +11,7 @@ from ..base.algebra import norm
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..readers.tables.observations import Observations
-from ..surfaces.field_data import apply_observations
+from ..surfaces.field_data import apply_observations, observed_on_mesh
 from ..surfaces.observed.derived import Situation
 from ..surfaces.rock_input import RockInput
 from ..surfaces.sides import sides_of
@@ -51,7 +51,12 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             reach = _NEAR * (entry.median_edge() if entry.rock.interpolates else spacing(entry))
             parted = _parted(observations, reach, sides)
             places = _off_structures(observations, reach, sides)
-        of_faults, within = sides(places)
+        given = observed_on_mesh(entry, places)
+        if parted is not None:
+            of_given = parted
+            parted = np.zeros(len(given[1]), bool)
+            parted[given[1]] = of_given
+        of_faults, within = sides(given[0].places)
         situation = Situation(
             sides=of_faults,
             inside=within,
@@ -60,7 +65,7 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             voids=[body.void for body, _ in bodies],
             parted=parted,
         )
-        apply_observations(work, entry, situation, places)
+        apply_observations(work, entry, situation, given)
 
 
 def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:

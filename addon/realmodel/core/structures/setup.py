@@ -17,8 +17,7 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
-from ..settings.series import FIELD
-from ..surfaces.field_data import left_out_warnings
+from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
     interpolate_rock,
     mesh_again,
@@ -63,6 +62,8 @@ def mesh_inputs(work: Work, inputs: list[RockInput], keep: StoreArray = as_it_is
             mesh_rock(work, entry)
         if entry.region is not None:
             entry.region = Sheet(*map(keep, entry.region))
+        if entry.rock.observed is not None and entry.rock.interpolates:
+            apply_observations(work, entry)
 
 
 def make_surfaces(
@@ -81,8 +82,7 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
-    has_fields = any(series.kind == FIELD for rock in project.rocks for series in rock.series)
-    middle = _SHEETS if has_fields else 1.0
+    middle = _SHEETS if any(rock.has_fields for rock in project.rocks) else 1.0
     with work.part(0.0, middle):
         if project.faults or project.bodies:
             structures = make_structures(work, project, inputs, stage, joins, keep)
@@ -186,8 +186,9 @@ def _divide_inputs(work: Work, structures: Structures, inputs: list[RockInput], 
     """Gives each rock mass its compartments, and its surfaces what observations say there."""
     add_compartments(structures, inputs)
     apply_in_compartments(work, structures, inputs)
-    for entry in inputs:
-        mesh_again(work, entry, keep)
+    again = [mesh_again(work, entry, keep) for entry in inputs]
+    if any(again):  # along inclined holes their bounds follow the mesh
+        apply_in_compartments(work, structures, inputs)
 
 
 def _make_all(

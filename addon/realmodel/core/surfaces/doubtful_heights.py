@@ -17,7 +17,7 @@ from ..base.work import Work, native_module
 from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
-from ..settings.methods import SURFACE_OPTIONS
+from ..settings.methods import METHODS, SURFACE_OPTIONS
 from ..settings.rules import RULES, Rule
 from .data_sources import sources_of_rock
 from .rock_input import RockInput
@@ -68,6 +68,8 @@ def _missed(
     that as many normally distributed residuals with the deviation of the other ones would have.
     """
     rock, shape = entry.rock, entry.surface(number)
+    if not rock.surfaces[number].ties and _goes_through_points(entry, number):
+        return None  # what its nodes do not resolve says nothing of the points, and is left so on purpose
     is_tied = shape in entry.untied and len(rock.surfaces[number].tied_points) > 0
     if is_tied:
         shape = entry.untied[shape]
@@ -95,6 +97,15 @@ def _missed(
         f"{_remedy(entry.interpolations[number], is_tied)}"
     )
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
+
+
+def _goes_through_points(entry: RockInput, number: int) -> bool:
+    """Whether the method of a surface gives the heights of points where nodes are at them."""
+    result = entry.interpolations[number]
+    if result is None:
+        return False
+    variogram = result.variogram
+    return METHODS[result.method].is_triangulated or (variogram is not None and variogram.nugget == 0)
 
 
 def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray) -> np.ndarray:

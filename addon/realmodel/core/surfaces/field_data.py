@@ -22,6 +22,7 @@ from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
 from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
+from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at
 
@@ -168,23 +169,33 @@ def _with_points(
     return surface, np.concatenate(known) if known else None
 
 
+def observed_on_mesh(entry: RockInput, places: np.ndarray | None = None) -> tuple[Observations, np.ndarray]:
+    """The observations of a RockInput, with more along its intervals where its surfaces are linear only
+    between edges of its planar mesh, once it is meshed; and (N,) bool, those that are given. places: for
+    their own places."""
+    observations = entry.rock.observed
+    assert observations is not None
+    if places is not None:
+        observations = replace(observations, places=places)
+    if entry.region is None or not entry.rock.interpolates:
+        return observations, np.ones(len(observations), bool)
+    return with_crossings(observations, entry.region)
+
+
 def apply_observations(
     work: Work,
     entry: RockInput,
     situation: Situation | None = None,
-    places: np.ndarray | None = None,
+    given: tuple[Observations, np.ndarray] | None = None,
 ) -> None:
     """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
     observations, in the place of those that they have. situation: where these lie, but for where surfaces
-    reach. places: (N, 3) for their own places."""
-    rock, observations = entry.rock, entry.rock.observed
-    assert observations is not None
-    if places is not None:
-        observations = replace(observations, places=places)
+    reach. given: as of observed_on_mesh."""
+    observations, is_own = given or observed_on_mesh(entry)
     situation = replace(situation or Situation(), covered=_covered(work, entry, observations.places))
-    derived = derive(rock, observations, situation)
-    entry.rock = with_contacts(rock, derived)
-    entry.used = derived.used
+    derived = derive(entry.rock, observations, situation)
+    entry.rock = with_contacts(entry.rock, derived)
+    entry.used = derived.used[is_own]
     of_tables = [each for each in entry.left_out if each.kind in IN_TABLES]
     entry.left_out = [*of_tables, *derived.left_out]
     if situation.sides is None or not situation.sides.shape[1]:  # a bound counts on its side of a fault

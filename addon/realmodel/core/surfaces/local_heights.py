@@ -222,8 +222,10 @@ def is_local(surface: Surface) -> bool:
         return False  # how dips and bounds count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
+    is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
+    if surface.minimum_thickness is not None and is_tied:
+        return False  # raised, it honors data that may share triangles
     if method == "parallel":
-        is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
         return settings["thickness"] is not None and not is_tied
     if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False

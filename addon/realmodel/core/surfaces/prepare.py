@@ -202,14 +202,16 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         raise error.within(rock.item, file=file, line=line) from error
 
 
-def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> None:
+def mesh_again(work: Work, entry: RockInput, keep: StoreArray = as_it_is) -> bool:
     """Meshes the region of a rock mass anew where observations gave its surfaces other contacts since, which
-    its mesh cannot tell apart. keep: as of mesh_inputs."""
+    its mesh cannot tell apart. keep: as of mesh_inputs. Returns whether it did."""
     if entry.region is None or entry.rock.observed is None or not entry.rock.interpolates:
-        return
-    if len(crowded_places(work, entry, entry.region, np.empty((0, 2)))):
-        mesh_rock(work, entry)
-        entry.region = Sheet(*map(keep, entry.region))
+        return False
+    if not len(crowded_places(work, entry, entry.region, np.empty((0, 2)))):
+        return False
+    mesh_rock(work, entry)
+    entry.region = Sheet(*map(keep, entry.region))
+    return True
 
 
 def _planar_mesh(work: Work, entry: RockInput) -> Sheet:

@@ -233,7 +233,7 @@ def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tup
     if raised is None:
         return shape, []
     has_limits = any(key in surface.options for key in BOUNDS)  # they come before data
-    if surface.series is not None and surface.ties and not has_limits:
+    if surface.ties and not has_limits:
         plan = np.ascontiguousarray(vertices[:, :2])
         data = tie_data(surface.tied_points, surface.bounds)
         raised = raised_heights(work, plan, triangles, raised, least, data)

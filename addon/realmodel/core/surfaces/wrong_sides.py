@@ -18,6 +18,8 @@ from .rock_input import RockInput
 
 _TIED = 1e-9  # of the range of its points: how near to them a surface is
 _ROUNDING = 1e-15  # of a height
+_SURVEY = 50  # points: fewer are contacts, each of which counts
+_FEW = 0.02  # of a survey: so few points on the wrong side are errors, as all of them would be
 
 
 def heights_at(work: Work, shape: Sheet, plan: np.ndarray) -> np.ndarray:
@@ -163,11 +165,17 @@ class WrongPoints:
     def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
         """count: of all points of the surface."""
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
+        surface = rock.surfaces[number]
+        share = len(self.items) / count
+        ends = side == "below" and not RULES[surface.rule].cuts and surface.minimum_thickness is None
+        is_meant = ends and count >= _SURVEY and _FEW < share < 1 - _FEW
+        advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {self.worst} at {place_text(self.place)}"
+            f"{self.by:.4g}: point {self.worst} at {place_text(self.place)}{advice}"
         )
-        return BuildWarning(text, "wrong_side", rock.name, rock.surfaces[number].name, tuple(self.items))
+        kind = "ends" if is_meant else "wrong_side"
+        return BuildWarning(text, kind, rock.name, surface.name, tuple(self.items))
 
 
 def listed(

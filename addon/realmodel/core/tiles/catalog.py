@@ -17,6 +17,7 @@ from ..cells.blocks import Block
 from ..project.library import load_library
 from ..project.project import Project, Rock, Surface
 from ..project.project_writer import library_text, toml_value
+from ..project.series import Series
 from ..project.structure_entries import Body, Fault
 from .grid import TileGrid
 
@@ -77,10 +78,16 @@ def write_catalog(catalog: Catalog, folder: Path) -> None:
     ]
     for rock in project.rocks:
         lines += ["", "[[rock]]", *_lines(name=rock.name, base_elevation=rock.base_elevation)]
+        for series in rock.series:
+            lines += ["", "[[rock.series]]", *_lines(name=series.name)]
         for surface in rock.surfaces:
             lines += ["", "[[rock.surface]]"]
             lines += _lines(
-                name=surface.name, rule=surface.rule, property=surface.property, block=surface.block
+                name=surface.name,
+                rule=surface.rule,
+                property=surface.property,
+                block=surface.block,
+                series=surface.series,
             )
     for fault in project.faults:
         lines += ["", "[[fault]]", *_lines(name=fault.name)]
@@ -121,6 +128,7 @@ def read_catalog(folder: Path) -> Catalog:
                 rock["name"],
                 [Surface(**surface) for surface in rock["surface"]],
                 base_elevation=rock.get("base_elevation"),
+                series=[Series(**series) for series in rock.get("series", [])],
             )
             for rock in content["rock"]
         ]

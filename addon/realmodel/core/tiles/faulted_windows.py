@@ -105,7 +105,8 @@ class Windows:
             for entry in inputs
             for c in range(len(entry.divided().sheets))
         ]
-        self._ends = min(low for low, _ in ends), max(high for _, high in ends)
+        tops = [own.top for entry in inputs for own in entry.fields]
+        self._ends = min(low for low, _ in ends), max([*tops, *(high for _, high in ends)])
         given = structures.native()
         self._continued = native_module().continued_structures(given, structures.divided_box())
         corners = [triangles.reshape(-1, 3, 3) for triangles, _, _ in self._continued]
@@ -115,6 +116,8 @@ class Windows:
     def _find_plans(self) -> None:
         self._all: list[_Plan] = []
         self._plan_of = {sheet: self._known_plan(sheet) for sheet in self._sheets()}
+        # level sets are made in each window again: their triangles are there for what shows surfaces
+        self._plan_of |= {sheet: _Plan(*sheet.arrays, self._keep) for sheet in self._level_sets()}
         regions = [entry.region for entry in self.inputs]
         self._regions = [None if region is None else _Plan(*region.arrays, self._keep) for region in regions]
         self._all += [region for region in self._regions if region is not None]
@@ -122,7 +125,14 @@ class Windows:
     def _sheets(self) -> Iterator[Sheet]:
         for entry in self.inputs:
             for number in range(len(entry.surfaces)):
-                yield from entry.divided().distinct(number)
+                if entry.field_of(number) is None:
+                    yield from entry.divided().distinct(number)
+
+    def _level_sets(self) -> Iterator[Sheet]:
+        for entry in self.inputs:
+            for own in entry.fields:
+                for number in own.numbers:
+                    yield from entry.divided().distinct(number)
 
     def _known_plan(self, sheet: Sheet) -> _Plan:
         """The plan of a sheet; sheets of one surface differ only in heights."""
@@ -136,7 +146,7 @@ class Windows:
     def divide(self, tile_size: tuple[float, float]) -> TileGrid:
         """The grid of the tiles; to be called before any window is asked for. Raises UsageError."""
         self._grid = tile_grid([plan.vertices for plan in self._all], tile_size)
-        for plan in self._all:
+        for plan in {*self._all, *self._plan_of.values()}:
             plan.sort(self._grid)
         return self._grid
 
@@ -154,6 +164,11 @@ class Windows:
         for corners, is_continuation, _ in self._continued:
             yield corners
             yield is_continuation
+        for entry in self.inputs:
+            for own in entry.fields:
+                for field in own.distinct():
+                    yield from (np.array(field.lattice.origin), field.values, field.levels)
+                    yield from (field.points, field.point_values)
 
     def _around(self, box: Box) -> Box:
         """A box around all triangles that meet one, and itself."""
@@ -186,7 +201,7 @@ class Windows:
     def _structures_near(self, work: Work, tile: tuple[int, int], box: Box) -> tuple[list[int], np.ndarray]:
         """The numbers of the structures that come into a box around a tile, and (S,) int8 the side on which
         all of the box is of the others."""
-        space = np.array([[*box[:2], self._ends[0]], [*box[2:], self._ends[1]]])
+        space = self._space(box)
         margin = _BESIDE * (space[1] - space[0])
         low, high = space[0] - margin, space[1] + margin
         structures = self.structures
@@ -257,7 +272,7 @@ class Windows:
         """The triangles of a structure that are nearest to anything in the window; of a body, or of a fault
         that is far away, all of them."""
         corners, is_continuation, kept = self._continued[number]
-        space = np.array([[*around[:2], self._ends[0]], [*around[2:], self._ends[1]]])
+        space = self._space(around)
         away = 2 * norm(space[1] - space[0])
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
@@ -267,11 +282,14 @@ class Windows:
 
     def _rock(self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, of_plan: dict) -> RockInput:
         entry = self.inputs[rock]
+        around = self._around(taken)  # so far its rock reaches
+        level_sets = {*self._level_sets()} if entry.fields else {}
         made: dict[Sheet, Sheet] = {}
 
         def sheet_of(sheet: Sheet) -> Sheet:
             if sheet not in made:
-                own, used, triangles = self._part(self._plan_of[sheet], taken, of_plan)
+                box = around if sheet in level_sets else taken
+                own, used, triangles = self._part(self._plan_of[sheet], box, of_plan)
                 made[sheet] = Sheet(np.ascontiguousarray(sheet.vertices[used]), triangles, own)
             return made[sheet]
 
@@ -310,7 +328,12 @@ class Windows:
             [None] * len(surfaces),
             structure=found,
             overlapping=entry.overlapping,
+            fields=[own.within(self._space(around), of) for own in entry.fields],
         )
+
+    def _space(self, around: Box) -> np.ndarray:
+        """(2, 3) a box in space over and under one in plan."""
+        return np.array([[*around[:2], self._ends[0]], [*around[2:], self._ends[1]]])
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -26,8 +26,10 @@ from ..cells.stack_refusals import refused_stack
 from ..exporters.npz import model_arrays, write_arrays
 from ..model.model import Model
 from ..project.project import Project, Rock, Surface
+from ..project.series import Series
 from ..project.structure_entries import Body, Fault
 from ..readers.npz import read_npz
+from ..settings.series import FIELD
 from ..structures.parts.parts import structures_of
 from ..surfaces.local_heights import LocalHeights, PartHeights
 from ..surfaces.rock_input import RockInput
@@ -77,12 +79,17 @@ def without_shape(rock: Rock) -> Rock:
             rule=surface.rule,
             property=surface.property,
             block=surface.block,
+            series=surface.series if surface.is_level_set else None,
             shape_file=surface.shape_source()[0],
         )
         for surface in rock.surfaces
     ]
     return Rock(
-        rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.shape_source("region")[0]
+        rock.name,
+        surfaces,
+        base_elevation=rock.base_elevation,
+        series=[Series(series.name) for series in rock.series if series.kind == FIELD],
+        shape_file=rock.shape_source("region")[0],
     )
 
 

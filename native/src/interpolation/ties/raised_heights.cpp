@@ -95,12 +95,9 @@ std::vector<AskedThickness> asked_of(const RaisedSheet& sheet, const TieData& da
     return out;
 }
 
-}  // namespace
-
-std::vector<double> raised_heights(const RaisedSheet& sheet, const TieData& data,
-                                   std::span<const double> margins, double tolerance,
-                                   const Execution& execution) {
-    const std::vector<AskedThickness> every = asked_of(sheet, data, margins);
+/// The thickness with which what is asked for is met, or as much of it as can be.
+Thickness met(const RaisedSheet& sheet, std::span<const AskedThickness> every, double tolerance,
+              const Execution& execution) {
     Thickness thickness(sheet);
     bool any = true;  // until all hold, or the others never will
     for (int round = 0; round < kMostRounds && any; ++round) {
@@ -113,6 +110,50 @@ std::vector<double> raised_heights(const RaisedSheet& sheet, const TieData& data
             any = thickness.project(asked) || any;
         }
     }
+    return thickness;
+}
+
+/// The range of the finite heights of a sheet and its data.
+double range_of(const RaisedSheet& sheet, const TieData& data) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const auto& heights : {sheet.heights, data.lower, data.upper}) {
+        for (const double z : heights) {
+            if (!std::isfinite(z)) continue;
+            low = std::min(low, z);
+            high = std::max(high, z);
+        }
+    }
+    return high - low;
+}
+
+/// Leaves out what lifts a node by more than `most`: others hold the nodes beside it down.
+/// @return whether anything is
+bool leave_out_far(const RaisedSheet& sheet, const Thickness& thickness, double most,
+                   double tolerance, std::vector<AskedThickness>& every) {
+    const auto lifts_far = [&](const AskedThickness& asked) {
+        return std::ranges::any_of(asked.corners, [&](std::int32_t corner) {
+            const auto n = static_cast<std::size_t>(corner);
+            return thickness.at(n) - (sheet.heights[n] - sheet.least[n]) > most;
+        });
+    };
+    const auto is_tight = [&](const AskedThickness& asked) {
+        return thickness.of(asked) <= asked.low + tolerance;
+    };
+    if (std::erase_if(every, [&](const auto& each) { return lifts_far(each) && is_tight(each); }))
+        return true;
+    return std::erase_if(every, lifts_far) > 0;
+}
+
+}  // namespace
+
+std::vector<double> raised_heights(const RaisedSheet& sheet, const TieData& data,
+                                   std::span<const double> margins, double tolerance,
+                                   const Execution& execution) {
+    std::vector<AskedThickness> every = asked_of(sheet, data, margins);
+    const double most = range_of(sheet, data);
+    Thickness thickness = met(sheet, every, tolerance, execution);
+    while (leave_out_far(sheet, thickness, most, tolerance, every))
+        thickness = met(sheet, every, tolerance, execution);
     std::vector<double> out(sheet.heights.begin(), sheet.heights.end());
     for (const AskedThickness& asked : every) {
         for (const std::int32_t corner : asked.corners) {

@@ -66,6 +66,18 @@ TEST(RaisedHeights, EndWhereDataContradictOneAnother) {
         EXPECT_TRUE(height >= 1 && height < 10);
 }
 
+TEST(RaisedHeights, AreNotFarAboveAllDataForOneOfThem) {
+    const Mesh
+        mesh;  // the first place holds two nodes down; the second is almost on the edge between
+    const std::vector<double> z{1, 1, 1, 1, 1};
+    const Places places{{1.99, 1.99}, {2.05, 2.05}, {5, 0.5}};
+    const auto found = mesh.raised(z, places, {1.1, 3, 1.5}, {1.1, 3, 1.5});
+    for (const double height : found)
+        EXPECT_LE(height, 3);
+    EXPECT_NEAR(mesh.at(found, {1.99, 1.99}), 1.1, 1e-11);
+    EXPECT_NEAR(mesh.at(found, {5, 0.5}), 1.5, 1e-11);
+}
+
 TEST(RaisedHeights, AreNotAskedForWhereThereIsNothingBeneath) {
     Mesh mesh;
     mesh.least[0] = NAN;

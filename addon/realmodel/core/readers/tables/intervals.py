@@ -21,6 +21,7 @@ from .unit_names import UnitNames
 
 _ALIKE = 1e-6  # of the largest depth in a hole: depths that are nearer are one, which digits have parted
 _MOST_BETWEEN = 100  # places between the ends of an interval of an inclined hole
+_STRAIGHT = 1e-3  # of the step between these: so far a hole may bend away from the ways between them
 _STEPS = 200  # in which the area of all holes is crossed, where no other step is given
 
 
@@ -154,9 +155,7 @@ def observed_intervals(
     used: list[bool] = []
     place = cache(place)
     for number, (begin, end, block, is_used) in enumerate(_divided(intervals, name, left_out, switched_off)):
-        across = norm((place(end) - place(begin))[:2])
-        count = 1 if plan_step <= 0 else min(int(np.ceil(across / plan_step)), _MOST_BETWEEN + 1)
-        for depth in [begin, *np.linspace(begin, end, max(count, 1) + 1)[1:-1].tolist(), end]:
+        for depth in _depths_along(place, begin, end, plan_step):
             places.append(place(depth))
             depths.append(depth)
             blocks.append(block)
@@ -170,6 +169,23 @@ def observed_intervals(
         np.array(numbers, np.int64),
         np.array([] if all(used) else used, bool),
     )
+
+
+def _depths_along(
+    place: Callable[[float], np.ndarray], begin: float, end: float, plan_step: float
+) -> list[float]:
+    """The depths of the places of an interval: its ends, and between them so many that these are a step apart
+    in plan at most, and that straight ways between them hardly leave a hole that bends."""
+    count = 1
+    if plan_step > 0:
+        across = norm((place(end) - place(begin))[:2])
+        count = min(max(int(np.ceil(across / plan_step)), 1), _MOST_BETWEEN + 1)
+        depths = np.linspace(begin, end, 2 * count + 1).tolist()
+        ways = zip(depths[:-2:2], depths[1::2], depths[2::2], strict=True)
+        off = max(float(norm(place(b) - 0.5 * (place(a) + place(c)))) for a, b, c in ways)
+        finer = int(np.ceil((off / (_STRAIGHT * plan_step)) ** 0.5))  # an arc's height goes with its square
+        count = min(count * max(finer, 1), _MOST_BETWEEN + 1)
+    return [begin, *np.linspace(begin, end, count + 1)[1:-1].tolist(), end]
 
 
 def _divided(

@@ -132,6 +132,13 @@ class Observations(ShortRepr):
         return cls(*(np.concatenate(array) for array in (*arrays, intervals, used)))
 
 
+def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:
+    """(R,) bool, the rows that are in one interval with the one before. used: (R,) bool, those that count."""
+    follows = given.goes_on & used
+    follows[1:] &= used[:-1]
+    return follows
+
+
 def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) -> str:
     """The hole with the depth, or the place where there is none: hole 'B1' at 12.5; else the place alone."""
     at = place_text(np.asarray(place).tolist())
