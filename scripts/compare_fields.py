@@ -64,11 +64,11 @@ def solved(horizons, share, left_out):
     data = LevelSetData(given, np.concatenate(contacts), surfaces, dips[:, :3], normals)
     lattice = Lattice(tuple(LOW), tuple((HIGH - LOW) / (COUNTS - 1)), tuple(COUNTS.tolist()))
     field = run(lambda work: solve_field(lattice, data, work))
-    shared = SharedCorners(np.arange(lattice.nodes)[None], np.ones((1, len(data.contacts)), bool))
-    (through,) = run(
-        lambda work: fields_with_contacts(work, [field], data.contacts, data.contact_surfaces, shared)
+    alone = SharedCorners(np.arange(lattice.nodes)[None], np.ones((1, len(data.contacts)), bool))
+    through = run(
+        lambda work: fields_with_contacts(work, [field], data.contacts, data.contact_surfaces, alone)
     )
-    return field, through, given
+    return field, through[0], given
 
 
 def distances(field, points, level):
