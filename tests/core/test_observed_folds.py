@@ -21,7 +21,7 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import native_module
 from realmodel.core.exporters.report import model_report
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.surfaces.observed.derived import Situation, derive
 
 LEVELS = {recumbent: (1.5, 2.5, 4.0), dome: (3.0, 4.5, 6.0), plunging: (2.5, 4.0, 6.0)}

@@ -22,7 +22,7 @@ from ..fields import (
     within_lattice,
 )
 from ..fields.series_field import SeriesField
-from ..project.series import Series, members
+from ..project.series import Series
 from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
@@ -69,7 +69,7 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
     surfaces the level sets of these. Raises InputRefused."""
     for entry in work.share_out(inputs):
         given = [series for series in entry.rock.series if series.kind == FIELD]
-        waiting = [each for each in given if stage is None or members(entry.rock, each)[0] <= stage]
+        waiting = [each for each in given if stage is None or entry.rock.members(each)[0] <= stage]
         entry.fields = []
         top = _top_of_fields(entry) if waiting else 0.0
         for series in work.share_out(waiting):
@@ -84,11 +84,11 @@ def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:
     """The data and the lattice of each series of a rock mass, which is read, whose surfaces are level sets;
     as far as they are known before other surfaces are made. Raises InputRefused."""
     given = [series for series in entry.rock.series if series.kind == FIELD]
-    waiting = [series for series in given if members(entry.rock, series)]
+    waiting = [series for series in given if entry.rock.members(series)]
     top = _top(entry) if waiting else 0.0
     found = []
     for series in waiting:
-        data = SeriesData.of(entry, series, members(entry.rock, series))
+        data = SeriesData.of(entry, series, entry.rock.members(series))
         found.append((data, _lattice(entry, series, data.positions(), top)))
     return found
 
@@ -120,7 +120,7 @@ def _top(entry: RockInput, beyond: float = _BEYOND) -> float:
 
 
 def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> SeriesField:
-    numbers = members(entry.rock, series)
+    numbers = entry.rock.members(series)
     lattice = _lattice(entry, series, SeriesData.of(entry, series, numbers).positions(), top)
     data = SeriesData.of(entry, series, numbers, _PLACES * lattice.spacing[0])
     structure = entry.divided()
