@@ -31,6 +31,7 @@ from .field_warnings import (
     leave_out,
     warn_of_contacts,
     warn_of_critical_points,
+    warn_of_direction,
     warn_of_field,
     warn_of_lacks,
     within_rock,
@@ -130,10 +131,8 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     draws = entry.field_draws.get(series.name)
     for number, family in enumerate(work.share_out(_families(entry, series, numbers))):
         within = Within(work, structure, numbers[-1], family)
-        chosen = within.has(sides)
-        if lacks := data.some(chosen).missing(data):
-            chosen = np.ones(len(sides), bool)
-            warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
+        names = [structure.names[each] for each in family.members]
+        chosen = _chosen(entry, series, data, within.has(sides), names)
         own = data.some(chosen)
         with naming(f"{entry.rock.item}, {series.item}"):
             slits = Slits.of(entry, family, within, lattice)
@@ -158,6 +157,21 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
+
+
+def _chosen(
+    entry: RockInput, series: Series, data: SeriesData, here: np.ndarray, names: list[str]
+) -> np.ndarray:
+    """(N,) bool: the data that the field of compartments, by their names, is made of: those `here`, with a
+    warning more where these do not say enough."""
+    own = data.some(here)
+    if lacks := own.missing(data):
+        warn_of_lacks(entry, series, lacks, names)
+        return np.ones(len(here), bool)
+    if len(data.numbers) == 1 and len(data.dips) and not len(own.dips):
+        warn_of_direction(entry, series, names)
+        return here | data.of_dips()
+    return here
 
 
 class _Solved(NamedTuple):
