@@ -447,6 +447,21 @@ def test_contacts_and_bounds_among_faults():
     assert not found.violated and not found.left_out
 
 
+def test_a_sheet_without_points_keeps_the_bounds_of_its_compartment():
+    """East of the fault holes end in the middle block, above where its base goes on from the west."""
+    places = [(1, 1), (1, 9), (3, 5), (7, 5), (9, 1), (9, 9)]
+    seen = level_logs(places, [0, 0, 0, 2, 2, 2])
+    east = seen.places[:, 0] > 5
+    seen = seen.some(~(east & (seen.blocks == "S0")))
+    deep = seen.places[:, 2] == 2.0  # the lower top, less the throw: the holes go on to 1 in the same block
+    seen.places[deep, 2] = 1.0
+    model = faulted(seen, Fault("F", *plane_fault(), youngest="S1"))
+    assert len(model.project.rocks[0].surfaces[0].contact_array()) == 3
+    found = model.observed()
+    assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
+    assert not found.violated
+
+
 def test_where_a_hole_passes_a_fault_no_surface_is_known_to_be():
     """Hole B6 passes an inclined normal fault at z = 5, and the younger block again below it."""
     places = [(1, 1), (1, 9), (2, 5), (8, 5), (9, 1), (9, 9)]
