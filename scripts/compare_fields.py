@@ -27,9 +27,10 @@ from realmodel.core.base.work import run  # noqa: E402
 from realmodel.core.fields import (  # noqa: E402
     Lattice,
     LevelSetData,
+    SharedCorners,
+    fields_with_contacts,
     rises,
     solve_field,
-    with_contacts,
 )
 
 DATA = ROOT.parent / "shared" / "data" / "folds" / "claudius_all"
@@ -63,8 +64,11 @@ def solved(horizons, share, left_out):
     data = LevelSetData(given, np.concatenate(contacts), surfaces, dips[:, :3], normals)
     lattice = Lattice(tuple(LOW), tuple((HIGH - LOW) / (COUNTS - 1)), tuple(COUNTS.tolist()))
     field = run(lambda work: solve_field(lattice, data, work))
-    through = run(lambda work: with_contacts(work, field, data.contacts, data.contact_surfaces))
-    return field, through, given
+    alone = SharedCorners(np.arange(lattice.nodes)[None], np.ones((1, len(data.contacts)), bool))
+    through = run(
+        lambda work: fields_with_contacts(work, [field], data.contacts, data.contact_surfaces, alone)
+    )
+    return field, through[0], given
 
 
 def distances(field, points, level):

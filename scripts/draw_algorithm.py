@@ -63,16 +63,11 @@ def draw_border(d):
             x, y = middle(CORNERS[outline[i - 1]], CORNERS[name])
             center = middle(*corners(outline))
             away = 15 if outline == OUTLINES[0] else 17
-            length = math.hypot(x - center[0], y - center[1])
-            d.text(
-                x + away * (x - center[0]) / length,
-                y + away * (y - center[1]) / length + 4,
-                "+1",
-                11,
-                bold=True,
-                fill=RED,
-                anchor="middle",
-            )
+            share = away / math.hypot(x - center[0], y - center[1])
+            x, y = x + share * (x - center[0]), y + share * (y - center[1])
+            if outline != OUTLINES[0]:
+                d.rect(x - 9, y - 6, 18, 12, SAND, SAND)  # no lines behind the letters
+            d.text(x, y + 4, "+1", 11, bold=True, fill=RED, anchor="middle")
     d.text(4, 14, "inner edges: +1 - 1 = 0", 11.5, fill=GREY)
 
 
@@ -92,7 +87,8 @@ def draw_winding(d):
 
 # --- record lows and groups (300 x 190)
 
-AT = [0, 50, 100, 150, 200, 250, 300]
+STEP = 47  # of the kinks, so that names of surfaces fit beside them
+AT = [STEP * i for i in range(7)]
 SURFACES = (  # heights down the page, oldest first
     ("S0", [160, 156, 158, 150, 154, 150, 152]),
     ("S1", [112, 98, 116, 128, 108, 110, 124]),
@@ -103,8 +99,8 @@ FILLS = (STONE, SAND, CREAM, PALE)
 
 
 def at(heights, x):
-    i = min(int(x // 50), len(AT) - 2)
-    share = (x - AT[i]) / 50
+    i = min(int(x // STEP), len(AT) - 2)
+    share = (x - AT[i]) / STEP
     return heights[i] + share * (heights[i + 1] - heights[i])
 
 
@@ -116,7 +112,7 @@ def stations():
             for _, t in SURFACES[:k]:
                 before, after = s[i] - t[i], s[i + 1] - t[i + 1]
                 if before * after < 0:
-                    found.add(AT[i] + 50 * before / (before - after))
+                    found.add(AT[i] + STEP * before / (before - after))
     return sorted(found)
 
 
@@ -134,7 +130,7 @@ def draw_record_lows(d):
             if max(quad[3][1] - quad[0][1], quad[2][1] - quad[1][1]) > 0.01:
                 d.polygon(quad, FILLS[k], "white", 1)
         d.path(list(zip(AT, heights, strict=True)), GREY, 1, "4 3")
-        d.text(302, heights[-1] + 4, name, 10.5, fill=GREY)
+        d.text(AT[-1] + 4, heights[-1] + 4, name, 10.5, fill=GREY)
     for envelope in envelopes:
         d.path(envelope, INK, 1.6)
     d.text(16, 54, "block 3", 11)
@@ -213,7 +209,7 @@ def draw_columns(d):
     d.text(60, 80, "a | a'", 10.5)
     d.text(212, 88, "a | a'", 10.5)
     d.text(206, 122, "b | a'", 10.5)
-    d.text(90, 148, "b | b: no wall", 10.5)
+    d.text(97, 148, "b | b: no wall", 10.5)
     d.text(12, 24, "left", 11, bold=True)
     d.text(40, 24, "right", 11, bold=True, fill=BLUE)
 
@@ -243,8 +239,8 @@ def draw_around(d):
     d.polygon([(x, 66), (298, 74), (298, 140), (x, 130)], CREAM, INK, 1.2)
     for y in (30, 66, 98, 130, 160):
         d.dot((x, y), RED, 4)
-    d.text(257, 99, "height of", 10)
-    d.text(257, 111, "another", 10)
+    d.text(257, 99, "another", 10)
+    d.text(257, 111, "height", 10)
     d.text(244, 190, "and along its vertical", 10.5, anchor="middle")
 
 
@@ -272,7 +268,7 @@ def draw_bounds(d):
     for point in LOWER:
         d.dot(point, INK, 2.6)
     d.text(4, 40, "E", 13, bold=True)
-    d.text(4, 108, "S", 13, bold=True)
+    d.text(4, 102, "S", 13, bold=True)
     d.text(2, 144, "decided: below, stays whole", 11, fill=BLUE)
     d.text(150, 160, "unclear: overlaid exactly", 11, fill=RED)
     d.path([(200, 148), (200, 100)], RED, 1, end="red")

@@ -20,7 +20,7 @@ from realmodel.core.drawing import save_drawing
 from realmodel.core.drawing.drawing import Drawing, Text
 from realmodel.core.ensembles import Realizer, blocks_at, draw_probabilities, section_samples
 from realmodel.core.ensembles.places import Probabilities
-from realmodel.core.results.section_drawing import block_outlines, flattened
+from realmodel.core.results.sections.section_drawing import block_outlines, flattened
 
 ROOT = Path(__file__).resolve().parents[1]
 NEAR = 40.0  # of the plane: boreholes that are drawn

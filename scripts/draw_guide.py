@@ -61,7 +61,8 @@ def shrink(source, target):
     with Image.open(source) as picture:
         small = picture.convert("RGB")
     small.thumbnail((WIDEST, 10 * WIDEST), Image.Resampling.LANCZOS)
-    few = small.quantize(COLORS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    method = {"method": Image.Quantize.MAXCOVERAGE, "kmeans": 3}  # else small things change color
+    few = small.quantize(COLORS, dither=Image.Dither.NONE, **method)
     lost = ImageStat.Stat(ImageChops.difference(small, few.convert("RGB"))).mean
     (small if max(lost) > BANDS else few).save(target, optimize=True)
 

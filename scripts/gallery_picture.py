@@ -369,12 +369,12 @@ def cliff(levels):
 
     bpy.ops.mesh.primitive_cube_add(size=30.0)
     item = bpy.context.object
-    item.scale = 1.5, 0.7, 0.6
+    item.scale = 1.2, 0.9, 0.8
     subdivision = item.modifiers.new("Subdivision", "SUBSURF")
     subdivision.subdivision_type, subdivision.levels = "SIMPLE", levels
     displace = item.modifiers.new("Displace", "DISPLACE")
     displace.texture = bpy.data.textures.new("Clouds", "CLOUDS")
-    displace.texture.noise_scale, displace.strength = 6.0, 5.0
+    displace.texture.noise_scale, displace.strength = 8.0, 6.0
     return item
 
 

@@ -77,7 +77,7 @@ def modes(walk):
     pictures.append(labeled(viewed(walk), "Section"))
     side_by_side(pictures, walk.folder / "view_modes.png", 3, 2)
     bpy.ops.realmodel.section_remove()
-    frame(walk)
+    frame(walk, 0.82)  # beneath the texts
     for stage in (3, 6, 9, 10):
         group.stage = stage
         yield from settled(walk)
@@ -114,7 +114,7 @@ def csv(walk):
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
     walk.area.spaces.active.overlay.show_floor = True  # beneath points that would hang in the air
-    fill_view(walk, guide_scenes.visible_meshes(), elevation=math.radians(40.0))
+    fill_view(walk, guide_scenes.visible_meshes(), elevation=math.radians(32.0))
     yield from keep(walk, "csv_points", panels=["start", "surfaces"])
     walk.area.spaces.active.overlay.show_floor = False
     guide_scenes.settle_rock()
@@ -243,16 +243,16 @@ def mapped(walk):
     with viewport(walk):
         bpy.ops.realmodel.open_sample(sample="mapped_valley", build=False)
     view = bpy.context.scene.realmodel.view
-    view.show_map = view.show_dips = True
+    view.show_map = True
     yield from settled(walk)
-    frame(walk)
+    frame(walk, 0.86, math.radians(45.0))
     yield from settled(walk)
-    pictures = [labeled(viewed(walk), "The map on its ground, and dips")]
+    pictures = [labeled(viewed(walk), "The map on its ground")]
     yield from build(walk)
-    view.show_map = False
-    frame(walk)
+    view.show_map, view.show_dips = False, True
+    frame(walk, 0.86)
     yield from settled(walk)
-    pictures.append(labeled(viewed(walk), "The model"))
+    pictures.append(labeled(viewed(walk), "The model, and the dips"))
     side_by_side(pictures, walk.folder / "map.png", 2, 2)
 
 

@@ -5,6 +5,7 @@ import math
 
 import bpy
 import numpy as np
+from mathutils import Vector
 from panel_case import PanelCase, ops, raise_by, select, stack
 from realmodel.bl.host import versions
 from realmodel.bl.objects import meshes
@@ -108,6 +109,27 @@ class Weathering(PanelCase):
         highest = max(bpy.context.selected_objects, key=lambda item: item.name)
         worn = highest.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
         self.assertIn("Grass", {worn.materials[p.material_index].name for p in worn.polygons})
+
+    def test_up_is_the_worlds_where_the_mesh_is_turned(self):
+        bpy.ops.mesh.primitive_cube_add(size=20.0, location=(500.0, 0.0, 10.0))
+        bpy.context.object.rotation_euler = (math.radians(90.0), math.radians(20.0), math.radians(50.0))
+        bpy.context.object.scale = (1.0, 1.0, 1.0)
+        ops.fill_with_strata(beds=2, dip=0.0, palette="COAL")
+        ops.weathering(strength=0.0, detail=3, grass_slope=math.radians(40.0), plants=1.0)
+        highest = max(bpy.context.selected_objects, key=lambda item: item.name)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        worn = highest.evaluated_get(depsgraph)
+        turn, slots = worn.matrix_world.to_3x3(), [m.name for m in worn.data.materials]
+        up = [(turn @ p.normal).z for p in worn.data.polygons if slots[p.material_index] == "Grass"]
+        self.assertGreater(len(up), 20)
+        self.assertGreater(min(up), 0.6)
+        tufts = [
+            (each.matrix_world.to_3x3() @ Vector((0.0, 0.0, 1.0))).normalized().z
+            for each in depsgraph.object_instances
+            if each.is_instance and each.parent == worn and each.object.data.name == "Grass Tuft"
+        ]
+        self.assertGreater(len(tufts), 20)
+        self.assertGreater(min(tufts), 0.9)
 
     def test_only_selected_blocks_and_again_changes_them(self):
         select(self.block(2))

@@ -19,7 +19,7 @@ OTHER = {
     "exporters",
     "plots.py",
     "proof/random_points.py",
-    "results/section_drawing.py",
+    "results/sections/section_drawing.py",
     "simulation",
 }
 

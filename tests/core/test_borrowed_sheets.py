@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, PointFile, Project, Rock, Surface, build
 from realmodel.core.ensembles import ensemble
-from realmodel.core.structures.sheets.displacement import displacements
+from realmodel.core.results.displacements import displacements
 from structure_cases import compartments_of, heights_at, plane_fault, prepared
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])

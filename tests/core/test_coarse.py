@@ -33,6 +33,14 @@ def test_a_fold_gets_a_coarse_lattice(resolution):
     assert coarsened(coarse) is None
 
 
+def test_the_fields_on_both_sides_of_a_fault_share_the_cells():
+    project = read("faulted_dome")
+    one, two = (
+        coarsened(each).rocks[0].series[0].resolution for each in (replace(project, faults=[]), project)
+    )
+    assert two == pytest.approx(one * 2 ** (1 / 3), rel=1e-12)
+
+
 def test_what_has_no_finer_field_stays():
     assert coarsened(load_project(SAMPLES / "two_layers" / "project.toml")) is None
     project = read("recumbent_fold")

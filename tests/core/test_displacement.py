@@ -21,7 +21,7 @@ from displaced_surfaces import (
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.exporters.report import model_report
-from realmodel.core.structures.sheets.displacement import displacements
+from realmodel.core.results.displacements import displacements
 from realmodel.core.structures.sheets.lips import Lip, beyond_lips
 from realmodel.core.surfaces.sides import FaultShape
 from structure_cases import SQUARE, plane_fault

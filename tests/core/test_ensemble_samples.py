@@ -19,7 +19,7 @@ from realmodel.core.ensembles import (
 )
 from realmodel.core.ensembles.samples import MOST_PLACES
 from realmodel.core.results.planned_holes import HoleAxis
-from realmodel.core.results.section_drawing import flat_of, flattened, is_vertical
+from realmodel.core.results.sections.section_drawing import flat_of, flattened, is_vertical
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 80.0], [0.0, 80.0]])
 POINTS = np.random.default_rng(3).uniform([2, 2, 8], [98, 78, 12], (12, 3))

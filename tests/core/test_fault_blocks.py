@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, PointFile, Project, Rock, Surface, build, load_project
 from realmodel.core.base.work import run
+from realmodel.core.results.displacements import displacements
 from realmodel.core.structures.shapes.reading import read_structures
-from realmodel.core.structures.sheets.displacement import displacements
 from stacks import places, real_faults
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -25,8 +25,8 @@ from realmodel.core.base.packages import vendored
 from realmodel.core.base.work import run
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_point_file
+from realmodel.core.results.displacements import displacements
 from realmodel.core.structures.shapes.reading import read_structures
-from realmodel.core.structures.sheets.displacement import displacements
 from realmodel.core.surfaces.prepare import read_rocks
 from structure_cases import SQUARE, plane_fault
 

@@ -6,7 +6,7 @@ import pytest
 from conftest import grid_surface
 from object_models import logged_model
 from realmodel.core import InputRefused, Observations, Project, Rock, Surface, UsageError, build
-from realmodel.core.results.section_holes import hole_places, line_through
+from realmodel.core.results.sections.section_holes import hole_places, line_through
 
 PLACES = {name: np.array(place) for name, place in (("A", (0, 0, 9)), ("B", (30, 40, 8)), ("C", (30, 90, 7)))}
 

@@ -6,6 +6,8 @@ earlier ones only."""
 import ast
 import re
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -118,6 +120,16 @@ def test_a_folder_says_what_comes_in_and_goes_out(root):
         assert "Comes in: " in text, folder
         assert "Goes out: " in text, folder
     assert max(len(list(folder.glob("*.py"))) for folder in folders) <= 20
+
+
+def test_scripts_find_what_they_import():
+    scripts = PACKAGE.parents[1] / "scripts"
+    for file in sorted(scripts.rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("realmodel.core"):
+                module = import_module(node.module)
+                for name in (each.name for each in node.names):
+                    assert hasattr(module, name) or find_spec(f"{node.module}.{name}"), (file.name, name)
 
 
 def test_no_module_imports_itself_through_others():

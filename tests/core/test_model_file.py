@@ -26,7 +26,7 @@ from realmodel.core.exporters import FORMATS
 from realmodel.core.exporters.npz import write_arrays
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.residuals import residuals
-from realmodel.core.results.section_holes import hole_places
+from realmodel.core.results.sections.section_holes import hole_places
 from structure_cases import plane_fault
 
 ROOT = Path(__file__).resolve().parents[2]

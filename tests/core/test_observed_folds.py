@@ -3,6 +3,7 @@
 seen."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import native_module
 from realmodel.core.exporters.report import model_report
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.surfaces.observed.derived import Situation, derive
 
 LEVELS = {recumbent: (1.5, 2.5, 4.0), dome: (3.0, 4.5, 6.0), plunging: (2.5, 4.0, 6.0)}
@@ -249,6 +250,25 @@ def test_a_compartment_without_contacts_has_a_warning():
     model = build(observed_project(dome, east, faults=[upright_fault()]))
     (warning,) = [each for each in model.warnings if "as if no fault displaced it" in each.text]
     assert warning.kind == "contacts" and "f, fi and fii" in warning.text
+
+
+def test_dips_on_one_side_of_a_fault_say_where_rock_gets_younger_on_the_other():
+    project = folded_project(dome, [LEVELS[dome][0]], faults=[replace(upright_fault(), youngest="f")])
+    west, east = (contacts(f, LEVELS[dome][0], 40, 5) for f in (thrown, dome))
+    rock = project.rocks[0]
+    rock.surfaces[0].points = np.concatenate([west[west[:, 0] < 5], east[east[:, 0] > 5]])
+    places = east[east[:, 0] > 5][:4]
+    normals = np.column_stack([dome(places + move) - dome(places - move) for move in 1e-5 * np.eye(3)])
+    rock.series[0].dips = SpaceDips(places, normals)
+    model = build(project)
+    (warning,) = [each for each in model.warnings if each.kind == "dips"]
+    assert "without dips" in warning.text
+    assert model.validate().passed
+    for f, x in ((thrown, 2.5), (dome, 7.5)):
+        (below,) = [each for each in model.borehole(x, 4.0) if each.block == 0]
+        z = np.linspace(0, 8, 801)
+        level = z[np.argmin(np.abs(f(np.column_stack([0 * z + x, 0 * z + 4.0, z])) - LEVELS[dome][0]))]
+        assert below.top == pytest.approx(level, abs=0.3)
 
 
 def test_picks_are_contacts(tmp_path):

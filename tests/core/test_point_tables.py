@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, PointFile, Project, Rock, Surface, build, load_project
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.readers import read_point_file, read_points
 from realmodel.core.readers.tables.points import read_point_rows
 

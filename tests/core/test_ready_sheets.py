@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.structures.sheets.tips import on_fault
 from realmodel.core.surfaces.sides import FaultShape
 from structure_cases import compartments_of, heights_at, plane_fault, prepared

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Observations, Project, Rock, Surface, build
 from realmodel.core.drawing.drawing import Line, Text
-from realmodel.core.results.section_drawing import draw_section, holes_on
-from realmodel.core.results.section_holes import UNKNOWN, hole_lines, near_plane
+from realmodel.core.results.sections.section_drawing import draw_section, holes_on
+from realmodel.core.results.sections.section_holes import UNKNOWN, hole_lines, near_plane
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from realmodel.core import DipFile, InputRefused, Project, Rock, Series, SpaceDips, Surface, load_project
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_space_dips
 from realmodel.core.structures.series_data import SeriesData

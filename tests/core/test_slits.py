@@ -97,12 +97,34 @@ def test_two_of_them_side_by_side_part_three_fields(monkeypatch):
     assert len(model.rock_inputs[0].fields[0].distinct()) == 3
 
 
-def test_faults_that_die_out_at_one_another_are_refused(monkeypatch):
+@pytest.mark.parametrize("f", [dome, recumbent])
+@pytest.mark.parametrize(("low", "high", "at"), [(-1.0, 3.2, 3.0), (1.5, 4.3, 3.0), (-1.0, 3.2, 5.6)])
+def test_a_branch_that_dies_out_at_one_that_does(monkeypatch, f, low, high, at):
+    """Its tip lies at x = `low`, or outside; in the last cases it ends near the tip of the other."""
+    given_field(monkeypatch, f, LEVELS[f])
+    x, z = (each.ravel() for each in np.meshgrid([low, 2.0 + high], [-1.0, 11.0]))
+    triangles = np.array([[0, 1, 3], [0, 3, 2]], np.int32)
+    plan = np.column_stack([x, np.full(4, at), z])
+    branch = Fault("B", plan, triangles, youngest="fii", ends_at=["F"], dies_out=True)
+    model = build(folded_project(f, LEVELS[f], faults=[branch, fault()]))
+    assert model.validate().passed, model.validate().failure()
+    own = model.rock_inputs[0].fields[0]
+    assert len(own.distinct()) == 3
+    # beyond the tip of the other one all three are one
+    places = np.column_stack([5.3 + 0.2 * (np.linspace(0.3, 7, 50) - 5.0) + 0.8, np.full(50, 8.0)])
+    places = np.column_stack([places, np.linspace(0.3, 7, 50)])
+    one, *others = (each.at(places) for each in own.distinct())
+    assert all((one == other).all() for other in others)
+
+
+def test_one_at_which_a_fault_ends_that_goes_on_is_refused(monkeypatch):
     given_field(monkeypatch, dome, LEVELS[dome])
     x, z = (each.ravel() for each in np.meshgrid([-1.0, 5.6], [-1.0, 11.0]))
     triangles = np.array([[0, 1, 3], [0, 3, 2]], np.int32)
     branch = Fault("B", np.column_stack([x, np.full(4, 3.0), z]), triangles, youngest="fii", ends_at=["F"])
-    with pytest.raises(InputRefused, match=r"fault 'F'.*dies out in a series.*'B' and it end at one another"):
+    with pytest.raises(
+        InputRefused, match=r"fault 'F'.*dies out in a series.*'B', which does not, ends at it"
+    ):
         build(folded_project(dome, LEVELS[dome], faults=[fault(), branch]))
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, load_project
 from realmodel.core.base.work import run
-from realmodel.core.project.project import check_project
+from realmodel.core.project.project_checks import check_project
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_mesh
 from realmodel.core.structures.shapes.reading import read_structures

@@ -24,11 +24,11 @@ from realmodel.core import (
 )
 from realmodel.core.ensembles import blocks_at
 from realmodel.core.exporters.report import model_report
+from realmodel.core.results.displacements import displacements
 from realmodel.core.results.residuals import residuals
 from realmodel.core.results.volume_uncertainty import volume_deviations
 from realmodel.core.settings.rules import RULES
 from realmodel.core.structures import setup
-from realmodel.core.structures.sheets.displacement import displacements
 from structure_cases import SQUARE, ball, box_body, cells_at, plane_fault
 
 CHECK = Path(__file__).resolve().parents[3] / "shared" / "check"

@@ -32,7 +32,7 @@ def _gigabytes(text: str) -> int:
 
 
 def _factor(text: str) -> float:
-    from ..core.results.section_drawing import MOST_EXAGGERATION
+    from ..core.results.sections.section_drawing import MOST_EXAGGERATION
 
     what = f"a number above 0, at most {MOST_EXAGGERATION:g}"
     return _number(text, lambda value: 0.0 < value <= MOST_EXAGGERATION, what)

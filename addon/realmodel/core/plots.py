@@ -29,7 +29,9 @@ _FAR = 10_000.0  # meters, from which on lengths are in kilometers or miles
 _BINS = np.arange(0.0, 61.0, 2.0)  # degrees
 
 
-def variogram(fitted: Variogram, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
+def variogram(
+    fitted: Variogram, unit: str = "", page: tuple[float, float] = _PAGE, words: bool = True
+) -> Drawing:
     """The semivariance over distance: the curve, and where it was fitted to points the experimental values as
     dots, the larger the more pairs of points they have. unit: of lengths. page: width and height in points;
     words: whether the figures stand above, as in all charts here."""
@@ -82,7 +84,9 @@ def _length(value: float, unit: str) -> str:
     return f"{number_text(value)} {unit}".rstrip()
 
 
-def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
+def cross_validation(
+    result: CrossValidation, unit: str = "", page: tuple[float, float] = _PAGE, words: bool = True
+) -> Drawing:
     """The estimated over the measured elevations of the points of a result of cross_validate; where the
     method has a variance, in two colors, for errors within two standard deviations and beyond. unit, page,
     words: as of `variogram`."""
@@ -118,7 +122,7 @@ def cross_validation_lines(result: CrossValidation, unit: str = "") -> list[str]
     return lines
 
 
-def smallest_angles(vertices, triangles) -> np.ndarray:
+def smallest_angles(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(T,) float64: the smallest angle in plan of triangles (T, 3) of vertices (V, 2 or 3), degrees; 60 for
     an equilateral triangle, 0 for one without area."""
     corners = np.asarray(vertices, np.float64)[:, :2][np.asarray(triangles)]
@@ -128,7 +132,7 @@ def smallest_angles(vertices, triangles) -> np.ndarray:
     return np.degrees(np.arctan2(cross, (onward * back).sum(axis=2)).min(axis=1))
 
 
-def mesh_quality(angles: np.ndarray, page=_PAGE, words: bool = True) -> Drawing:
+def mesh_quality(angles: np.ndarray, page: tuple[float, float] = _PAGE, words: bool = True) -> Drawing:
     """A histogram of the smallest angles of triangles. angles: as of smallest_angles."""
     counts, edges = np.histogram(angles, _BINS)
     axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles), page, words)
@@ -148,7 +152,13 @@ def mesh_quality_lines(angles: np.ndarray) -> list[str]:
     ]
 
 
-def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
+def _axes(
+    x_range: tuple[float, float],
+    y_range: tuple[float, float],
+    lines: list[str],
+    page: tuple[float, float],
+    words: bool,
+) -> Axes:
     """Axes on a page of their own, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)

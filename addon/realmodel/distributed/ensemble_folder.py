@@ -15,7 +15,7 @@ import numpy as np
 
 from ..core import OutputFailed, UsageError, build
 from ..core.base.atomic import Outputs
-from ..core.base.work import progress_bar
+from ..core.base.work import Cancel, Progress, progress_bar, report_nothing
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
@@ -31,13 +31,13 @@ def ensemble(
     realizations: int,
     folder: str | Path,
     seed: int = 0,
-    client=None,
+    client: Any = None,
     *,
     correlation: float = 0.0,
     places: Places | None = None,
     also: Callable[[Ensemble, Outputs], None] | None = None,
-    progress=None,
-    cancel=None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> Ensemble:
     """As core.ensembles.ensemble, by workers of Dask, with the result in a folder: `ensemble.json`,
     `volumes.csv` and `ensemble.npz` (docs/reference/output_files.md).
@@ -51,16 +51,21 @@ def ensemble(
     OutputFailed.
     """
     if progress is True:
-        options = {"correlation": correlation, "places": places, "also": also, "cancel": cancel}
+        options: dict[str, Any] = {
+            "correlation": correlation,
+            "places": places,
+            "also": also,
+            "cancel": cancel,
+        }
         with progress_bar() as bar:
             return ensemble(project, realizations, folder, seed, client, progress=bar, **options)
     check_request(realizations, seed, correlation)
     require_this_version(client)
-    progress = progress or (lambda _share, _text: None)
+    report = progress or report_nothing
     model = build(
         project,
         cells="blocks",
-        progress=lambda share, text: progress(_BUILT * share, text),
+        progress=lambda share, text: report(_BUILT * share, text),
         cancel=cancel,
     )
     points = places_of(model, places)
@@ -74,9 +79,7 @@ def ensemble(
             for numbers, sums in workers.in_any_order(_batch, (realizer, points), todo, cancel):
                 store.put(numbers, sums)
                 done += len(numbers)
-                progress(
-                    _BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations"
-                )
+                report(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")
     found = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
     write_ensemble(found, folder, also)
     store.remove()

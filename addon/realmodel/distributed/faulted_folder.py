@@ -7,6 +7,7 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..core import BuildFailed, BuildWarning, Project
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import MappedArrays
-from ..core.base.work import Work, native_module, run
+from ..core.base.work import Cancel, Report, Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
 from ..core.structures.parts.parts import box_around, divide
@@ -48,22 +49,35 @@ _WINDOW = "window"
 
 
 def build_faulted(
-    project: Project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, progress, cancel
+    project: Project,
+    folder: Path,
+    size: tuple[float, float],
+    cells: str,
+    workers: Workers,
+    report: Report,
+    cancel: Cancel | None,
 ) -> TiledModel:
     """tile_folder.build for a project with faults, bodies or fields. size: of tiles."""
     with mapped_arrays(folder) as arrays:
-        built = _built(project, folder, size, cells, arrays, workers, progress, cancel)
+        built = _built(project, folder, size, cells, arrays, workers, report, cancel)
     return built if isinstance(built, TiledModel) else finish(*built)
 
 
 def _built(
-    project: Project, folder: Path, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+    project: Project,
+    folder: Path,
+    size: tuple[float, float],
+    cells: str,
+    arrays: MappedArrays,
+    workers: Workers,
+    report: Report,
+    cancel: Cancel | None,
 ) -> TiledModel | tuple[Store, Catalog]:
     """The files of the run and the table of the whole; or the model, where the folder is finished. arrays:
     where surfaces and their sheets are kept."""
     reader = SurfaceReader(arrays, workers)
 
-    def prepared(work: Work):
+    def prepared(work: Work) -> tuple:
         with work.phase(0.0, _READ, "reading"):
             inputs, with_arrays = read_inputs(work, project, reader)
         with work.part(_READ, _MESHED):
@@ -75,9 +89,7 @@ def _built(
         warnings = [warning for entry in inputs for warning in entry.warnings]
         return Windows(work, inputs, structures, arrays.keep), structures, warnings
 
-    windows, structures, warnings = run(
-        prepared, lambda share, text: progress(_PREPARED * share, text), cancel
-    )
+    windows, structures, warnings = run(prepared, lambda share, text: report(_PREPARED * share, text), cancel)
     inputs = windows.inputs
     frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
     digest = _digest(frame, windows)
@@ -98,7 +110,7 @@ def _built(
     listed = store.listed(frame.grid, lambda: _write_windows(windows, frame, store, cancel))
     waiting = [name for name in listed if not store.has("joined", name)]
     for times in range(_ROUNDS + 1):
-        _build_tiles((store, frame, whole), waiting, len(listed), workers, progress, cancel)
+        _build_tiles((store, frame, whole), waiting, len(listed), workers, report, cancel)
         asked = _farther(store, listed)
         if not asked:
             break
@@ -131,24 +143,33 @@ def _digest(frame: Frame, windows: Windows) -> str:
     return digest.hexdigest()
 
 
-def _write_windows(windows: Windows, frame: Frame, store: Store, cancel) -> list[Name]:
+def _write_windows(windows: Windows, frame: Frame, store: Store, cancel: Cancel | None) -> list[Name]:
     names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
     for name in names:
         _write_window(windows, store, name, cancel, 0)
     return names
 
 
-def _write_window(windows: Windows, store: Store, name: Name, cancel, farther: int | None) -> None:
+def _write_window(
+    windows: Windows, store: Store, name: Name, cancel: Cancel | None, farther: int | None
+) -> None:
     window = run(lambda work: windows.window(work, name, farther), cancel=cancel)
     with Outputs() as outputs, outputs.file(store.parts(name) / _WINDOW) as file:
         write_object(window, file)
 
 
-def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, progress, cancel) -> None:
+def _build_tiles(
+    shared: Any,
+    waiting: list[Name],
+    count: int,
+    workers: Workers,
+    report: Report,
+    cancel: Cancel | None,
+) -> None:
     done = count - len(waiting)
     for _ in workers.in_any_order(_build, shared, waiting, cancel):
         done += 1
-        progress(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
+        report(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
 
 
 def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:

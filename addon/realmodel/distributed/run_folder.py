@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -110,7 +111,7 @@ class Store:
         """Whether a step is done: its record comes last."""
         return self.record(kind, name).exists()
 
-    def done(self, kind: str, name: Name, **record) -> None:
+    def done(self, kind: str, name: Name, **record: Any) -> None:
         with Outputs() as outputs, outputs.file(self.record(kind, name)) as file:
             file.write(json.dumps(record).encode())
 
@@ -158,7 +159,7 @@ def finished(folder: Path, digest: str) -> TiledModel:
     return tiled_model(catalog, folder)
 
 
-def write_tile(store: Store, name: Name, model: Model, **more) -> None:
+def write_tile(store: Store, name: Name, model: Model, **more: Any) -> None:
     """Writes a tile's model, and the record that it is done. more: what else that says."""
     file = store.file("joined", name)
     write_model(model, file)
@@ -196,7 +197,7 @@ def places_of(frame: Frame, box: Box) -> int:
 class Parts:
     """The connected parts of blocks over all tiles, by sets that are joined."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._parent: dict[tuple, tuple] = {}
         self._block: dict[tuple, int] = {}
 

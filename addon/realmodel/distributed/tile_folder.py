@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,10 +15,9 @@ from ..core import BuildFailed, BuildWarning
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import read_mapped, write_mapped
-from ..core.base.work import progress_bar, run
+from ..core.base.work import Cancel, Progress, Report, progress_bar, report_nothing, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
-from ..core.project.series import has_fields
 from ..core.surfaces.local_heights import PartHeights
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
@@ -68,12 +68,12 @@ def build(
     project: Project,
     folder: str | Path,
     tile_size: tuple[float, float],
-    client=None,
+    client: Any = None,
     *,
     workers: int | None = None,
     cells: str = "columns",
-    progress=None,
-    cancel=None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> TiledModel:
     """Builds a model in tiles on workers of Dask, and leaves it in a folder that core.open_tiles opens.
 
@@ -93,14 +93,14 @@ def build(
     check_cells(cells)
     size = checked_size(tile_size)
     folder = Path(folder)
-    progress = progress or (lambda _share, _text: None)
+    report = progress or report_nothing
     require_own(folder)
     is_finished = (folder / CATALOG).exists()
     if not is_finished:
         require_this_version(client)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
-        if project.faults or project.bodies or any(has_fields(rock) for rock in project.rocks):
-            return build_faulted(project, folder, size, cells, done_by, progress, cancel)
+        if project.faults or project.bodies or any(rock.has_fields for rock in project.rocks):
+            return build_faulted(project, folder, size, cells, done_by, report, cancel)
         with mapped_arrays(folder) as arrays:
             found = prepared(
                 project,
@@ -108,7 +108,7 @@ def build(
                 cells,
                 arrays,
                 done_by,
-                lambda share, text: progress(_PREPARED * share, text),
+                lambda share, text: report(_PREPARED * share, text),
                 cancel,
             )
             if is_finished:
@@ -118,11 +118,18 @@ def build(
                 found.frame.grid, lambda: divided(found, arrays, done_by, store.parts, cancel)
             )
             found = found.let_go()
-        _build_all(store, found.frame, names, done_by, progress, cancel)
+        _build_all(store, found.frame, names, done_by, report, cancel)
     return finish(store, _catalog(found, store, names))
 
 
-def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, progress, cancel) -> None:
+def _build_all(
+    store: Store,
+    frame: Frame,
+    names: list[Name],
+    workers: Workers,
+    report: Report,
+    cancel: Cancel | None,
+) -> None:
     """Builds all tiles, and joins each as soon as those around it are built."""
     everywhere = frozenset(names)
     built = {name for name in names if store.has("built", name)}
@@ -146,7 +153,7 @@ def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, 
         (built if kind == "built" else joined).add(name)
         done = (_BUILT * len(built) + (1 - _BUILT) * len(joined)) / len(names)
         text = f"{len(built)} of {len(names)} tiles built, {len(joined)} joined"
-        progress(_PREPARED + (_JOINED - _PREPARED) * done, text)
+        report(_PREPARED + (_JOINED - _PREPARED) * done, text)
 
 
 def _step(shared: tuple[Store, Frame, frozenset], task: tuple[str, Name]) -> None:

@@ -11,6 +11,7 @@ import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from ..core import BuildWarning, Rock, SurfaceSet, build_surfaces
 from ..core.base.errors import naming
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
-from ..core.base.work import Work, native_module, run
+from ..core.base.work import Cancel, Report, Work, native_module, run
 from ..core.heights.ties import tie_data
 from ..core.project.project import Project, Surface, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
@@ -64,7 +65,13 @@ class Prepared:
 
 
 def prepared(
-    project: Project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+    project: Project,
+    size: tuple[float, float],
+    cells: str,
+    arrays: MappedArrays,
+    workers: Workers,
+    report: Report,
+    cancel: Cancel | None,
 ) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""
     reader = SurfaceReader(arrays, workers)
@@ -72,7 +79,7 @@ def prepared(
     def surfaces_with(flat: Callable[[Rock], set[int]]) -> SurfaceSet:
         return build_surfaces(
             project,
-            progress=lambda share, text: progress(_MADE * share, text),
+            progress=lambda share, text: report(_MADE * share, text),
             cancel=cancel,
             keep=arrays.keep,
             reader=reader,
@@ -140,7 +147,7 @@ def _no_surfaces(_rock: Rock) -> set[int]:
 
 
 def _fitted(
-    entry: RockInput, numbers: set[int], arrays: MappedArrays, workers: Workers, cancel
+    entry: RockInput, numbers: set[int], arrays: MappedArrays, workers: Workers, cancel: Cancel | None
 ) -> dict[int, tuple[LocalHeights, np.ndarray, list[str]]]:
     """Of the surfaces of a rock mass that tiles interpolate: what local_heights gives."""
     if not numbers:
@@ -162,7 +169,7 @@ def _fitted(
 
 
 def _tied(
-    found: LocalHeights, surface: Surface, points: np.ndarray, entry: RockInput, cancel
+    found: LocalHeights, surface: Surface, points: np.ndarray, entry: RockInput, cancel: Cancel | None
 ) -> tuple[LocalHeights, list[str]]:
     """A surface that tiles interpolate, tied to its points and bounds, and warnings."""
     data = tie_data(np.ascontiguousarray(surface.tied_points), surface.bounds)
@@ -178,7 +185,7 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
     _, rock, surface, points, extent, nodes, method, settings = task
     arrays = MappedArrays(folder)
 
-    def fitted(work: Work):
+    def fitted(work: Work) -> tuple:
         given = np.ascontiguousarray(arrays.opened(points))
         found, left, texts = local_heights(work, given, extent, nodes, method, settings, arrays)
         return found, points if left is given else arrays.place(left), texts
@@ -236,14 +243,14 @@ def _kept(rock: tuple, arrays: MappedArrays) -> tuple:
     return [tuple(map(arrays.keep, shape)) for shape in shapes], region, *rest
 
 
-def _joined(surfaces: SurfaceSet, arrays: MappedArrays, cancel):
+def _joined(surfaces: SurfaceSet, arrays: MappedArrays, cancel: Cancel | None) -> Any:
     """The rock masses with their borders joined, in files, and the text of a warning; None where nothing has
     to be. Heights do not matter. Surfaces on one mesh that was made for them have nothing to join."""
     if _have_one_mesh(surfaces.rock_inputs):
         return None
     native, rocks = native_module(), [entry.native() for entry in surfaces.rock_inputs]
 
-    def task(work: Work):
+    def task(work: Work) -> Any:
         with work.phase(0.0, 1.0, "comparing the borders"):
             try:
                 joins = work.native(native.find_joins, rocks)
@@ -254,7 +261,7 @@ def _joined(surfaces: SurfaceSet, arrays: MappedArrays, cancel):
     return run(task, cancel=cancel)
 
 
-def _with_joins(work: Work, rocks: list[tuple], joins, arrays: MappedArrays):
+def _with_joins(work: Work, rocks: list[tuple], joins: Any, arrays: MappedArrays) -> Any:
     """What _joined gives, made one mesh at a time."""
     found = []
     for shapes, region, *rest in rocks:
@@ -302,7 +309,11 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
 
 
 def divided(
-    found: Prepared, arrays: MappedArrays, workers: Workers, folder_of: Callable[[Name], Path], cancel
+    found: Prepared,
+    arrays: MappedArrays,
+    workers: Workers,
+    folder_of: Callable[[Name], Path],
+    cancel: Cancel | None,
 ) -> list[Name]:
     """Writes what each tile needs into its folder. Returns the tiles that a surface meets."""
     frame, tasks = found.frame, []

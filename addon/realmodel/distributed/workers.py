@@ -13,6 +13,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 from ..core import Cancelled, UsageError
 from ..core.base.packages import extra, missing
@@ -39,7 +40,7 @@ _LOGGERS = "distributed", "distributed.client"  # which Dask gives levels of the
 _LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
 
 
-def connected(address: str):
+def connected(address: str) -> Any:
     """The client of a running scheduler, for a program that says in one line that it went away: from now on
     Dask logs nothing in this process. Raises UsageError."""
     distributed = _distributed()
@@ -51,7 +52,7 @@ def connected(address: str):
         raise UsageError(f"no scheduler of Dask answers at {address}") from error
 
 
-def require_this_version(client) -> None:
+def require_this_version(client: Any) -> None:
     """Dask has its scheduler and its workers import what a task calls. Raises UsageError where those of a
     client cannot, or would call another version's. None: there is no client."""
     if client is None:
@@ -86,16 +87,16 @@ class Workers:
         return self._starting.done()
 
     @property
-    def client(self):
+    def client(self) -> Any:
         """The client; waits until it is there."""
         return self._starting.result()
 
     def in_any_order(
         self,
         function: Callable,
-        shared,
+        shared: Any,
         tasks: Iterable,
-        cancel=None,
+        cancel: Callable[[], object] | None = None,
         *,
         following: Callable[..., Sequence] = lambda _task: (),
         here: bool = False,
@@ -116,13 +117,20 @@ class Workers:
             yield from _on_workers(self.client, function, shared, tasks, cancel, following)
 
 
-def _on_workers(client, function, shared, tasks: Iterable, cancel, following) -> Iterator[tuple]:
+def _on_workers(
+    client: Any,
+    function: Callable,
+    shared: Any,
+    tasks: Iterable,
+    cancel: Callable[[], object] | None,
+    following: Callable,
+) -> Iterator[tuple]:
     """As Workers.in_any_order."""
     distributed = _distributed()
     one_is_done = threading.Event()
     latest = time.monotonic()
 
-    def submitted(function: Callable, *arguments, priority: int = 0):
+    def submitted(function: Callable, *arguments: Any, priority: int = 0) -> Any:
         with _connection(client):
             future = client.submit(function, *arguments, pure=False, priority=priority)
         future.add_done_callback(lambda _: one_is_done.set())
@@ -167,7 +175,7 @@ def _on_workers(client, function, shared, tasks: Iterable, cancel, following) ->
             future.release()  # and not client.cancel, which waits for an answer
 
 
-def _check(cancel) -> None:
+def _check(cancel: Callable[[], object] | None) -> None:
     if cancel is not None and cancel():
         raise Cancelled("cancelled")
 
@@ -178,7 +186,7 @@ def no_workers() -> contextlib.AbstractContextManager[Workers]:
 
 
 @contextlib.contextmanager
-def workers_of(client, count: int | None = None) -> Iterator[Workers]:
+def workers_of(client: Any, count: int | None = None) -> Iterator[Workers]:
     """The workers of a client, or None: so many processes of this machine (None: one for each processor),
     which end with it. They start while the caller goes on.
 
@@ -192,7 +200,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
         raise missing("distributed", *_NEEDED)
     with contextlib.ExitStack() as ends, concurrent.futures.ThreadPoolExecutor(1) as apart:
 
-        def start():
+        def start() -> Any:
             with _starts:
                 distributed = _distributed()
                 ends.enter_context(_settings())
@@ -238,7 +246,7 @@ def _version() -> str:
 
 
 @contextlib.contextmanager
-def _connection(client) -> Iterator[None]:
+def _connection(client: Any) -> Iterator[None]:
     """Raises UsageError where a client has lost its scheduler or is closed, for what it raises then."""
     try:
         yield
@@ -248,7 +256,7 @@ def _connection(client) -> Iterator[None]:
         raise _gone() from error
 
 
-def _result(distributed, future):
+def _result(distributed: Any, future: Any) -> Any:
     """Of a task that is done. _LOST_RESULT: its worker was lost before the result was fetched, and Dask has
     the task done again."""
     try:
@@ -268,5 +276,5 @@ def _gone() -> UsageError:
     return UsageError("the scheduler or its workers went away; start again: what is done stays")
 
 
-def _distributed():
+def _distributed() -> Any:
     return extra("distributed", *_NEEDED)

@@ -12,7 +12,7 @@ from ..bl.objects import exaggeration, viewports, visible
 from ..bl.project import project_settings, settings
 from ..bl.scene import section_holes
 from ..core import InputRefused, UsageError
-from ..core.results.section_drawing import MOST_EXAGGERATION
+from ..core.results.sections.section_drawing import MOST_EXAGGERATION
 from .files import SECTIONS, Exporting, format_filter, format_menu
 from .in_viewport import InViewport
 from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property

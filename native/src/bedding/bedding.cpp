@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -24,7 +25,6 @@ namespace {
 
 using strata::meaning;
 using strata::Rule;
-using State = SheetHeights::State;
 
 constexpr double kNear = 32 * 0x1p-52;   // of the largest coordinate: what rounding may do
 constexpr double kBeside = 8 * kNear;    // of it: from an upright polygon to a position beside it
@@ -47,6 +47,17 @@ struct Column {
     double top = 0;           ///< of the youngest
     bool has_border = false;  ///< a side has to be chosen first
 };
+
+/// Whether two sheets differ in heights at most.
+bool has_plan_of(const TriangleView& a, const TriangleView& b) {
+    if (a.vertices.size() != b.vertices.size() || !std::ranges::equal(a.triangles, b.triangles))
+        return false;
+    for (std::size_t at = 0; at < a.vertices.size(); at += 3) {
+        if (a.vertices[at] != b.vertices[at] || a.vertices[at + 1] != b.vertices[at + 1])
+            return false;
+    }
+    return true;
+}
 
 class Corners {
 public:
@@ -80,12 +91,18 @@ private:
     Facing facing(const Polygon& polygon) const;
     PlanPosition beside(const PlanPosition& position, const Polygon& polygon) const;
 
+    /// What a thread has of one plan position.
+    struct Scratch {
+        std::vector<std::optional<SheetPlan::Place>> places;  ///< in each plan, where known
+        std::vector<Column> columns;                          ///< of each history; empty: not known
+        Column beside;                                        ///< the one of a polygon at a border
+    };
     template <class HeightOf>
     void replay(const History& history, const HeightOf& height_of, Column& column) const;
     void set(std::uint32_t corner, const Polygon& polygon, const Column& column, double z,
              Bedding& bedding) const;
     void set_position(std::span<const Corner> corners, const PlanPosition& position,
-                      std::vector<Column>& columns, Column& scratch, Bedding& bedding) const;
+                      Scratch& scratch, Bedding& bedding) const;
 
     const ComplexView& complex_;
     std::span<const History> histories_;
@@ -94,6 +111,8 @@ private:
     Execution execution_;
     double largest_plan_ = 0, largest_height_ = 0;
     std::vector<std::uint32_t> begin_;                   ///< of each polygon's corners
+    std::vector<std::unique_ptr<SheetPlan>> plans_;      ///< that differ
+    std::vector<std::size_t> plan_of_;                   ///< of each sheet
     std::vector<std::unique_ptr<SheetHeights>> sheets_;  ///< that differ
     std::vector<std::vector<std::size_t>> sheets_of_;    ///< of each history
     std::vector<std::int32_t> position_of_;              ///< of each vertex: its plan position
@@ -184,9 +203,20 @@ void Corners::make_sheets() {
             own.push_back(entry->second);
         }
     }
+    std::vector<const TriangleView*> first;  // of the sheets of each plan
+    for (const TriangleView* sheet : distinct) {
+        const auto same = std::ranges::find_if(
+            first, [&](const TriangleView* other) { return has_plan_of(*sheet, *other); });
+        plan_of_.push_back(static_cast<std::size_t>(same - first.begin()));
+        if (same == first.end()) first.push_back(sheet);
+    }
+    plans_.resize(first.size());
+    parallel_chunks(first.size(), execution_, [&](std::size_t n) {
+        plans_[n] = std::make_unique<SheetPlan>(*first[n], kNear * largest_plan_);
+    });
     sheets_.resize(distinct.size());
     parallel_chunks(distinct.size(), execution_, [&](std::size_t n) {
-        sheets_[n] = std::make_unique<SheetHeights>(*distinct[n], kNear * largest_plan_);
+        sheets_[n] = std::make_unique<SheetHeights>(*plans_[plan_of_[n]], *distinct[n]);
     });
 }
 
@@ -219,16 +249,16 @@ Bedding Corners::bedding() {
     Bedding made{Array<float>(count), Array<float>(count), Array<float>(count)};
     const std::size_t chunks = (positions_ + kPositions - 1) / kPositions;
     parallel_workers(chunks, execution_, [&] {
-        return [&, columns = std::vector<Column>(histories_.size()),
-                scratch = Column()](std::size_t chunk) mutable {
+        Scratch own{{}, std::vector<Column>(histories_.size()), {}};
+        return [&, scratch = std::move(own)](std::size_t chunk) mutable {
             const std::size_t end = std::min(positions_, (chunk + 1) * kPositions);
             for (std::size_t position = chunk * kPositions; position < end; ++position) {
                 const auto corners = at[position];
                 if (corners.empty()) continue;
                 const Polygon& polygon = polygons_[index(corners[0].polygon)];
                 const std::uint32_t first = begin_[index(corners[0].polygon)];
-                set_position(corners, plan(vertex(polygon, corners[0].number - first)), columns,
-                             scratch, made);
+                set_position(corners, plan(vertex(polygon, corners[0].number - first)), scratch,
+                             made);
             }
         };
     });
@@ -236,29 +266,35 @@ Bedding Corners::bedding() {
 }
 
 void Corners::set_position(std::span<const Corner> corners, const PlanPosition& position,
-                           std::vector<Column>& columns, Column& scratch, Bedding& bedding) const {
-    for (Column& column : columns)
-        column.layers.clear();  // what is empty is not known here yet
+                           Scratch& scratch, Bedding& bedding) const {
+    for (Column& column : scratch.columns)
+        column.layers.clear();
+    scratch.places.assign(plans_.size(), std::nullopt);
+    const auto at = [&](std::size_t sheet) {
+        auto& place = scratch.places[plan_of_[sheet]];
+        if (!place) place = plans_[plan_of_[sheet]]->at(position);
+        return sheets_[sheet]->at(*place);
+    };
     for (const Corner& corner : corners) {
         const Polygon& polygon = polygons_[index(corner.polygon)];
         const std::size_t number = index(
             histories_of_corners_.empty() ? polygon.history : histories_of_corners_[corner.number]);
         const History& history = histories_[number];
         const auto& sheets = sheets_of_[number];
-        Column* column = &columns[number];
+        Column* column = &scratch.columns[number];
         if (column->layers.empty()) {
             replay(
-                history, [&](std::size_t k) { return sheets_[sheets[k]]->at(position); }, *column);
+                history, [&](std::size_t k) { return at(sheets[k]); }, *column);
         }
         if (column->has_border) {
             const PlanPosition inside = beside(position, polygon);
             const auto chosen = [&](std::size_t k) {
-                const SheetHeights::Found found = sheets_[sheets[k]]->at(position);
+                const SheetHeights::Found found = at(sheets[k]);
                 return found.state == State::kBorder ? sheets_[sheets[k]]->beside(inside, position)
                                                      : found;
             };
-            replay(history, chosen, scratch);
-            column = &scratch;
+            replay(history, chosen, scratch.beside);
+            column = &scratch.beside;
         }
         const std::int32_t own = vertex(polygon, corner.number - begin_[index(corner.polygon)]);
         set(corner.number, polygon, *column, complex_.vertex(own)[2], bedding);

@@ -20,16 +20,8 @@ constexpr double kSame = 1e-6;  // of the heights of a sheet
 
 }  // namespace
 
-SheetHeights::SheetHeights(const TriangleView& sheet, double near) : near_(near) {
+SheetPlan::SheetPlan(const TriangleView& sheet, double near) : near_(near) {
     add_triangles(sheet);
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Triangle& triangle : triangles_) {
-        for (const double height : triangle.height) {
-            low = std::min(low, height);
-            high = std::max(high, height);
-        }
-    }
-    same_ = kSame * std::max(0.0, high - low);
     std::vector<spatial::PlanBox> boxes;
     boxes.reserve(triangles_.size());
     spatial::PlanBox frame = spatial::kNoBox;
@@ -46,13 +38,8 @@ SheetHeights::SheetHeights(const TriangleView& sheet, double near) : near_(near)
     });
 }
 
-/// Those that have an area in plan. A border is an edge that is not of two of them.
-void SheetHeights::add_triangles(const TriangleView& sheet) {
-    struct Edge {
-        std::int32_t low, high, triangle, slot;
-    };
-    std::vector<Edge> edges;
-    std::vector<std::array<std::int32_t, 3>> numbers;
+/// Those that have an area in plan.
+void SheetPlan::add_triangles(const TriangleView& sheet) {
     const std::size_t vertices = sheet.vertices.size() / 3;
     for (std::size_t t = 0; t < sheet.triangles.size() / 3; ++t) {
         std::array<std::int32_t, 3> v{};
@@ -73,20 +60,31 @@ void SheetHeights::add_triangles(const TriangleView& sheet) {
         const int way = exact::orient2d(plan(v[0]), plan(v[1]), plan(v[2]));
         if (way == 0) continue;
         if (way < 0) std::swap(v[1], v[2]);
-        const auto own = static_cast<std::int32_t>(triangles_.size());
-        for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t i = 0; i < 3; ++i)
             triangle.corner[i] = plan(v[i]);
-            triangle.height[i] = sheet.vertices[3 * index(v[i]) + 2];
-            const std::int32_t next = v[(i + 1) % 3];
-            edges.push_back(
-                {std::min(v[i], next), std::max(v[i], next), own, static_cast<std::int32_t>(i)});
-        }
         for (std::size_t i = 0; i < 3; ++i) {
             const auto &a = triangle.corner[i], &b = triangle.corner[(i + 1) % 3];
             triangle.slack[i] = near_ * distance(a, b);
         }
         triangles_.push_back(triangle);
-        numbers.push_back(v);
+        numbers_.push_back(v);
+    }
+    find_borders(vertices);
+}
+
+/// A border is an edge that is not of two triangles.
+void SheetPlan::find_borders(std::size_t vertices) {
+    struct Edge {
+        std::int32_t low, high, triangle, slot;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * numbers_.size());
+    for (std::size_t t = 0; t < numbers_.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(numbers_[t][i], numbers_[t][(i + 1) % 3]);
+            edges.push_back(
+                {low, high, static_cast<std::int32_t>(t), static_cast<std::int32_t>(i)});
+        }
     }
     std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
         return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
@@ -104,27 +102,14 @@ void SheetHeights::add_triangles(const TriangleView& sheet) {
     }
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (is_border[index(numbers[t][i])] != 0)
+            if (is_border[index(numbers_[t][i])] != 0)
                 triangles_[t].border_corners |= static_cast<std::uint8_t>(1U << i);
         }
     }
 }
 
-double SheetHeights::Triangle::height_from(const std::array<double, 3>& areas) const {
-    double sum = 0, weighted = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double weight = std::max(0.0, areas[(i + 1) % 3]);  // of the corner across that edge
-        sum += weight;
-        weighted += weight * height[i];
-    }
-    if (!(sum > 0)) return height[0];
-    const auto [low, high] = std::minmax({height[0], height[1], height[2]});
-    return std::clamp(weighted / sum, low, high);
-}
-
-bool SheetHeights::Triangle::has_border_near(const PlanPosition& p,
-                                             const std::array<double, 3>& areas,
-                                             double near) const {
+bool SheetPlan::Triangle::has_border_near(const PlanPosition& p, const Areas& areas,
+                                          double near) const {
     for (std::size_t i = 0; i < 3; ++i) {
         const unsigned bit = 1U << i;
         if ((border_edges & bit) != 0 && areas[i] <= slack[i]) return true;
@@ -135,49 +120,91 @@ bool SheetHeights::Triangle::has_border_near(const PlanPosition& p,
     return false;
 }
 
-SheetHeights::Found SheetHeights::at(const PlanPosition& position) const {
-    if (triangles_.empty() || !tiles_.frame().contains(position)) return {State::kAbsent, 0};
-    Found found{State::kAbsent, 0};
+SheetPlan::Areas SheetPlan::areas(std::int32_t triangle, const PlanPosition& position) const {
+    return triangles_[index(triangle)].areas(position);
+}
+
+SheetPlan::Place SheetPlan::at(const PlanPosition& position) const {
+    Place found;
+    if (triangles_.empty() || !tiles_.frame().contains(position)) return found;
     double best = -HUGE_VAL;
     for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
         const Triangle& triangle = triangles_[index(t)];
-        const auto areas = triangle.areas(position);
+        const Areas areas = triangle.areas(position);
         const auto& slack = triangle.slack;
-        if (areas[0] < -slack[0] || areas[1] < -slack[1] || areas[2] < -slack[2]) continue;
+        if (!triangle.is_near(areas)) continue;
         if (areas[0] > slack[0] && areas[1] > slack[1] && areas[2] > slack[2])
-            return {State::kHeight, triangle.height_from(areas)};
-        if (triangle.has_border_near(position, areas, near_)) return {State::kBorder, 0};
+            return {State::kHeight, t, areas};
+        if (triangle.has_border_near(position, areas, near_)) return {State::kBorder, t, areas};
         const double least =
             std::min({areas[0] / slack[0], areas[1] / slack[1], areas[2] / slack[2]});
         if (least > best) {
             best = least;
-            found = {State::kHeight, triangle.height_from(areas)};
+            found = {State::kHeight, t, areas};
         }
     }
     return found;
 }
 
+std::int32_t SheetPlan::holding(const PlanPosition& position) const {
+    if (triangles_.empty() || !tiles_.frame().contains(position)) return -1;
+    for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+        const Areas found = areas(t, position);
+        if (found[0] >= 0 && found[1] >= 0 && found[2] >= 0) return t;
+    }
+    return -1;
+}
+
+template <class Visit>
+void SheetPlan::for_each_near(const PlanPosition& position, const Visit& visit) const {
+    for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+        const Areas found = areas(t, position);
+        if (triangles_[index(t)].is_near(found)) visit(t, found);
+    }
+}
+
+SheetHeights::SheetHeights(const SheetPlan& plan, const TriangleView& sheet) : plan_(&plan) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    heights_.reserve(plan.triangles().size());
+    for (const auto& corners : plan.triangles()) {
+        auto& own = heights_.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            own[i] = sheet.vertices[3 * index(corners[i]) + 2];
+            low = std::min(low, own[i]);
+            high = std::max(high, own[i]);
+        }
+    }
+    same_ = kSame * std::max(0.0, high - low);
+}
+
+double SheetHeights::height(std::int32_t triangle, const SheetPlan::Areas& areas) const {
+    const auto& own = heights_[index(triangle)];
+    double sum = 0, weighted = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double weight = std::max(0.0, areas[(i + 1) % 3]);  // of the corner across that edge
+        sum += weight;
+        weighted += weight * own[i];
+    }
+    if (!(sum > 0)) return own[0];
+    const auto [low, high] = std::minmax({own[0], own[1], own[2]});
+    return std::clamp(weighted / sum, low, high);
+}
+
+SheetHeights::Found SheetHeights::at(const SheetPlan::Place& place) const {
+    return {place.state, place.state == State::kHeight ? height(place.triangle, place.areas) : 0.0};
+}
+
 SheetHeights::Found SheetHeights::beside(const PlanPosition& other,
                                          const PlanPosition& position) const {
-    if (triangles_.empty() || !tiles_.frame().contains(other)) return {State::kAbsent, 0};
-    const auto holding =
-        std::ranges::find_if(triangles_at_[tiles_.tile_at(other)], [&](std::int32_t t) {
-            const auto areas = triangles_[index(t)].areas(other);
-            return areas[0] >= 0 && areas[1] >= 0 && areas[2] >= 0;
-        });
-    if (holding == triangles_at_[tiles_.tile_at(other)].end()) return {State::kAbsent, 0};
-    const Triangle& there = triangles_[index(*holding)];
-    const double guess = there.height_from(there.areas(position));
+    const std::int32_t there = plan_->holding(other);
+    if (there < 0) return {State::kAbsent, 0};
+    const double guess = height(there, plan_->areas(there, position));
     // Of the triangles around the position the first at about that height: all polygons on one side
     // get the same.
     std::vector<double> heights;
-    for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
-        const Triangle& triangle = triangles_[index(t)];
-        const auto areas = triangle.areas(position);
-        const auto& slack = triangle.slack;
-        if (areas[0] < -slack[0] || areas[1] < -slack[1] || areas[2] < -slack[2]) continue;
-        heights.push_back(triangle.height_from(areas));
-    }
+    plan_->for_each_near(position, [&](std::int32_t t, const SheetPlan::Areas& areas) {
+        heights.push_back(height(t, areas));
+    });
     double nearest = guess, apart = HUGE_VAL;
     for (const double height : heights) {
         if (std::abs(height - guess) >= apart) continue;

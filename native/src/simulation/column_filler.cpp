@@ -62,15 +62,21 @@ private:
             post_[i] = plan_.post(t, i);
             own_[i] = levels_.levels(post_[i]);
             if (columns_.rock(post_[i]) != rock_ || rock_ < 0) return false;
+            first_[i] = static_cast<std::int32_t>(levels_.node_offset(index(node_[i])));
         }
+        area_ = twice_area(plan_.point(node_[0]), plan_.point(node_[1]), plan_.point(node_[2])) / 2;
+        order_ = {0, 1, 2};
+        std::sort(order_.begin(), order_.end(),
+                  [&](std::size_t a, std::size_t b) { return node_[a] < node_[b]; });
         find_step();
         return true;
     }
 
     /// The edge on a step, and the levels of the other side along it.
     void find_step() {
-        has_step_ = false;
+        has_step_ = has_open_edge_ = false;
         for (std::size_t i = 0; i < 3; ++i) {
+            if (plan_.neighbor(t_, i) < 0) has_open_edge_ = true;
             if (!plan_.is_inner_step(t_, i)) continue;
             assert(!has_step_);
             has_step_ = true;
@@ -170,10 +176,7 @@ private:
     /// Moves the front; corners that have heights in between go alone first, in the order of their
     /// nodes, so that both triangles at an edge do the same.
     void move(const Front& to) {
-        std::array<std::size_t, 3> corners{0, 1, 2};
-        std::sort(corners.begin(), corners.end(),
-                  [&](std::size_t a, std::size_t b) { return node_[a] < node_[b]; });
-        for (const std::size_t c : corners) {
+        for (const std::size_t c : order_) {
             while (front_[c] + 1 < to[c]) {
                 Front next = front_;
                 ++next[c];
@@ -191,7 +194,7 @@ private:
         if (last_block_ != block_) add_flat_face(block_);
         last_block_ = block_;
         add_element(to);
-        add_sides(to);
+        if (has_step_ || has_open_edge_) add_sides(to);
         front_ = to;
         made_.fronts.fronts.push_back(to);
         made_.fronts.blocks.push_back(block_);
@@ -215,9 +218,7 @@ private:
         } else {
             add(made_.mesh.tetrahedra, {low[0], low[1], low[2], high[last_moved]});
         }
-        const double area =
-            twice_area(plan_.point(node_[0]), plan_.point(node_[1]), plan_.point(node_[2])) / 2;
-        made_.mesh.volumes[index(block_)] += area * rise / 3;
+        made_.mesh.volumes[index(block_)] += area_ * rise / 3;
     }
 
     /// The upright faces at the border and on steps.
@@ -252,7 +253,7 @@ private:
     Front points(const Front& front) const {
         Front found;
         for (std::size_t i = 0; i < 3; ++i)
-            found[i] = static_cast<std::int32_t>(levels_.node_offset(index(node_[i]))) + front[i];
+            found[i] = first_[i] + front[i];
         return found;
     }
 
@@ -278,6 +279,8 @@ private:
         const auto level = below < 0   ? std::size_t{0}
                            : above < 0 ? index(blocks_.blocks_of(rock_))
                                        : static_cast<std::size_t>(below - first) + 1;
+        const auto surface = [&](std::size_t i) { return columns_.surfaces(post_[i])[level]; };
+        if (surface(0) == surface(1) && surface(1) == surface(2)) return surface(0);
         std::int32_t best = -1, most = 0;
         for (const bool present_only : {true, false}) {
             const auto counts = [&](std::size_t i) {
@@ -285,10 +288,10 @@ private:
                 return !present_only || level == 0 || z[level] > z[level - 1];
             };
             for (std::size_t i = 0; i < 3; ++i) {
-                const std::int32_t own = columns_.surfaces(post_[i])[level];
+                const std::int32_t own = surface(i);
                 std::int32_t votes = 0;
                 for (std::size_t j = 0; j < 3; ++j)
-                    votes += counts(j) && columns_.surfaces(post_[j])[level] == own ? 1 : 0;
+                    votes += counts(j) && surface(j) == own ? 1 : 0;
                 if (std::tie(votes, own) > std::tie(most, best)) {
                     most = votes;
                     best = own;
@@ -317,10 +320,12 @@ private:
     std::size_t t_ = 0;
     std::int32_t rock_ = -1, block_ = -1, last_block_ = -1, layer_ = 0;
     std::array<std::size_t, 3> post_{};
-    std::array<std::int32_t, 3> node_{};
+    std::array<std::int32_t, 3> node_{}, first_{};  ///< first_: number of the first height of each
+    std::array<std::size_t, 3> order_{};            ///< its corners by their nodes
+    double area_ = 0;
     std::array<std::span<const std::int32_t>, 3> own_;  ///< the levels of its posts
     Front front_{};
-    bool has_step_ = false;
+    bool has_step_ = false, has_open_edge_ = false;   ///< on an inner step, at the border
     std::array<std::size_t, 2> step_{};               ///< the corners of its edge on a step
     std::vector<std::array<std::int32_t, 2>> lines_;  ///< the levels of the other side there
 };

@@ -155,6 +155,26 @@ TEST(BeddingTest, TheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(std::ranges::equal(one.bedding.depth, three.bedding.depth));
 }
 
+TEST(BeddingTest, SheetsThatShareTheirPlanAreAsSheetsByThemselves) {
+    const auto wave = [](double z) {
+        return [z](double x, double y) { return z + std::sin(x) * std::cos(y); };
+    };
+    std::vector<OwnedSurface> surfaces{strata::grid(9, 7, 0, 0, 9, 7, wave(0)),
+                                       strata::grid(9, 7, 0, 0, 9, 7, wave(2)),
+                                       strata::grid(9, 7, 0, 0, 9, 7, wave(3))};
+    const Made made = made_of(surfaces);
+    History apart;
+    for (std::size_t n = 0; n < surfaces.size(); ++n) {
+        for (std::size_t more = 0; more < n; ++more)
+            surfaces[n].vertex(0, 0, 0);  // of no triangle
+        apart.sheets.push_back(surfaces[n].view());
+    }
+    const Bedding found = bedding_of(made.complex, {&apart, 1}, made.polygons, {}, {2});
+    EXPECT_TRUE(std::ranges::equal(found.height, made.bedding.height));
+    EXPECT_TRUE(std::ranges::equal(found.thickness, made.bedding.thickness));
+    EXPECT_TRUE(std::ranges::equal(found.depth, made.bedding.depth));
+}
+
 TEST(BeddingTest, NumbersOutOfRangeAreRefused) {
     const Made made =
         made_of({strata::grid(1, 1, 0, 0, 1, 1, [](double, double) { return 1.0; })}, {}, 0.0);

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.display.polygon_mesh import PolygonMesh
-from ...core.results.section_drawing import flattened, is_vertical
+from ...core.results.sections.section_drawing import flattened, is_vertical
 from ..objects import meshes, model_tree, shapes
 from ..objects.origin import offsets_from
 from ..project import library_rows, project_settings

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.drawing.overlay import ColorKey
 from ...core.results import layer_values
-from ...core.results.section_holes import near_plane
+from ...core.results.sections.section_holes import near_plane
 from ..display import bodies, colors, cuts
 from ..host import caches
 from ..objects import marks

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from ...core.structures.sheets.displacement import displacements
+from ...core.results.displacements import displacements
 
 
 def of_model(model):

@@ -5,7 +5,7 @@ import numpy as np
 
 from ...core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
 from ...core.base.errors import naming
-from ...core.project.series import check_level_set, check_series
+from ...core.project.series_checks import check_level_set, check_series
 from ...core.settings.schema import ROCK, SERIES
 from ...core.settings.series import AUTO, FIELD
 from ..objects import stored_arrays

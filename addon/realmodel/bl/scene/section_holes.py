@@ -7,7 +7,7 @@ import io
 import numpy as np
 
 from ...core.base.algebra import norm
-from ...core.results.section_holes import line_through
+from ...core.results.sections.section_holes import line_through
 from ..project import borehole_picks
 
 

@@ -125,4 +125,4 @@ def on(nodes, given, geometry, name, here):
     nodes.link(nodes.random((-turn, -turn, 0.0), (turn, turn, 6.28), 1), placed.inputs["Rotation"])
     scale = nodes.math("MULTIPLY", nodes.random(low, high, 2), size)
     nodes.link(scale, placed.inputs["Scale"])
-    return placed.outputs["Instances"]
+    return nodes.upright(placed.outputs["Instances"])

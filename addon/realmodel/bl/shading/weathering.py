@@ -23,7 +23,7 @@ from . import edge_wear, looks, scatter
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 4
+_VERSION = 5
 _STEPS = 5  # of smoothing
 _ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
@@ -238,7 +238,7 @@ def _covered(nodes, given, geometry, is_top, position):
     """Grass, and scree on steeper ground, with a ragged border; tufts and stones on them."""
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
     ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
-    up = nodes.part(nodes.of("GeometryNodeInputNormal", "Normal"), 2)
+    up = nodes.part(nodes.turned(nodes.of("GeometryNodeInputNormal", "Normal")), 2)
     slope = nodes.math("ADD", nodes.math("ARCCOSINE", up), ragged)
     scattered = []
     for name, thing in (("Scree", scatter.STONE), ("Grass", scatter.TUFT)):
@@ -298,6 +298,38 @@ class _Nodes(Nodes):
             self.link(found.outputs["Index"], node.inputs["Index"])
             sampled.append(_of_type(node.outputs, kind))
         return sampled
+
+    def rotation(self):
+        """The rotation of the object, as Euler angles."""
+        node = self.new("GeometryNodeObjectInfo")
+        self.link(self.of("GeometryNodeSelfObject", 0), node.inputs["Object"])
+        return node.outputs["Rotation"]
+
+    def turned(self, vector):
+        """A vector of the object's coordinates as the world has it, but for the object's scale."""
+        node = self.new("ShaderNodeVectorRotate")
+        node.rotation_type = "EULER_XYZ"
+        self.link(vector, node.inputs["Vector"])
+        self.link(self.rotation(), node.inputs["Rotation"])
+        return node.outputs[0]
+
+    def upright(self, instances):
+        """Instances turned in their places as if the object were not: the inverse of its rotation, axis by
+        axis, as Euler angles have an order."""
+        for axis in (2, 1, 0):
+            angles = self.new("ShaderNodeCombineXYZ")
+            angle = self.math("MULTIPLY", self.part(self.rotation(), axis), -1.0)
+            self.link(angle, angles.inputs[axis])
+            node = self.new("GeometryNodeRotateInstances")
+            for name, value in (
+                ("Instances", instances),
+                ("Rotation", angles.outputs[0]),
+                ("Pivot Point", self.of("GeometryNodeInputPosition", "Position")),
+                ("Local Space", False),
+            ):
+                self.link(value, node.inputs[name])
+            instances = node.outputs[0]
+        return instances
 
     def random(self, low, high, number):
         """A random number, or vector, for each point. number: another one has other values."""

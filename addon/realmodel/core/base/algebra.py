@@ -15,7 +15,7 @@ _ROUNDING = 2.0**-50  # of the lengths of two columns: so small a product, or on
 _SWEEPS = 60  # over all pairs of columns; six are enough for nearly all points
 
 
-def dot(a, b) -> np.ndarray:
+def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(...) the products of vectors (..., D)."""
     product = np.multiply(a, b)
     if product.shape[-1] not in (2, 3):

@@ -8,27 +8,30 @@ are numbers or arrays, angles in radians. Raise BuildFailed where the compiled p
 from __future__ import annotations
 
 import math
+from typing import Any
+
+from numpy.typing import ArrayLike
 
 from .work import native_module
 
 
-def sin(x):
+def sin(x: ArrayLike) -> Any:
     return native_module().sin(x)
 
 
-def cos(x):
+def cos(x: ArrayLike) -> Any:
     return native_module().cos(x)
 
 
-def exp(x):
+def exp(x: ArrayLike) -> Any:
     return native_module().exp(x)
 
 
-def atan2(y, x):
+def atan2(y: ArrayLike, x: ArrayLike) -> Any:
     return native_module().atan2(y, x)
 
 
-def hypot(x, y):
+def hypot(x: ArrayLike, y: ArrayLike) -> Any:
     return native_module().hypot(x, y)
 
 

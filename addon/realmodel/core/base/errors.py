@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -75,7 +75,7 @@ class InputRefused(RealModelError):
 
 
 @contextmanager
-def naming(item: str, source: Callable[[], tuple[Path | None, int | None]] | None = None):
+def naming(item: str, source: Callable[[], tuple[Path | None, int | None]] | None = None) -> Iterator[None]:
     """Within it errors name an item, and its file and line where they have none yet."""
     try:
         yield
@@ -117,14 +117,14 @@ class UsageError(RealModelError):
     """A function or the command line was called with something that it does not know."""
 
 
-def number_list(numbers, most: int = 6) -> str:
+def number_list(numbers: Iterable[object], most: int = 6) -> str:
     """'3', '3 and 5', '3, 5 and 8', or the first few and how many more."""
-    numbers = [str(n) for n in numbers]
-    if len(numbers) > most:
-        return f"{', '.join(numbers[:most])} and {len(numbers) - most} more"
-    if len(numbers) < 2:
-        return "".join(numbers)
-    return f"{', '.join(numbers[:-1])} and {numbers[-1]}"
+    texts = [str(n) for n in numbers]
+    if len(texts) > most:
+        return f"{', '.join(texts[:most])} and {len(texts) - most} more"
+    if len(texts) < 2:
+        return "".join(texts)
+    return f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
 def counted(count: int, noun: str) -> str:
@@ -132,6 +132,6 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def place_text(place) -> str:
+def place_text(place: Iterable[float]) -> str:
     """A point in model units, with as many digits as it takes to find it."""
     return "(" + ", ".join(f"{value:.9g}" for value in place) + ")"

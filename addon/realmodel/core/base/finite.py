@@ -17,7 +17,7 @@ def is_finite(value: SupportsFloat) -> bool:
         return False
 
 
-def is_number(value) -> bool:
+def is_number(value: object) -> bool:
     """Whether a value is a finite number (a truth value is none)."""
     return (
         isinstance(value, (int, float, np.integer, np.floating))

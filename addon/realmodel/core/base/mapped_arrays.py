@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from .errors import BuildFailed, OutputFailed
 
@@ -89,7 +90,7 @@ class MappedArrays:
             raise OutputFailed(f"{self.folder}: {error.strerror or error}") from error
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self._files.clear()
         shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -110,7 +111,7 @@ class MappedArrays:
         """Gathers pieces in a file, read-only."""
         return _gathered(self.rows(empty), pieces)
 
-    def zeros(self, shape: tuple[int, ...], dtype) -> np.ndarray:
+    def zeros(self, shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
         """Zeros in a file, for the caller to change."""
         file = self._new_file()
         with _disk_errors(file):
@@ -157,7 +158,7 @@ class _MappedRows(Rows):
             self._file.unlink()
         return self._empty
 
-    def _write(self, content, mode: str) -> None:
+    def _write(self, content: bytes | np.ndarray, mode: str) -> None:
         with _disk_errors(self._file), self._file.open(mode) as out:
             out.write(content)
 

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from .errors import InputRefused
 
@@ -206,8 +207,8 @@ def read_text(file: Path) -> str:
 
 
 def column_numbers(
-    lines: list[str], columns: tuple[int, ...], delimiter: str | None, dtype, step: Step = no_step
-):
+    lines: list[str], columns: tuple[int, ...], delimiter: str | None, dtype: DTypeLike, step: Step = no_step
+) -> np.ndarray:
     """(N, len(columns)) numbers of the given lines; blank lines and what follows '#' are left out.
 
     Raises ValueError where NumPy cannot read a line: the caller then looks for it with more patience.

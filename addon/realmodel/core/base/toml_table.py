@@ -10,7 +10,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 from .errors import InputRefused
 from .finite import is_finite
@@ -108,7 +108,7 @@ class Table:
                 advice = f"did you mean '{near[0]}'?" if near else f"valid keys are {', '.join(known)}"
                 raise self.refuse(f"unknown key '{key}'", key, advice)
 
-    def _value(self, key: str, required: bool):
+    def _value(self, key: str, required: bool) -> Any:
         if key in self.content:
             return self.content[key]
         if required:
@@ -171,7 +171,7 @@ class Table:
         ]
 
 
-def _kind(value) -> str:
+def _kind(value: object) -> str:
     names = {bool: "true or false", int: "a whole number", float: "a number", str: "text", list: "a list"}
     names[dict] = "a table"
     return names.get(type(value), "a date or time")

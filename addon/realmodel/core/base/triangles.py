@@ -6,6 +6,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .algebra import begins_run, dot, norm
 from .errors import InputRefused, place_text
@@ -226,7 +227,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(result, np.int32)
 
 
-def checked_triangulation(vertices, triangles) -> tuple[np.ndarray, np.ndarray]:
+def checked_triangulation(vertices: ArrayLike, triangles: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
     try:
         vertices = np.ascontiguousarray(vertices, np.float64)

@@ -15,7 +15,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec, Protocol, TypeVar, cast
 
 from . import missing_native
 from .errors import BuildFailed, Cancelled
@@ -24,7 +24,8 @@ from .packages import extra
 if TYPE_CHECKING:
     from ..._native import Native
 
-Progress = Callable[[float, str], None] | Literal[True]  # True: a bar
+Report = Callable[[float, str], None]  # of the share that is done, and what is being done
+Progress = Report | Literal[True]  # True: a bar
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
 Arguments = ParamSpec("Arguments")
@@ -33,6 +34,16 @@ Result = TypeVar("Result")
 POLL_SECONDS = 0.04
 _PACKAGE = __package__.removesuffix(".core.base")  # "realmodel", or the name of the extension in Blender
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
+
+
+class NativeError(Protocol):
+    """An InputError of the native module, or the same with the numbers of something else. kind: of the input,
+    as the bindings name it; surface: its number, -1 for none; items: triangles or points of it."""
+
+    kind: str
+    surface: int
+    items: list[int]
+    place: tuple[float, float, float] | None
 
 
 def on_threads(threads: int) -> Native.Execution:
@@ -60,7 +71,7 @@ class Work:
     # -- in the working thread
 
     @contextmanager
-    def phase(self, start: float, end: float, text: str, has_steps: bool = False):
+    def phase(self, start: float, end: float, text: str, has_steps: bool = False) -> Iterator[None]:
         """A phase of work: the progress goes from `start` to `end`, both between 0 and 1. has_steps: its
         native call says itself what it is doing."""
         self.check()
@@ -71,7 +82,7 @@ class Work:
         self.step(1.0)
 
     @contextmanager
-    def part(self, start: float, end: float):
+    def part(self, start: float, end: float) -> Iterator[None]:
         """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job, or a
         step that has phases of its own, as a part of another."""
         before = self._part
@@ -214,7 +225,7 @@ class Job:
         )
         self._thread.start()
 
-    def _run(self, task, leaving: list[threading.Thread]) -> None:
+    def _run(self, task: Callable[[Work], Any], leaving: list[threading.Thread]) -> None:
         try:
             for thread in leaving:  # so that only one holds memory at a time
                 thread.join()
@@ -255,7 +266,7 @@ class Job:
         self._ended.wait(seconds)
         return self.done
 
-    def result(self):
+    def result(self) -> Any:
         """The result of the task, once it is done; raises its error, or Cancelled."""
         self.wait()
         if self._leaves_at is not None:
@@ -272,8 +283,12 @@ def start(task: Callable[[Work], Result], threads: int = 0) -> Job:
     return Job(task, threads)
 
 
+def report_nothing(_share: float, _text: str) -> None:
+    """A Report for a caller that wants none."""
+
+
 @contextmanager
-def progress_bar() -> Iterator[Callable[[float, str], None]]:
+def progress_bar() -> Iterator[Report]:
     """progress(fraction, text) as a bar of tqdm: a widget in a notebook that has ipywidgets, else text.
 
     Raises UsageError where tqdm is missing.
@@ -349,7 +364,7 @@ _leaving: list[threading.Thread] = []  # asked to stop, but perhaps still runnin
 
 
 @contextmanager
-def _waiting_threads_sleep():
+def _waiting_threads_sleep() -> Iterator[None]:
     """Has OpenMP's threads sleep while they have nothing to do, unless the user said otherwise.
 
     GNU's spin by default: on a busy machine they then take the time of those that work, and small
@@ -367,7 +382,7 @@ def _waiting_threads_sleep():
 
 
 @contextmanager
-def refused_as(refusal: Callable[[Any], Exception]) -> Iterator[Native]:
+def refused_as(refusal: Callable[[NativeError], Exception]) -> Iterator[Native]:
     """The native module; its InputErrors within are raised as what `refusal` makes of them."""
     native = native_module()
     try:

@@ -17,7 +17,7 @@ class _Tree(ElementTree.TreeBuilder):
         super().__init__()
         self._file = file
 
-    def doctype(self, *_) -> None:
+    def doctype(self, *_: object) -> None:
         raise InputRefused("XML with a document type is not read", file=self._file, advice="export it again")
 
 

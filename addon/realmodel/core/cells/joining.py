@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.errors import BuildFailed, InputRefused
 from ..base.sheet import Sheet
-from ..base.work import Work, refused_as
+from ..base.work import NativeError, Work, refused_as
 from ..fields import ScalarField, level_solids
 from ..structures.parts.part_models import (
     DEEP,
@@ -70,13 +70,15 @@ def build_joined(
     return _with_parts(built, joined["cell_part"], inputs, structures, divides)
 
 
-def _refused(error, inputs: list[RockInput], structures: Structures) -> InputRefused | BuildFailed:
+def _refused(
+    error: NativeError, inputs: list[RockInput], structures: Structures
+) -> InputRefused | BuildFailed:
     """The refusal for a native InputError of build_parts, which counts structures after all surfaces."""
     surfaces = _first_surfaces(inputs)[-1]
     if error.kind == "rocks_overlap" or 0 <= error.surface < surfaces:
         return refused_stack(error, inputs)
     error.surface -= surfaces
-    return refused_structure(error, structures)
+    return refused_structure(error, structures.faults, structures.bodies)
 
 
 def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:

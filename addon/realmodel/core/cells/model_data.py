@@ -7,7 +7,7 @@ import colorsys
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,24 @@ from .blocks import Block, BlockBoundary
 from .cell_complex import CellComplex
 
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
+
+
+class UsedSurfaces(Protocol):
+    """What a Model and a SurfaceSet say of their surfaces, faults and bodies as they were used."""
+
+    project: Project
+    rock_inputs: list[RockInput]
+    surface_names: list[str]
+    surface_kind: np.ndarray
+    warnings: list[BuildWarning]
+    structures: Structures
+
+    @property
+    def interpolations(self) -> list[Interpolation | None]: ...
+    @property
+    def surface_triangle_sheet(self) -> np.ndarray: ...
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]: ...
+    def surface_attributes(self, number: int) -> dict[str, np.ndarray]: ...
 
 
 @dataclass(eq=False)

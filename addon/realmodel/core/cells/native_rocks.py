@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from ..surfaces.planar_mesh import triangulate_rings
+from .model_data import ModelData
 
 
-def native_rocks(model, stage: int | None = None) -> list[tuple]:
+def native_rocks(model: ModelData, stage: int | None = None) -> list[tuple]:
     """For each rock mass (surfaces, region, base elevation, rules), the surfaces up to `stage` only where it
     is given; regions as triangulations. Models that were put together from arrays know their project only."""
     rocks, first = [], 0

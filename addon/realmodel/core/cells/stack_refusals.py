@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..base.errors import BuildFailed, InputRefused, number_list, place_text
+from ..base.work import NativeError
 from ..project.project import surface_item
 from ..surfaces.rock_input import RockInput
 
 _ONE_HEIGHT = "a surface may have only one height at each place"
 
 
-def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
+def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused | BuildFailed:
     """The refusal for a native InputError of build_rock_masses; the caller raises it."""
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
@@ -87,7 +90,7 @@ def _beyond_its_points(entry: RockInput, lowest: float) -> str:
     return ""
 
 
-def _triangles(items: tuple[int, ...], file_faces) -> str:
+def _triangles(items: tuple[int, ...], file_faces: np.ndarray | None) -> str:
     """'triangle 3' or 'triangles 3 and 5'; with the faces of the file where its polygons were divided."""
     text = f"triangle{'s' if len(items) != 1 else ''} {number_list(items)}"
     if file_faces is None:

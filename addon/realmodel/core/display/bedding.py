@@ -13,6 +13,7 @@ from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
 from ..fields.series_field import SeriesField
 from ..results.model_fields import local_compartments
+from ..surfaces.rock_structure import RockStructure
 from ..surfaces.sides import fault_sides
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
@@ -116,7 +117,9 @@ def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
     return model.structures.times[body].get(model.blocks[block].rock, 0) + 0.5
 
 
-def _with_bodies(model: ModelData, found: Bedding, faces, is_second, body: np.ndarray) -> Bedding:
+def _with_bodies(
+    model: ModelData, found: Bedding, faces: np.ndarray, is_second: np.ndarray, body: np.ndarray
+) -> Bedding:
     """body: (N,) the surface of the body that each polygon is of, -1: none."""
     if (body < 0).all():
         return found
@@ -131,7 +134,9 @@ def _with_bodies(model: ModelData, found: Bedding, faces, is_second, body: np.nd
     return replace(found, height=height, thickness=thickness)
 
 
-def _with_series(model: ModelData, found: Bedding, faces, is_second, cells) -> Bedding:
+def _with_series(
+    model: ModelData, found: Bedding, faces: np.ndarray, is_second: np.ndarray, cells: np.ndarray
+) -> Bedding:
     """Heights and thicknesses of the layers of series by their fields, also where these are vertical or
     overturned. The thickness of a layer is its mean, so that laminae are level sets of the field. The oldest
     layer of a series begins at the least value of the field in it."""
@@ -154,7 +159,9 @@ def _with_series(model: ModelData, found: Bedding, faces, is_second, cells) -> B
     return replace(found, height=height, thickness=thickness)
 
 
-def _in_layer(own: SeriesField, surface: int, points: np.ndarray, where: np.ndarray):
+def _in_layer(
+    own: SeriesField, surface: int, points: np.ndarray, where: np.ndarray
+) -> tuple[np.ndarray, float]:
     """(N,) the shares of the height of the layer beneath a surface of a series at points (N, 3), NaN where
     the field is not known, and the mean thickness of the layer."""
     above = -own.excess(surface, points, where)
@@ -177,7 +184,14 @@ def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     return np.repeat(begin[numbers] - (ends - size), size) + np.arange(ends[-1] if len(ends) else 0)
 
 
-def _compartments(work: Work, model: ModelData, structure, faces, is_second, cells) -> np.ndarray:
+def _compartments(
+    work: Work,
+    model: ModelData,
+    structure: RockStructure,
+    faces: np.ndarray,
+    is_second: np.ndarray,
+    cells: np.ndarray,
+) -> np.ndarray:
     """(C,) the compartment of a rock mass that each corner of some faces lies in, by its rows of sides. What
     a compartment of the model leaves open - a fault that does not divide the block, or that dies out - is
     where the corner lies, drawn a little into its cell."""

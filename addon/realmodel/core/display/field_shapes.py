@@ -4,6 +4,7 @@ any number of values in the rock of the series."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..fields import level_solids, within_lattice
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..results.model_fields import local_compartments
-from ..results.section_data import SectionData
+from ..results.sections.section_data import SectionData
 from ..surfaces.rock_input import RockInput
 
 _FINE = 1.0  # edges of what is drawn on a section, of the spacing of the lattice
@@ -171,7 +172,9 @@ def _divided(places: np.ndarray, values: np.ndarray, level: float) -> tuple[np.n
     )
 
 
-def _within(work: Work, form: ClosedForm, blocks: np.ndarray, compartments: list[int]):
+def _within(
+    work: Work, form: ClosedForm, blocks: np.ndarray, compartments: list[int]
+) -> Callable[[np.ndarray], np.ndarray]:
     """A function of points (N, 3): whether they lie in some blocks, in some compartments."""
 
     def inside(points: np.ndarray) -> np.ndarray:
@@ -181,7 +184,7 @@ def _within(work: Work, form: ClosedForm, blocks: np.ndarray, compartments: list
     return inside
 
 
-def _cut_off(places: np.ndarray, inside) -> np.ndarray:
+def _cut_off(places: np.ndarray, inside: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """The parts of triangles (T, 3, 3) that lie inside. Those that partly do are divided in four, some times,
     and then cut along lines between the places where their edges leave it."""
     kept = []
@@ -204,14 +207,14 @@ def _cut_off(places: np.ndarray, inside) -> np.ndarray:
     return np.concatenate(kept)
 
 
-def _are_inside(places: np.ndarray, inside) -> np.ndarray:
+def _are_inside(places: np.ndarray, inside: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """(T, 3) bool: which corners of triangles (T, 3, 3) lie inside; each position is asked for once."""
     corners, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
     found = inside(corners) if len(corners) else np.zeros(0, bool)
     return found[number.ravel()].reshape(-1, 3)
 
 
-def _border(within: np.ndarray, beyond: np.ndarray, inside) -> np.ndarray:
+def _border(within: np.ndarray, beyond: np.ndarray, inside: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """(N, 3) where one leaves what is inside on the way from points within (N, 3) to points beyond it."""
     for _ in range(_BISECTIONS if len(within) else 0):
         middle = 0.5 * (within + beyond)

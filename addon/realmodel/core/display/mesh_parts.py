@@ -34,7 +34,7 @@ class Operand:
     is_mirrored: bool = False
     triangles: np.ndarray = field(init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.is_mirrored:
             self.triangle_corners = np.ascontiguousarray(self.triangle_corners[:, [0, 2, 1]])
         self.triangles = self.corner_vertices[self.triangle_corners].astype(np.int32)
@@ -239,10 +239,10 @@ def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     axis = np.abs(normal).argmax(axis=1)
     plan = np.stack([(axis + 1) % 3, (axis + 2) % 3], axis=1)
 
-    def seen(points):
+    def seen(points: np.ndarray) -> np.ndarray:
         return np.take_along_axis(points, plan, axis=1)
 
-    def area(p, q, r):
+    def area(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
         u, v = q - p, r - p
         return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
@@ -260,7 +260,14 @@ def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return found
 
 
-def _edges_of(found, number, rows, pieces, weights, operand) -> np.ndarray:
+def _edges_of(
+    found: Intersection,
+    number: int,
+    rows: np.ndarray,
+    pieces: np.ndarray,
+    weights: np.ndarray,
+    operand: Operand,
+) -> np.ndarray:
     """(M, 3): the edge of the operand on which the edge after each corner of triangles lies, -1 for none.
 
     An edge of a piece is on the border of the triangle that it is part of where no other piece of it has the
@@ -290,7 +297,9 @@ def _edges_of(found, number, rows, pieces, weights, operand) -> np.ndarray:
     return np.where(on_border, edge, -1)
 
 
-def _whole_polygons(operand, origin, pieces, polygon, is_turned) -> np.ndarray:
+def _whole_polygons(
+    operand: Operand, origin: np.ndarray, pieces: np.ndarray, polygon: np.ndarray, is_turned: np.ndarray
+) -> np.ndarray:
     """(M,) bool: the triangles of polygons of more than three corners that are all there, none divided, and
     turned alike."""
     count = len(operand.offsets) - 1

@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from ..base.work import Cancel, native_module, run
+from ..base.work import Cancel, Work, native_module, run
 from ..cells.model_data import ModelData
 from .bedding import Bedding, bedding_of, seen_from_below
 
@@ -179,11 +180,18 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
 
 
 def _shells(
-    model, origin, shrink, threads, cancel, label, count, other=None
+    model: ModelData,
+    origin: Sequence[float] | np.ndarray,
+    shrink: float | None,
+    threads: int,
+    cancel: Cancel | None,
+    label: np.ndarray,
+    count: int,
+    other: dict[str, Any] | None = None,
 ) -> list[tuple[PolygonMesh, np.ndarray] | None]:
     """The mesh around the cells of each label, and of each polygon the face of the model."""
 
-    def task(work):
+    def task(work: Work) -> tuple[list, Bedding | None]:
         shells = work.native(
             native_module().complex_shells,
             {**model.native(), "cell_block": label, **(other or {})},

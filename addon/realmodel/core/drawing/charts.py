@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .drawing import BLACK, GRAY, Color, Drawing
 from .glyphs import text_width
@@ -54,7 +55,7 @@ class Axes:
     y_range: tuple[float, float]
     size: float = 8.0  # of texts
 
-    def at(self, points) -> np.ndarray:
+    def at(self, points: ArrayLike) -> np.ndarray:
         """(N, 2) positions in points of x and y (N, 2)."""
         low = np.array([self.x_range[0], self.y_range[0]])
         extent = np.array([self.x_range[1], self.y_range[1]]) - low
@@ -62,7 +63,7 @@ class Axes:
         share = (np.asarray(points, np.float64).reshape(-1, 2) - low) / np.where(extent > 0, extent, 1.0)
         return share * (width, height) + (x, y)
 
-    def frame(self, x_label="", y_label="", layer="") -> None:
+    def frame(self, x_label: str = "", y_label: str = "", layer: str = "") -> None:
         """The box, ticks with their numbers, and the names of the axes."""
         x, y, width, height = self.box
         size, drawing = self.size, self.drawing
@@ -93,7 +94,7 @@ class Axes:
         return values[:1], texts[:1]
 
 
-def _y_ticks(y_range: tuple[float, float], height: float, size: float):
+def _y_ticks(y_range: tuple[float, float], height: float, size: float) -> tuple[np.ndarray, list[str], float]:
     """Values and texts of the ticks of an upright axis, and how wide the widest text is."""
     values = ticks(*y_range, max(3, int(height / (2.6 * size))))
     texts = tick_texts(values)
@@ -110,8 +111,8 @@ def legend(
     at: tuple[float, float],
     title: str,
     entries: Sequence[tuple[str, Color]],
-    size=8.0,
-    layer="",
+    size: float = 8.0,
+    layer: str = "",
 ) -> None:
     """A title, then boxes of color with their names, the first on top. at: the upper left corner."""
     x, y = at
@@ -123,7 +124,7 @@ def legend(
         drawing.text(x + 2.2 * size, base, name, size, layer=layer)
 
 
-def legend_size(title: str, entries: Sequence[tuple[str, Color]], size=8.0) -> tuple[float, float]:
+def legend_size(title: str, entries: Sequence[tuple[str, Color]], size: float = 8.0) -> tuple[float, float]:
     """The width and height of a legend in points."""
     widest = max((text_width(name, size) for name, _ in entries), default=0.0)
     return max(2.2 * size + widest, text_width(title, size)), (TITLE + len(entries) * LINE) * size
@@ -135,7 +136,7 @@ def color_bar(
     limits: tuple[float, float],
     colors: np.ndarray,
     names: Sequence[tuple[str, float]] = (),
-    size=8.0,
+    size: float = 8.0,
 ) -> None:
     """An upright bar of colors (N, 3), the lowest first, in a box (x, y, width, height), with numbers beside
     it. names: of values, in place of the numbers."""
@@ -152,7 +153,7 @@ def color_bar(
 
 
 def bar_marks(
-    limits: tuple[float, float], height: float, names: Sequence[tuple[str, float]] = (), size=8.0
+    limits: tuple[float, float], height: float, names: Sequence[tuple[str, float]] = (), size: float = 8.0
 ) -> list[tuple[str, float]]:
     """What stands beside a bar of colors of a height: texts, and the values that they are at, rising."""
     if len(names):
@@ -173,7 +174,7 @@ def _apart(levels: list[float], least: float) -> list[float]:
 
 
 def scale_bar(
-    drawing: Drawing, at: tuple[float, float], most: float, scale: float, unit: str, size=8.0
+    drawing: Drawing, at: tuple[float, float], most: float, scale: float, unit: str, size: float = 8.0
 ) -> None:
     """A bar of a round length, at most `most` points long, from a place to the right. scale: points for one
     unit."""

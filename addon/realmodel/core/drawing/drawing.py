@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 Color = tuple[float, ...]  # red, green, blue, and where it is not opaque alpha: sRGB from 0 to 1
 BLACK, GRAY, WHITE = (0.0, 0.0, 0.0), (0.55, 0.55, 0.55), (1.0, 1.0, 1.0)
@@ -52,6 +54,9 @@ class Text:
     layer: str
 
 
+Item = Polygon | Line | Dots | Text
+
+
 @dataclass(eq=False)
 class Drawing:
     """Items from the first, below, to the last, above.
@@ -66,32 +71,63 @@ class Drawing:
     height: float
     scale: float = 1.0
     origin: tuple[float, float] = (0.0, 0.0)
-    items: list[Polygon | Line | Dots | Text] = field(default_factory=list)
+    items: list[Item] = field(default_factory=list)
 
-    def polygon(self, rings, fill=None, stroke=None, width=0.5, layer="") -> None:
+    def polygon(
+        self,
+        rings: Sequence | np.ndarray,
+        fill: Color | None = None,
+        stroke: Color | None = None,
+        width: float = 0.5,
+        layer: str = "",
+    ) -> None:
         """rings: (N, 2), or a list of them. fill, stroke: colors, None for none; width: of the stroke."""
         single = np.ndim(rings[0][0]) == 0
         arrays = [np.asarray(ring, np.float64) for ring in ([rings] if single else rings)]
         self.items.append(Polygon(arrays, fill, stroke, width, layer))
 
-    def rectangle(self, box, fill=None, stroke=None, line=0.5, layer="") -> None:
+    def rectangle(
+        self,
+        box: Sequence[float],
+        fill: Color | None = None,
+        stroke: Color | None = None,
+        line: float = 0.5,
+        layer: str = "",
+    ) -> None:
         """box: x, y, width, height. fill, stroke: as of polygon; line: the width of the stroke."""
         x, y, width, height = box
         corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
         self.polygon(corners, fill, stroke, line, layer)
 
-    def line(self, points, color=BLACK, width=0.75, dash=None, layer="") -> None:
+    def line(
+        self,
+        points: ArrayLike,
+        color: Color = BLACK,
+        width: float = 0.75,
+        dash: float | None = None,
+        layer: str = "",
+    ) -> None:
         """A line through points (N, 2), with a color and a width. dash: the length of its dashes and gaps;
         None: a solid line."""
         self.items.append(Line(np.asarray(points, np.float64), color, width, dash, layer))
 
-    def dots(self, points, radii, color=BLACK, layer="") -> None:
+    def dots(self, points: ArrayLike, radii: ArrayLike, color: Color = BLACK, layer: str = "") -> None:
         """Filled circles of one color at points (N, 2). radii: one number, or one for each point."""
         points = np.asarray(points, np.float64).reshape(-1, 2)
         radii = np.broadcast_to(np.asarray(radii, np.float64), len(points))
         self.items.append(Dots(points, radii, color, layer))
 
-    def text(self, x, y, text, size=9.0, color=BLACK, anchor="start", angle=0.0, layer="") -> None:
+    def text(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        size: float = 9.0,
+        color: Color = BLACK,
+        anchor: str = "start",
+        angle: float = 0.0,
+        layer: str = "",
+    ) -> None:
         """One line of text from the baseline at (x, y), with a size and a color. anchor: "start", "middle",
         or "end". angle: degrees, counter-clockwise."""
         self.items.append(Text(float(x), float(y), str(text), size, color, anchor, angle, layer))

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Collection, Sequence
 from typing import BinaryIO
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .drawing import ANCHORS, BLACK, Drawing, Line, Polygon, Text
+from .drawing import ANCHORS, BLACK, Color, Drawing, Item, Line, Polygon, Text
 
 _LONGEST_NAME = 31
 _ZERO_LAYER = "0"
@@ -52,16 +54,16 @@ class _Pairs:
         self.drawing = drawing
         self.lines: list[str] = []
 
-    def add(self, *pairs) -> None:
+    def add(self, *pairs: tuple[int, object]) -> None:
         self.lines += [f"{code}\n{value}\n" for code, value in pairs]
 
-    def places(self, points) -> np.ndarray:
+    def places(self, points: ArrayLike) -> np.ndarray:
         return (np.asarray(points) - self.drawing.origin) / self.drawing.scale
 
-    def place(self, at):
+    def place(self, at: Sequence[float]) -> list[tuple[int, float]]:
         return [(10, float(at[0])), (20, float(at[1])), (30, 0.0)]
 
-    def item(self, item, layer: str) -> None:
+    def item(self, item: Item, layer: str) -> None:
         if isinstance(item, Polygon):
             for ring in item.rings:
                 self.polyline(ring, layer, item.fill or item.stroke or BLACK, closed=True)
@@ -74,7 +76,7 @@ class _Pairs:
                 color = (62, color_number(item.color))
                 self.add((0, "CIRCLE"), (8, layer), color, *self.place(at), (40, float(radius)))
 
-    def polyline(self, points, layer: str, color, closed: bool) -> None:
+    def polyline(self, points: np.ndarray, layer: str, color: Color, closed: bool) -> None:
         self.add((0, "POLYLINE"), (8, layer), (62, color_number(color)), (66, 1), *self.place((0.0, 0.0)))
         self.add((70, int(closed)))
         for at in self.places(points):
@@ -96,7 +98,7 @@ def _escaped(text: str) -> str:
     return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
 
 
-def layer_name(layer: str, taken) -> str:
+def layer_name(layer: str, taken: Collection[str]) -> str:
     """A name of capital letters, digits, $, - and _, unlike those that are taken."""
     plain = unicodedata.normalize("NFKD", layer.upper())  # accents become signs of their own
     plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
@@ -117,14 +119,14 @@ def _layer_color(drawing: Drawing, layer: str) -> int:
     return color_number(BLACK)
 
 
-def color_number(color) -> int:
+def color_number(color: Color) -> int:
     """The color of AutoCAD that is most like one; 7 is black on white and white on black."""
-    color = np.asarray(color[:3], np.float64)
-    if color.max() < 0.1:
+    shade = np.asarray(color[:3], np.float64)
+    if shade.max() < 0.1:
         return 7
     grays = np.array([0.2, 0.36, 0.52, 0.68, 0.84, 1.0])  # numbers 250 to 255
     table = np.concatenate([_TABLE, np.repeat(grays[:, None], 3, axis=1)])
-    return 10 + int(np.argmin(((table - color) ** 2).sum(axis=1)))
+    return 10 + int(np.argmin(((table - shade) ** 2).sum(axis=1)))
 
 
 def _color_table() -> np.ndarray:

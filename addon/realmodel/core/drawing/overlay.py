@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .charts import (
     TITLE,
@@ -65,7 +66,7 @@ class Eye:
     def is_perspective(self) -> bool:
         return self.back[3] != 0.0
 
-    def at(self, places) -> np.ndarray:
+    def at(self, places: ArrayLike) -> np.ndarray:
         """(N, 2): the positions of places of the world (N, 3) in the picture, in points; NaN for places
         behind the eye."""
         places = np.asarray(places, np.float64).reshape(-1, 3)
@@ -85,7 +86,7 @@ class Shown:
     unit: str
     exaggeration: float = 1.0
 
-    def world(self, places) -> np.ndarray:
+    def world(self, places: ArrayLike) -> np.ndarray:
         places = np.asarray(places, np.float64).reshape(-1, 3)
         return places @ self.placed[:3, :3].T + self.placed[:3, 3]
 
@@ -115,7 +116,9 @@ def draw_overlay(
     return drawing
 
 
-def _labels(drawing: Drawing, eye: Eye, shown: Shown, labels) -> None:
+def _labels(
+    drawing: Drawing, eye: Eye, shown: Shown, labels: Sequence[tuple[str, tuple[float, float, float]]]
+) -> None:
     taken: list[tuple[float, float, float]] = []  # from left to right, and the height
     places = eye.at(shown.world([place for _, place in labels]))
     for (text, _), (x, y) in zip(labels, places.tolist(), strict=True):
@@ -198,7 +201,7 @@ def _north_arrow(drawing: Drawing, eye: Eye, edge: float) -> None:
     slope = float(np.dot(eye.up[:2], ahead))
     slope = np.copysign(max(abs(slope), _FLATTEST), slope if slope else 1.0)
 
-    def on_paper(places):
+    def on_paper(places: ArrayLike) -> np.ndarray:
         places = np.asarray(places, np.float64)
         return np.column_stack([places @ right, slope * (places @ ahead)]) * radius + middle
 
@@ -251,7 +254,14 @@ def _axes(drawing: Drawing, eye: Eye, shown: Shown) -> None:
             _ticks(drawing, eye, shown, axis, chosen, center)
 
 
-def _ticks(drawing: Drawing, eye: Eye, shown: Shown, axis: int, edge, center: np.ndarray) -> None:
+def _ticks(
+    drawing: Drawing,
+    eye: Eye,
+    shown: Shown,
+    axis: int,
+    edge: tuple[np.ndarray, np.ndarray, np.ndarray],
+    center: np.ndarray,
+) -> None:
     (start, stop), begin, end = edge
     along = stop - start
     length = float(np.hypot(*along))

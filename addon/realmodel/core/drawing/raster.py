@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..base.algebra import ranks_in_runs
-from .drawing import ANCHORS, WHITE, Dots, Drawing, Line, Polygon, Text
+from .drawing import ANCHORS, WHITE, Color, Dots, Drawing, Item, Line, Polygon, Text
 from .glyphs import text_rings, text_width
 
 _SUBROWS = 5  # of a row of pixels, in which the covered part is exact
@@ -14,7 +16,7 @@ _CORNERS = 20  # of a dot
 _SHARPEST = 0.3  # 1 + cosine of the turn beyond which a line's corner is cut off
 
 
-def rasterize(drawing: Drawing, scale: float, background=WHITE) -> np.ndarray:
+def rasterize(drawing: Drawing, scale: float, background: Color | None = WHITE) -> np.ndarray:
     """(H, W, 4) float32 RGBA from 0 to 1, alpha not multiplied in, the top row first.
 
     scale: pixels for a point. background: a color, or None for a transparent one.
@@ -40,11 +42,11 @@ def over(below: np.ndarray, above: np.ndarray, x: int, y: int) -> None:
     part[..., :3] += above[..., 3:] * (above[..., :3] - part[..., :3])
 
 
-def _rgba(color) -> np.ndarray:
+def _rgba(color: Color) -> np.ndarray:
     return np.array([*color, 1.0][:4], np.float32)
 
 
-def item_shapes(item):
+def item_shapes(item: Item) -> Iterator[tuple[list[np.ndarray], Color]]:
     """The shapes of an item, as (rings, color): rings (N, 2) in points."""
     if isinstance(item, Polygon):
         if item.fill is not None:

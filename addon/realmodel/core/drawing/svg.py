@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from .drawing import Drawing, Line, Polygon, Text
+from .drawing import Color, Drawing, Item, Line, Polygon, Text
 
 
 def write_svg(drawing: Drawing, file: BinaryIO) -> None:
@@ -28,7 +28,7 @@ def write_svg(drawing: Drawing, file: BinaryIO) -> None:
     file.write("\n".join([*lines, "</svg>", ""]).encode())
 
 
-def _elements(item, height: float) -> list[str]:
+def _elements(item: Item, height: float) -> list[str]:
     if isinstance(item, Polygon):
         path = " ".join(f"M{_places(ring, height)}Z" for ring in item.rings)
         stroke = f' stroke-width="{item.width:g}"' if item.stroke else ""
@@ -57,7 +57,7 @@ def _places(points: np.ndarray, height: float) -> str:
     return " ".join(f"{x:.2f},{height - y:.2f}" for x, y in points.tolist())
 
 
-def _color(attribute: str, color) -> str:
+def _color(attribute: str, color: Color | None) -> str:
     if color is None:
         return f' {attribute}="none"'
     code = "".join(f"{round(255 * min(max(part, 0.0), 1.0)):02x}" for part in color[:3])

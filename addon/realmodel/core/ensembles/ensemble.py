@@ -39,7 +39,7 @@ class Sums:
     counts: np.ndarray
 
     def plus(self, other: Sums) -> Sums:
-        def sums(own, its):
+        def sums(own: list, its: list) -> list:
             return [None if a is None else a + b for a, b in zip(own, its, strict=True)]
 
         return Sums(

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.work import run
+from ..cells.model_data import ModelData
 from ..proof.closed_form import blocks_of_all, closed_forms
 
 
-def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
+def blocks_at(model: ModelData, points: np.ndarray, threads: int = 0) -> np.ndarray:
     """(N,) the number of the block at each point (N, 3); -1 for none.
 
     By the closed form of docs/dev/geometry.md. Heights of a surface are rounded as its triangles give them: a

@@ -39,7 +39,7 @@ class Realizer:
     correlation: float = 0.0
     _known: dict[tuple[int, int], dict] = field(default_factory=dict, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self.model.require_project("an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:

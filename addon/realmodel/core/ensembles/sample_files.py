@@ -20,7 +20,7 @@ from ..exporters.encodings.vtk_xml import write_grid, write_image
 from ..exporters.endings import by_ending
 from ..exporters.npz import texts, write_arrays
 from ..exporters.shapes.parts import distinct_names
-from ..results.section_drawing import draw_section
+from ..results.sections.section_drawing import draw_section
 from .places import Probabilities
 from .samples import GridSamples, HoleSamples, Samples, SectionSamples
 
@@ -107,7 +107,11 @@ def _write_vti(samples: GridSamples, found: Probabilities, file: BinaryIO) -> No
 
 
 def _write_drawing(
-    samples: SectionSamples, found: Probabilities, file: BinaryIO, write, exaggeration: float
+    samples: SectionSamples,
+    found: Probabilities,
+    file: BinaryIO,
+    write: Callable[[drawing.Drawing, BinaryIO], None],
+    exaggeration: float,
 ) -> None:
     write(draw_probabilities(samples, found, exaggeration), file)
 

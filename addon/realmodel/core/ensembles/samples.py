@@ -12,10 +12,11 @@ import numpy as np
 
 from ..base.algebra import dot
 from ..base.errors import UsageError
+from ..cells.model_data import ModelData
 from ..model.section import Fence, Section
 from ..results.planned_holes import HoleAxis
 from ..results.regular_cells import checked_size, frame_of
-from ..results.section_drawing import directions, flattened, is_vertical, plane_of
+from ..results.sections.section_drawing import directions, flattened, is_vertical, plane_of
 
 MOST_PLACES = 20_000_000  # times blocks
 _COLUMNS, _ROWS = 200, 100  # of a section, where no size is given
@@ -68,7 +69,9 @@ class GridSamples(Samples):
     counts: tuple[int, int, int]
 
 
-def section_samples(model, section: Section, size: float | Sequence[float] | None = None) -> SectionSamples:
+def section_samples(
+    model: ModelData, section: Section, size: float | Sequence[float] | None = None
+) -> SectionSamples:
     """Samples of a section of the model by a plane, or of a fence. size: of cells, in plan and in height (of
     a level plane along x and y); None: 200 columns and 100 rows. Raises UsageError where the section is
     empty."""
@@ -104,7 +107,7 @@ def section_samples(model, section: Section, size: float | Sequence[float] | Non
     return SectionSamples(corners.mean(axis=1), section, corners, cells, len(left))
 
 
-def borehole_samples(model, x: float, y: float, height: float | None = None) -> BoreholeSamples:
+def borehole_samples(model: ModelData, x: float, y: float, height: float | None = None) -> BoreholeSamples:
     """Samples of the vertical line at (x, y) through the whole height of the model. height: of cells; None: a
     hundredth. Raises UsageError."""
     low, high = float(model.vertices[:, 2].min()), float(model.vertices[:, 2].max())
@@ -117,7 +120,7 @@ def borehole_samples(model, x: float, y: float, height: float | None = None) -> 
     )
 
 
-def hole_samples(model, axis: HoleAxis, step: float | None = None) -> HoleSamples:
+def hole_samples(model: ModelData, axis: HoleAxis, step: float | None = None) -> HoleSamples:
     """Samples along a planned hole of a model. axis: where it goes. step: the length of cells; None: a
     hundredth of the hole. Raises UsageError."""
     bounds = _bounds(0.0, axis.length, step or axis.length / _ROWS)
@@ -126,7 +129,7 @@ def hole_samples(model, axis: HoleAxis, step: float | None = None) -> HoleSample
     return HoleSamples(axis.places(depths), depths)
 
 
-def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:
+def grid_samples(model: ModelData, size: float | Sequence[float] | None = None) -> GridSamples:
     """Samples at the cells of a regular grid that covers the model, with some more above and below. size: of
     the cells, as the cell_size of Model.save. Raises UsageError."""
     cell = checked_size(model, size)
@@ -139,7 +142,7 @@ def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamp
     return GridSamples(places, origin, cell, counts)
 
 
-def _check(model, places: int) -> None:
+def _check(model: ModelData, places: int) -> None:
     blocks = max(len(model.blocks), 1)
     if places * blocks > MOST_PLACES:
         raise UsageError(

@@ -15,7 +15,9 @@ from typing import NamedTuple
 from ..base.atomic import Outputs, writable_folder, writable_target
 from ..base.errors import UsageError
 from ..base.packages import require_extra
+from ..cells.model_data import ModelData
 from ..simulation import PolyhedralMesh
+from ..simulation.cleaned_cells import cleaned_cells
 from .endings import by_ending
 from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
@@ -61,7 +63,7 @@ class ModelFormat:
 def _file(write: Callable) -> Callable:
     """write(model, file, step) as a ModelFormat has it."""
 
-    def write_it(model, path, outputs: Outputs, step: Step) -> None:
+    def write_it(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
         with outputs.file(path) as file:
             write(model, file, step)
 
@@ -73,7 +75,7 @@ def _parts(write: Callable) -> Callable:
     return _file(lambda model, file, step: write(model_parts(model), file, step))
 
 
-def _write_obj(model, path, outputs: Outputs, step: Step) -> None:
+def _write_obj(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
     parts, materials = model_parts(model), Path(path).with_suffix(".mtl")
     with outputs.file(materials) as file:
         write_mtl(parts, file)
@@ -81,7 +83,7 @@ def _write_obj(model, path, outputs: Outputs, step: Step) -> None:
         write_obj(parts, file, step, materials.name)
 
 
-def _cells(model, path, outputs: Outputs, step: Step, cells: PolyhedralMesh | None) -> None:
+def _cells(model: ModelData, path: Path, outputs: Outputs, step: Step, cells: PolyhedralMesh | None) -> None:
     """The cells as a mesh for simulation, the exact ones where none are given."""
     write_mesh(cells or PolyhedralMesh.of_model(model), path, outputs, step, model.project.units)
 
@@ -244,7 +246,7 @@ class ExportOptions(NamedTuple):
 
 
 def write_model(
-    model, path: str | Path, outputs: Outputs, options: ExportOptions, step: Step = no_step
+    model: ModelData, path: str | Path, outputs: Outputs, options: ExportOptions, step: Step = no_step
 ) -> None:
     """Writes a model in the format of the path's ending; it appears with the other outputs."""
     known = format_for(path)
@@ -253,7 +255,7 @@ def write_model(
 
 
 def save_model(
-    model,
+    model: ModelData,
     path: str | Path,
     step: Step = no_step,
     cell_size: float | Sequence[float] | None = None,
@@ -264,7 +266,7 @@ def save_model(
     contour_interval: of maps; tolerance: of formats with the model's cells, to clean these. Raises
     UsageError."""
     check_tolerance(path, tolerance)
-    cells = None if tolerance is None else model.cleaned_cells(tolerance, threads=model.threads)
+    cells = None if tolerance is None else cleaned_cells(model, tolerance, threads=model.threads)
     with Outputs() as outputs:
         write_model(model, path, outputs, ExportOptions(cell_size, contour_interval, cells), step)
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+from ..cells.model_data import ModelData
 from ..results.model_boreholes import Interval
 from ..results.planned_holes import COLUMNS, PlannedHoleData, mean_share
 from .endings import by_ending
@@ -20,7 +21,7 @@ def borehole_writer(path: str | Path) -> Callable[..., None]:
     return by_ending(path, {".csv": _write_csv}, "boreholes are not written as {}")
 
 
-def _write_csv(model, found: Sequence[Interval], file: BinaryIO) -> None:
+def _write_csv(model: ModelData, found: Sequence[Interval], file: BinaryIO) -> None:
     """block (number), block_name, property, top and bottom (elevations) of each interval, from above."""
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")

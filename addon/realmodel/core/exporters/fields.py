@@ -8,13 +8,14 @@ from typing import BinaryIO
 import numpy as np
 
 from ..base.errors import UsageError
+from ..cells.model_data import ModelData
 from ..fields import ScalarField
 from .encodings.vtk_xml import write_grid
 
 _TETRAHEDRON = 10  # VTK's number
 
 
-def write_fields(model, file: BinaryIO) -> None:
+def write_fields(model: ModelData, file: BinaryIO) -> None:
     """Writes the tetrahedra of the lattices of all fields of a model, with the point array `field`, f at the
     nodes, and the cell arrays `series`, the number of the series in the model, and `compartment`, the number
     of the first compartment of its rock mass that has this field. Raises UsageError where there is none."""

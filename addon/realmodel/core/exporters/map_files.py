@@ -20,6 +20,7 @@ import numpy as np
 
 from ..base.atomic import Outputs
 from ..base.errors import OutputFailed
+from ..cells.model_data import ModelData
 from ..results.contours import contours
 from ..results.geological_map import geological_map, ground_of
 from ..settings.crs import epsg_code
@@ -27,6 +28,7 @@ from ..settings.crs import epsg_code
 AREAS, CONTOURS = "geology", "contours"
 _TOP = "top of the model"
 _POLYGONS, _LINE = 6, 2  # well-known binary: several polygons, a line
+Shape = list | np.ndarray  # polygons, each a list of closed rings (N, 2), or a line (N, 2)
 _UNDEFINED = -1  # the plane system that is not known, of GeoPackages
 
 
@@ -37,10 +39,12 @@ class _Layer:
 
     name: str
     columns: dict[str, str]
-    rows: list[tuple[list, list | np.ndarray]]
+    rows: list[tuple[list, Shape]]
 
 
-def write_geojson(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
+def write_geojson(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], interval: float | None
+) -> None:
     """Writes one collection of the features of all layers; `layer` is the name of the layer of each."""
     layers = _layers(model, step, interval)
     with outputs.file(path) as file:
@@ -63,7 +67,7 @@ def write_geojson(model, path, outputs: Outputs, step: Callable[[float], None], 
     step(1.0)
 
 
-def _geometry(shape) -> dict:
+def _geometry(shape: Shape) -> dict:
     if isinstance(shape, np.ndarray):
         return {"type": "LineString", "coordinates": shape.tolist()}
     return {"type": "MultiPolygon", "coordinates": [[ring.tolist() for ring in rings] for rings in shape]}
@@ -75,7 +79,9 @@ def _urn(crs: str) -> str:
     return f"urn:ogc:def:crs:{authority.upper()}::{code}"
 
 
-def write_geopackage(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
+def write_geopackage(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], interval: float | None
+) -> None:
     """A table for each layer."""
     layers = _layers(model, step, interval)
     try:
@@ -90,7 +96,7 @@ def write_geopackage(model, path, outputs: Outputs, step: Callable[[float], None
     step(1.0)
 
 
-def _layers(model, step: Callable[[float], None], interval) -> list[_Layer]:
+def _layers(model: ModelData, step: Callable[[float], None], interval: float | None) -> list[_Layer]:
     ground = ground_of(model)
     step(0.3)
     library = model.project.library
@@ -195,12 +201,12 @@ def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
     )
 
 
-def _box(shape) -> list[float]:
+def _box(shape: Shape) -> list[float]:
     places = shape if isinstance(shape, np.ndarray) else np.concatenate([rings[0] for rings in shape])
     return [*places.min(axis=0).tolist(), *places.max(axis=0).tolist()]
 
 
-def _blob(shape, box: list[float], srs: int) -> bytes:
+def _blob(shape: Shape, box: list[float], srs: int) -> bytes:
     """A header with the bounding box, then well-known binary, little-endian."""
     head = b"GP\0\3" + struct.pack("<i4d", srs, box[0], box[2], box[1], box[3])
     if isinstance(shape, np.ndarray):

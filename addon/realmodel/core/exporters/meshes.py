@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from ..base.atomic import Outputs, writable_folder, writable_target
 from ..base.errors import UsageError
@@ -43,21 +44,21 @@ class MeshFormat:
 
 
 def _file(write: Callable) -> Callable:
-    def write_it(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) -> None:
+    def write_it(mesh: Mesh, path: Path, outputs: Outputs, step: Step, _unit: str) -> None:
         with outputs.file(path) as file:
             write(mesh, file, step)
 
     return write_it
 
 
-def _write_vtu(mesh: Mesh, file, step: Step) -> None:
+def _write_vtu(mesh: Mesh, file: BinaryIO, step: Step) -> None:
     if isinstance(mesh, PolyhedralMesh):
         write_vtu(mesh, file, step)
     else:
         write_vtu_elements(mesh, file, step)
 
 
-def _write_openfoam(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) -> None:
+def _write_openfoam(mesh: Mesh, path: Path, outputs: Outputs, step: Step, _unit: str) -> None:
     with outputs.folder(path, POLY_MESH) as folder:
         write_openfoam(_polyhedral(mesh), folder, step)
 
@@ -65,7 +66,7 @@ def _write_openfoam(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) 
 def _modflow(write: Callable, prepare: Callable) -> Callable:
     """A grid, and beside it NAME_block.txt with the block of each cell."""
 
-    def write_it(mesh: Mesh, path, outputs: Outputs, step: Step, unit: str) -> None:
+    def write_it(mesh: Mesh, path: Path, outputs: Outputs, step: Step, unit: str) -> None:
         path = Path(path)
         with (
             outputs.file(path) as file,

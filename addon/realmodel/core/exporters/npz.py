@@ -5,18 +5,19 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable
-from typing import BinaryIO
+from collections.abc import Callable, Iterable
+from typing import IO, BinaryIO
 
 import numpy as np
 
+from ..cells.model_data import ModelData, UsedSurfaces
 from ..cells.model_record import record_arrays
 
 _FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that zip files know: no time of writing in the bytes
 _HEADER = 1024  # more than any header of an array
 
 
-def model_arrays(model) -> dict[str, np.ndarray]:
+def model_arrays(model: ModelData) -> dict[str, np.ndarray]:
     """The arrays of docs/dev/geometry.md by name, and what describes blocks, surfaces and rock masses."""
     blocks = model.blocks
     return {
@@ -48,19 +49,19 @@ def model_arrays(model) -> dict[str, np.ndarray]:
     }
 
 
-def joined_attributes(model, name: str) -> np.ndarray:
+def joined_attributes(model: UsedSurfaces, name: str) -> np.ndarray:
     """(Vs,) float64: an attribute of the vertices of all surfaces, one surface after another."""
     attributes = [model.surface_attributes(number)[name] for number in range(len(model.surface_names))]
     return np.concatenate([np.empty(0), *attributes])
 
 
-def texts(given) -> np.ndarray:
+def texts(given: Iterable[str]) -> np.ndarray:
     """(N,) fixed-width text."""
     given = list(given)
     return np.array(given) if given else np.empty(0, "<U1")
 
 
-def write_npz(model, file: BinaryIO, step: Callable[[float], None]) -> None:
+def write_npz(model: ModelData, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes the model's arrays, and its record: what it was built from."""
     write_arrays({**model_arrays(model), **record_arrays(model)}, file, step)
 
@@ -93,6 +94,6 @@ def write_arrays(
                 step(done / total)
 
 
-def _write_array(file, array: np.ndarray) -> None:
+def _write_array(file: IO[bytes], array: np.ndarray) -> None:
     content = np.ascontiguousarray(array).reshape(array.shape)
     np.lib.format.write_array(file, content, version=(1, 0), allow_pickle=False)

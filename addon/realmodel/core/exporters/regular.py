@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.atomic import Outputs
 from ..base.packages import vendored
+from ..cells.model_data import ModelData
 from ..results.regular_cells import plan_grids, regular_cells
 from ..settings.crs import epsg_code
 from ..simulation.patches import solver_names
@@ -24,7 +25,9 @@ _NO_HEIGHT = -9999.0
 _LARGEST_CODE = 32766  # of systems in GeoTIFF
 
 
-def write_block_table(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_block_table(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """A row for each cell that has rock: its center, its size, the name of the block with the largest
     share, and
     the share of each block in it."""
@@ -49,7 +52,9 @@ def _quoted(text: str) -> str:
     return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n') else text
 
 
-def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_vti(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """A VTK image with the cell arrays `block` (number in the model's list of the block with the largest
     share,
     -1: none) and `share NAME` of each block."""
@@ -68,7 +73,7 @@ def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size
     step(1.0)
 
 
-def _grids(model, size) -> tuple:
+def _grids(model: ModelData, size: np.ndarray | None) -> tuple:
     """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and thickness,
     then of each its true thickness."""
     grids = plan_grids(model, size)
@@ -81,7 +86,9 @@ def _grids(model, size) -> tuple:
     return grids, bands
 
 
-def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_ascii_grids(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK,
     NAME_thickness_of_BLOCK and NAME_true_thickness_of_BLOCK."""
     grids, bands = _grids(model, size)
@@ -100,7 +107,9 @@ def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], Non
     step(1.0)
 
 
-def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_geotiff(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """A GeoTIFF (OGC 19-008) with a band for each grid, 64-bit numbers, uncompressed, named by GDAL's
     metadata. It names the project's coordinate system, where that is one of EPSG's."""
     tifffile = vendored("tifffile", "tifffile", "writing GeoTIFF")

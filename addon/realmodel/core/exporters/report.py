@@ -13,15 +13,19 @@ import numpy as np
 
 from ..base.errors import UsageError
 from ..base.work import native_module
+from ..cells.model_data import ModelData, UsedSurfaces
 from ..notebook import data_frame
+from ..project.structure_entries import Body, Fault
 from ..proof.left_out_holes import HoleValidation
 from ..proof.observed import Observed, observed
-from ..proof.validation import PLACES_OF_REPORT, ValidationReport
+from ..proof.validation import PLACES_OF_REPORT, ValidationReport, validate
+from ..results.displacements import displacements
 from ..results.erosion import Erosion
 from ..results.tables import block_entry
 from ..results.volume_uncertainty import volume_deviations
 from ..simulation import cleaned_entry, mesh_entry
-from ..structures.sheets.displacement import displacements
+from ..simulation.cleaned_cells import CleanedCells
+from ..simulation.simulation_mesh import SimulationMesh
 from ..surfaces.surface_heights import used_vertices
 
 if TYPE_CHECKING:
@@ -66,12 +70,12 @@ def _rows(entry: dict) -> list[dict]:
 
 
 def model_report(
-    model,
+    model: ModelData,
     stage: int | None = None,
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
-    mesh=None,
-    cells=None,
+    mesh: SimulationMesh | None = None,
+    cells: CleanedCells | None = None,
 ) -> Report:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
@@ -80,7 +84,7 @@ def model_report(
     that.
     """
     model.require_project("the report")
-    validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
+    validation = validation or validate(model, PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
     library = model.project.library
     report = Report()
@@ -131,7 +135,7 @@ def model_report(
     return report
 
 
-def _erosion(model, erosion: Erosion) -> dict:
+def _erosion(model: ModelData, erosion: Erosion) -> dict:
     """The volumes that each surface eroded and each body took of each block, and for each block the volumes
     deposited, eroded, taken and left."""
     names = [block.name for block in model.blocks]
@@ -173,7 +177,7 @@ def _erosion(model, erosion: Erosion) -> dict:
     }
 
 
-def _compartments(model) -> list[dict]:
+def _compartments(model: ModelData) -> list[dict]:
     """The volume of every block in every compartment."""
     count = len(model.blocks)
     volumes = np.bincount(
@@ -194,7 +198,7 @@ def _compartments(model) -> list[dict]:
     ]
 
 
-def _faults(model) -> list[dict]:
+def _faults(model: ModelData) -> list[dict]:
     """Throw and heave along each fault: their means, and the largest values; and the length of the cutoff
     lines below it along which the surface is on both sides."""
     found = displacements(model)
@@ -217,11 +221,11 @@ def _faults(model) -> list[dict]:
     ]
 
 
-def fault_entry(fault) -> dict:
+def fault_entry(fault: Fault) -> dict:
     """The entry of a fault, as far as it does not need a model."""
     return {
         "name": fault.name,
-        "triangles": len(fault.triangles),
+        "triangles": len(fault.triangulation()[1]),
         "youngest": fault.youngest,
         "ends_at": list(fault.ends_at),
         "dies_out": fault.dies_out,
@@ -232,12 +236,17 @@ def _mean_and_largest(values: np.ndarray, mean: float) -> dict:
     return {"mean": mean, "max": float(values[np.abs(values).argmax()])}
 
 
-def body_entry(body) -> dict:
+def body_entry(body: Body) -> dict:
     """The entry of a body."""
-    return {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
+    return {
+        "name": body.name,
+        "triangles": len(body.triangulation()[1]),
+        "after": body.after,
+        "void": body.void,
+    }
 
 
-def _block(model, number: int, total: float, deviation: float) -> dict:
+def _block(model: ModelData, number: int, total: float, deviation: float) -> dict:
     return {
         **block_entry(model, number, total),
         "volume_deviation_at_most": deviation if np.isfinite(deviation) else None,
@@ -267,7 +276,7 @@ def hole_entries(found: HoleValidation) -> dict[str, list[dict]]:
     return {"left_out_holes": holes}
 
 
-def warning_entries(model) -> list[dict]:
+def warning_entries(model: UsedSurfaces) -> list[dict]:
     """The warnings of a model, or of a SurfaceSet."""
     return [
         {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
@@ -275,7 +284,7 @@ def warning_entries(model) -> list[dict]:
     ]
 
 
-def surface_entries(model) -> list[dict]:
+def surface_entries(model: UsedSurfaces) -> list[dict]:
     """The entry of each surface of a model, or of a SurfaceSet."""
     entries: list[dict] = []
     for rock in (entry.rock for entry in model.rock_inputs):
@@ -292,7 +301,7 @@ def surface_entries(model) -> list[dict]:
                     "triangles": len(triangles),
                     "lowest": float(heights.min()),
                     "highest": float(heights.max()),
-                    "points": len(surface.points) if surface.interpolated else None,
+                    "points": len(surface.point_array()) if surface.interpolated else None,
                     "method": result.method if result else None,
                     "method_reason": (result.reason or None) if result else None,
                     "extrapolated": result.extrapolated if result else None,

@@ -20,8 +20,8 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
-from ..results.section_data import FenceData
-from ..results.section_drawing import draw_section
+from ..results.sections.section_data import FenceData, SectionData
+from ..results.sections.section_drawing import draw_section
 from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_grid
 from .endings import by_ending
@@ -46,17 +46,21 @@ def section_writer(
 
 
 def write_section_drawing(
-    section, file: BinaryIO, write=drawing.write_svg, exaggeration: float = 1.0, hole_width: float = 0.0
+    section: SectionData,
+    file: BinaryIO,
+    write: Callable[[drawing.Drawing, BinaryIO], None] = drawing.write_svg,
+    exaggeration: float = 1.0,
+    hole_width: float = 0.0,
 ) -> None:
     """A drawing with axes and a legend."""
     write(draw_section(section, exaggeration, hole_width=hole_width), file)
 
 
-def write_section_npz(section, file: BinaryIO) -> None:
+def write_section_npz(section: SectionData, file: BinaryIO) -> None:
     write_arrays(section.arrays(), file)
 
 
-def write_section_vtu(section, file: BinaryIO) -> None:
+def write_section_vtu(section: SectionData, file: BinaryIO) -> None:
     """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
     none), `compartment`, `cells` (the model's, below and above; -1: outside), and `panel` of a fence."""
     arrays = [
@@ -74,7 +78,7 @@ def write_section_vtu(section, file: BinaryIO) -> None:
     write_grid(file, arrays)
 
 
-def write_section_obj(section, file: BinaryIO) -> None:
+def write_section_obj(section: SectionData, file: BinaryIO) -> None:
     """Polygons by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
     file.write(b"# section of a RealModel model: groups are blocks, materials are library ids\n")
     write_rows(file, "v %r %r %r", section.vertices)
@@ -86,26 +90,26 @@ def write_section_obj(section, file: BinaryIO) -> None:
         write_polygons(file, sizes[own], section.polygon_vertices[np.repeat(own, sizes)] + 1)
 
 
-def write_section_csv(section, file: BinaryIO) -> None:
+def write_section_csv(section: SectionData, file: BinaryIO) -> None:
     """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
     distance along it, so that distance and z draw the unrolled picture; of a model that faults divide also
     the name of the compartment."""
     is_divided = len(section.compartment_names) > 1
-    is_fence = isinstance(section, FenceData)
+    fence = section if isinstance(section, FenceData) else None
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(
         ["polygon", "block", "block_name", "property", "x", "y", "z"]
-        + ["panel", "distance"] * is_fence
+        + ["panel", "distance"] * (fence is not None)
         + ["compartment"] * is_divided
     )
-    along = section.corner_distances() if is_fence else None
+    along = np.empty(0) if fence is None else fence.corner_distances()
     for k in range(len(section)):
         block = int(section.block[k])
         common = [k, block, section.block_names[block], int(section.property[k])]
         for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
             place = section.vertices[section.polygon_vertices[corner]].tolist()
-            extra = [int(section.panel[k]), repr(float(along[corner]))] if along is not None else []
+            extra = [int(fence.panel[k]), repr(float(along[corner]))] if fence is not None else []
             extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
             rows.writerow([*common, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))

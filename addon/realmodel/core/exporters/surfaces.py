@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.atomic import Outputs
 from ..base.errors import UsageError
+from ..cells.model_data import UsedSurfaces
 from .encodings.vtk_xml import write_grid
 from .npz import joined_attributes, texts, write_arrays
 from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries, write_report
@@ -21,7 +22,7 @@ _TRIANGLE = 5  # VTK's number
 ATTRIBUTES = ("height", "variance", "distance")
 
 
-def surface_arrays(surfaces) -> dict[str, np.ndarray]:
+def surface_arrays(surfaces: UsedSurfaces) -> dict[str, np.ndarray]:
     """By the names that the arrays of a model have: surface_vertices (Vs, 3), surface_triangles (Ts, 3)
     within their own surface, offsets (S+1,), surface_names, surface_kind (S,), and for each vertex
     surface_height, surface_variance and surface_distance (Vs,), NaN where there is none;
@@ -42,12 +43,12 @@ def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     }
 
 
-def write_surfaces_npz(surfaces, file: BinaryIO) -> None:
+def write_surfaces_npz(surfaces: UsedSurfaces, file: BinaryIO) -> None:
     """Writes the arrays."""
     write_arrays(surface_arrays(surfaces), file)
 
 
-def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
+def write_surfaces_vtu(surfaces: UsedSurfaces, file: BinaryIO) -> None:
     """Writes all triangles as one unstructured grid (VTK File Formats, XML), with the point arrays height,
     variance and distance (NaN where there is none) and the cell arrays `surface`, the number of each one's,
     and `sheet`."""
@@ -87,14 +88,14 @@ def surface_writer_for(path: str | Path) -> Callable[..., None]:
     return WRITERS[ending]
 
 
-def save_surfaces(surfaces, path: str | Path) -> None:
+def save_surfaces(surfaces: UsedSurfaces, path: str | Path) -> None:
     """Writes surfaces, or those of a model, to a file that appears whole or not at all."""
     writer = surface_writer_for(path)
     with Outputs() as outputs, outputs.file(path) as file:
         writer(surfaces, file)
 
 
-def write_surfaces_report(surfaces, file: BinaryIO) -> None:
+def write_surfaces_report(surfaces: UsedSurfaces, file: BinaryIO) -> None:
     """Writes the part of a model's report that is known before anything is intersected, as UTF-8 JSON."""
     report = {
         "schema": SCHEMA,

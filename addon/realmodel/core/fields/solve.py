@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, place_text
 from ..base.stored_objects import NOT_STORED
-from ..base.work import Work, refused_as
+from ..base.work import NativeError, Work, refused_as
 from .lattice import Lattice, ScalarField
 
 _NO_POINTS = np.empty((0, 3))
@@ -186,7 +186,7 @@ def solve_field(
     )
 
 
-def _refusal(error, data: LevelSetData) -> InputRefused:
+def _refusal(error: NativeError, data: LevelSetData) -> InputRefused:
     """The native error with the names of surfaces and data."""
     if error.kind == "no_direction":
         return InputRefused(
@@ -207,14 +207,16 @@ def _refusal(error, data: LevelSetData) -> InputRefused:
     return make(error, data) if make else InputRefused(str(error), place=error.place)
 
 
-def _contradicting(error, data: LevelSetData) -> InputRefused:
+def _place(error: NativeError) -> str:
+    return "" if error.place is None else place_text(error.place)
+
+
+def _contradicting(error: NativeError, data: LevelSetData) -> InputRefused:
     names = [data.names[data.contact_surfaces[row]] for row in error.items]
     if len(names) == 1:
         what = f"it contradicts contacts of surface '{names[0]}' next to it"
     else:
-        what = (
-            f"surfaces '{names[0]}' and '{names[1]}' have a contact at one place, {place_text(error.place)}"
-        )
+        what = f"surfaces '{names[0]}' and '{names[1]}' have a contact at one place, {_place(error)}"
     return InputRefused(
         what,
         item=data.item("contact", error.items[-1]),
@@ -223,30 +225,29 @@ def _contradicting(error, data: LevelSetData) -> InputRefused:
     )
 
 
-def _wrong_order(error, data: LevelSetData) -> InputRefused:
+def _wrong_order(error: NativeError, data: LevelSetData) -> InputRefused:
     older, younger = data.names[error.surface], data.names[error.surface + 1]
     return InputRefused(
-        f"near {place_text(error.place)} it lies on the older side of surface '{older}', which is listed as "
-        "older",
+        f"near {_place(error)} it lies on the older side of surface '{older}', which is listed as older",
         item=f"surface '{younger}'",
         advice="exchange the two, or correct the polarity of the dips",
         place=error.place,
     )
 
 
-def _against_order(error, data: LevelSetData) -> InputRefused:
+def _against_order(error: NativeError, data: LevelSetData) -> InputRefused:
     return InputRefused(
         f"at {len(error.items)} of {len(data.dips)} dips rock gets younger the other way than from the first "
-        f"to the last of them, as at {place_text(error.place)}",
+        f"to the last of them, as at {_place(error)}",
         item=f"surfaces '{data.names[0]}' to '{data.names[-1]}'",
         advice="list the oldest surface first, or correct the polarity of the dips",
         place=error.place,
     )
 
 
-def _polarity(error, data: LevelSetData) -> InputRefused:
+def _polarity(error: NativeError, data: LevelSetData) -> InputRefused:
     return InputRefused(
-        f"at {place_text(error.place)} rock gets younger the other way than at the nearest dips, which have "
+        f"at {_place(error)} rock gets younger the other way than at the nearest dips, which have "
         "its attitude",
         item=data.item("dip", error.items[0]),
         advice="correct its polarity: 1 upright, -1 overturned",
@@ -254,10 +255,10 @@ def _polarity(error, data: LevelSetData) -> InputRefused:
     )
 
 
-def _outside(error, data: LevelSetData) -> InputRefused:
+def _outside(error: NativeError, data: LevelSetData) -> InputRefused:
     kind = str(error).split()[0]
     return InputRefused(
-        f"{place_text(error.place)} lies outside the lattice of the field",
+        f"{_place(error)} lies outside the lattice of the field",
         item=data.item(kind, error.items[0]),
         advice="make the region or the base reach beyond it, or leave it out",
         place=error.place,

@@ -213,7 +213,9 @@ def _slant(slope: np.ndarray, lean: np.ndarray) -> float:
     return math.sqrt((1.0 + float(dot(slope, lean))) ** 2 + float(dot(slope, slope)))
 
 
-def _fold(strata: Strata, corners: np.ndarray, phase: float, slant: float):
+def _fold(
+    strata: Strata, corners: np.ndarray, phase: float, slant: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     across = _towards(strata.fold_axis + 90.0)
     if not strata.is_folded:
         return across, np.zeros(1), np.zeros(1)
@@ -232,7 +234,9 @@ def _fold(strata: Strata, corners: np.ndarray, phase: float, slant: float):
     return across, (nodes + offset) * step, heights
 
 
-def _faults(strata: Strata, corners: np.ndarray, random: np.ndarray):
+def _faults(
+    strata: Strata, corners: np.ndarray, random: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Faults at about equal distances, each down to one side or the other."""
     # exactly along the axes of folds that lean, so that walls stay vertical
     across = _towards(strata.fold_axis if strata.has_leaning_folds else strata.fault_strike + 90.0)

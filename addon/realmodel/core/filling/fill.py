@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.build_warning import BuildWarning
 from ..base.triangles import welded
@@ -27,8 +28,8 @@ _SOLID, _STACK = 0.3, 0.35  # the progress at the end of these steps
 
 
 def fill_with_strata(
-    vertices,
-    triangles,
+    vertices: ArrayLike,
+    triangles: ArrayLike,
     strata: Strata,
     threads: int = 0,
     progress: Progress | None = None,

@@ -80,7 +80,9 @@ class _Lines:
         self._from_faults = np.abs(across[:, None] - positions).min(axis=1, initial=np.inf)
         self._line, self._z = self._crossings((plan - begin) / self._step, vertices[:, 2], triangles)
 
-    def _crossings(self, plan: np.ndarray, z: np.ndarray, triangles: np.ndarray):
+    def _crossings(
+        self, plan: np.ndarray, z: np.ndarray, triangles: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """The line and the elevation of each crossing with a triangle. plan: (V, 2) in steps."""
         corners = plan[triangles]
         first = np.maximum(np.ceil(corners.min(axis=1)).astype(int), 0)

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -88,7 +89,9 @@ class _Sheets:
                 yield from self._boundary(self._level, number, level, self._gap)
             yield "", self._level(top)
 
-    def _boundary(self, sheet, number: int | None, height: float, gap: float):
+    def _boundary(
+        self, sheet: Callable, number: int | None, height: float, gap: float
+    ) -> Iterator[tuple[str, Any]]:
         """The sheet between two beds, or the two beside the gap there. number: of the boundary's pegs."""
         if not gap:
             yield "", sheet(height, number)
@@ -163,7 +166,7 @@ def _plan(beds: Beds, box: list[Corner], squares: np.ndarray, gap: float = 0.0) 
     )
 
 
-def _no_faults(across: np.ndarray):
+def _no_faults(across: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return across, np.empty(0), np.zeros(1)
 
 

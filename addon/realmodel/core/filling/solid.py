@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.algebra import twice_area
 from ..base.errors import InputRefused, place_text
@@ -18,7 +19,7 @@ ITEM = "the mesh"  # as refusals name it
 _FAR = 10.0  # sizes of the mesh: how far away the solid is that takes nothing from it
 
 
-def closed_mesh(vertices, triangles, base: float | None = None) -> Mesh:
+def closed_mesh(vertices: ArrayLike, triangles: ArrayLike, base: float | None = None) -> Mesh:
     """A mesh without open edges: the given one, or, where that has one height at each position, it with walls
     and a level floor at the elevation `base` (None: as far beneath its lowest point as its highest is above).
 

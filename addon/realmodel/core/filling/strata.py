@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from typing import Any
 
 from ..base.errors import UsageError
 from .palettes import PALETTES
@@ -86,7 +87,7 @@ class Strata:
     palette: str = "canyon"
     seed: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in (each.name for each in fields(self) if each.name in _BOUNDS):
             _check(name, getattr(self, name))
         if self.base is not None:
@@ -124,7 +125,7 @@ class Strata:
             )
 
 
-def _check(name: str, value) -> None:
+def _check(name: str, value: Any) -> None:
     low, high = _BOUNDS[name]
     if name in _WHOLE and (isinstance(value, bool) or not hasattr(value, "__index__")):
         raise UsageError(f"{name} must be a whole number, not {value!r}")
@@ -133,7 +134,7 @@ def _check(name: str, value) -> None:
         raise UsageError(f"{name} must be {bounds}, not {value!r}")
 
 
-def _number(name: str, value) -> float:
+def _number(name: str, value: Any) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError) as error:

@@ -146,7 +146,9 @@ def consistent(points: np.ndarray, bounds: Bounds) -> Consistent:
     return Consistent(positions, low, high, np.flatnonzero(wrong), tolerance)
 
 
-def _extremes(height, is_lower, own, kept, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _extremes(
+    height: np.ndarray, is_lower: np.ndarray, own: np.ndarray, kept: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
     """The highest lower and the lowest upper bound at each of so many places."""
     lower, upper = np.full(count, -np.inf), np.full(count, np.inf)
     np.maximum.at(lower, own[kept & is_lower], height[kept & is_lower])

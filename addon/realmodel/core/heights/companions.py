@@ -76,7 +76,7 @@ class SheetModel:
     variances: np.ndarray
     thickness: Variogram
 
-    def native(self, sheets: np.ndarray, of_dips: np.ndarray, asked: int, anisotropy) -> tuple:
+    def native(self, sheets: np.ndarray, of_dips: np.ndarray, asked: int, anisotropy: dict | None) -> tuple:
         """The argument of native functions. sheets: of the points; of_dips: of the dips."""
         return (
             sheets,
@@ -118,10 +118,11 @@ def pooled(points: Sequence[np.ndarray], offsets: np.ndarray) -> np.ndarray:
     return mean_heights(every + 0.0)
 
 
-def likeliest(task, companions: Companions, data: JointData, spacing: float) -> dict | None:
-    """What native fit_sheets finds in the data of all sheets, in their order, for the settings of a Task;
-    None where they are too few. spacing: of points and dips."""
-    settings = task.settings
+def likeliest(
+    run: Callable[..., dict], settings: dict, companions: Companions, data: JointData, spacing: float
+) -> dict | None:
+    """What native fit_sheets finds in the data of all sheets, in their order; None where they are
+    too few. run, settings: of the Task. spacing: of points and dips."""
     along, given = settings["anisotropy"], settings["variogram"]
     variogram = None if given is None else Variogram.from_settings(given).native(along)
     drift, anisotropy = settings.get("drift", "constant"), along and (along["ratio"], along["azimuth"])
@@ -135,9 +136,7 @@ def likeliest(task, companions: Companions, data: JointData, spacing: float) -> 
     def fit() -> dict | None:
         given_dips = None if dips is None else (dips.positions, dips.gradients, spacing, 0)
         sheets = (data.sheets, of_dips, count)
-        return task.run(
-            native_module().fit_sheets, data.points, sheets, anisotropy, drift, given_dips, variogram
-        )
+        return run(native_module().fit_sheets, data.points, sheets, anisotropy, drift, given_dips, variogram)
 
     return companions.fitted((variogram, drift, anisotropy, count), arrays, fit)
 

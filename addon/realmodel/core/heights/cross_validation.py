@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, native_module, run
@@ -80,17 +83,17 @@ class CrossValidation(ShortRepr):
 
 
 def cross_validate(
-    points,
+    points: ArrayLike,
     method: str = "kriging",
     neighbours: int | None = None,
     threads: int = 0,
     folds: int = DEFAULT_FOLDS,
     *,
-    mesh=None,
+    mesh: Sequence[ArrayLike] | None = None,
     dips: Dips | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    **options,
+    **options: Any,
 ) -> CrossValidation:
     """Estimates the height of each point from the others by a method.
 
@@ -116,13 +119,13 @@ def cross_validate(
     if (mesh is None) == METHODS[method].on_mesh:
         needs = "needs mesh = (nodes, triangles)" if mesh is None else "does not use a mesh"
         raise UsageError(f"method '{method}' {needs}")
+    nodes, triangles = np.empty((0, 2)), None
     if mesh is not None:
         nodes = checked_nodes(mesh[0])
-        mesh = nodes, checked_triangles(mesh[1], len(nodes))
+        triangles = checked_triangles(mesh[1], len(nodes))
 
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
-            nodes, triangles = (np.empty((0, 2)), None) if mesh is None else mesh
             return validate(method, Task(work, points, nodes, settings, triangles, dips=known), int(folds))
 
     return run(task, progress, cancel, threads=threads)

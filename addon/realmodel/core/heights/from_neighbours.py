@@ -149,7 +149,7 @@ def _joint_structure(task: Task, companions: Companions) -> Structure:
     if companions.model is not None:
         return _of_model(alone, *companions.model, points, count)
     spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
-    fitted = likeliest(alone, companions, data, spacing)
+    fitted = likeliest(alone.run, alone.settings, companions, data, spacing)
     if fitted is not None:
         given = task.settings["variogram"]
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
@@ -18,10 +20,10 @@ from . import Interpolation, Task, heights
 
 
 def interpolate(
-    points,
-    nodes,
+    points: ArrayLike | None,
+    nodes: ArrayLike,
     method: str = "kriging",
-    triangles=None,
+    triangles: ArrayLike | None = None,
     neighbours: int | None = None,
     threads: int = 0,
     *,
@@ -30,7 +32,7 @@ def interpolate(
     true_thickness: bool = False,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    **options,
+    **options: Any,
 ) -> Interpolation:
     """Interpolates scattered points at nodes.
 
@@ -84,7 +86,7 @@ def method_settings(method: str, neighbours: int | None, options: dict) -> dict:
     return checked_options(method, options)
 
 
-def checked_triangles(triangles, nodes: int) -> np.ndarray | None:
+def checked_triangles(triangles: ArrayLike | None, nodes: int) -> np.ndarray | None:
     """(T, 3) int32 triangles of a mesh, checked against the number of its nodes. Raises UsageError."""
     if triangles is None:
         return None
@@ -98,7 +100,7 @@ def checked_triangles(triangles, nodes: int) -> np.ndarray | None:
     return np.ascontiguousarray(triangles, np.int32)
 
 
-def checked_points(points, item: str = "points") -> np.ndarray:
+def checked_points(points: ArrayLike | None, item: str = "points") -> np.ndarray:
     """(P, 3) float64 points, at least one, all finite. Raises InputRefused."""
     points = np.ascontiguousarray(_array(points, 3, item))
     if not len(points):
@@ -109,7 +111,7 @@ def checked_points(points, item: str = "points") -> np.ndarray:
     return points
 
 
-def checked_nodes(nodes) -> np.ndarray:
+def checked_nodes(nodes: ArrayLike) -> np.ndarray:
     """(N, 2) float64 nodes, all finite. Raises InputRefused."""
     nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
     bad = _first_bad(nodes)
@@ -118,7 +120,7 @@ def checked_nodes(nodes) -> np.ndarray:
     return nodes
 
 
-def _array(values, columns: int, item: str) -> np.ndarray:
+def _array(values: ArrayLike | None, columns: int, item: str) -> np.ndarray:
     try:
         array = np.asarray(values, np.float64)
     except (TypeError, ValueError) as error:

@@ -14,7 +14,7 @@ from ..settings.methods import checked_options
 from .companions import Companions, pooled
 from .from_neighbours import mean_offsets, structure
 from .interpolation import Result, Task
-from .surface_reference import heights_of
+from .surface_reference import Reference, heights_of
 
 _ARGUMENTS = {"border": "equal", "above": "least", "below": "most"}  # of native code, by options
 BOUNDS = tuple(_ARGUMENTS)
@@ -135,7 +135,7 @@ def within_bounds(task: Task, z: np.ndarray, at_border: np.ndarray) -> np.ndarra
     return z
 
 
-def _called(reference) -> str:
+def _called(reference: Reference) -> str:
     """The surface or height that an option names, as messages write it."""
     if isinstance(reference, str):
         return f"'{reference}'"

@@ -5,7 +5,7 @@ NumPy's linear algebra, whose last digits differ between processors."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -140,7 +140,7 @@ def fitted_plane(points: np.ndarray, settings: dict) -> Plane:
     return replace(found, square=_total(squares) / free)
 
 
-def _directed(center: np.ndarray, base: float, settings: dict, plans) -> Plane:
+def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) -> Plane:
     """A plane with the directions in which its slope is given, or to be fitted. plans: gives the pieces."""
     dip = settings["dip"]
     if dip is not None:

@@ -211,7 +211,7 @@ def _products(numbers: np.ndarray, plan: np.ndarray) -> np.ndarray:
     return np.array([*squares, *(i[:, None] * plan).sum(axis=0), *(j[:, None] * plan).sum(axis=0)])
 
 
-def _fitted_axes(ii, ij, jj, *products) -> np.ndarray:
+def _fitted_axes(ii: float, ij: float, jj: float, *products: np.ndarray) -> np.ndarray:
     """The axes that lead best (least squares) from numbers of nodes to places; zeros where the nodes lie in
     one row."""
     size = ii * jj - ij * ij

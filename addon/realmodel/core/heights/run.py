@@ -10,7 +10,7 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
-from ..base.work import Work, refused_as
+from ..base.work import NativeError, Work, refused_as
 from ..settings.dips import Dips
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
 from . import automatic, bounded
@@ -64,7 +64,7 @@ def with_dips(method: str, task: Task) -> tuple[Task, list[str]]:
     return replace(task, dips=dips), [warning] if warning else []
 
 
-def chosen(work: Work, points, settings: dict, dips: Dips | None = None) -> tuple[str, dict]:
+def chosen(work: Work, points: np.ndarray, settings: dict, dips: Dips | None = None) -> tuple[str, dict]:
     """The method that "auto" with these settings takes for points and dips, and its options: they give the
     same heights. Raises InputRefused."""
     if not len(points):
@@ -79,7 +79,7 @@ def chosen(work: Work, points, settings: dict, dips: Dips | None = None) -> tupl
     return method, options
 
 
-def refused_points(error) -> InputRefused:
+def refused_points(error: NativeError) -> InputRefused:
     """The refusal of points that the native part found fault with."""
     return InputRefused(str(error), item="points", place=error.place)
 

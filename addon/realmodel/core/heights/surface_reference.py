@@ -12,8 +12,10 @@ from ..base.work import native_module
 from ..settings.method_options import OptionRefused
 from .interpolation import Task
 
+Reference = float | str | np.ndarray | tuple[np.ndarray, np.ndarray]
 
-def heights_of(task: Task, reference, places: np.ndarray, option: str) -> np.ndarray:
+
+def heights_of(task: Task, reference: Reference, places: np.ndarray, option: str) -> np.ndarray:
     """(N,) heights of a reference at places, NaN where it has none. Heights at the nodes (N,) can be asked at
     the nodes only, or elsewhere where the nodes have triangles."""
     if isinstance(reference, float):
@@ -26,7 +28,7 @@ def heights_of(task: Task, reference, places: np.ndarray, option: str) -> np.nda
     return task.run(native_module().surface_heights, vertices, triangles, np.ascontiguousarray(places))
 
 
-def sheet_of(task: Task, reference, option: str) -> Sheet | None:
+def sheet_of(task: Task, reference: Reference, option: str) -> Sheet | None:
     """The triangles of a reference; None where it is a height."""
     return None if isinstance(reference, float) else _triangulated(task, reference, option)
 
@@ -39,7 +41,7 @@ def _of_nodes(task: Task, heights: np.ndarray, option: str) -> np.ndarray:
     return heights
 
 
-def _triangulated(task: Task, reference, option: str) -> Sheet:
+def _triangulated(task: Task, reference: Reference, option: str) -> Sheet:
     """The triangles of a surface that is referred to."""
     if isinstance(reference, str):
         if reference not in task.surfaces:
@@ -58,4 +60,5 @@ def _triangulated(task: Task, reference, option: str) -> Sheet:
         known = np.isfinite(heights)[task.triangles].all(axis=1)
         vertices = np.column_stack([task.nodes, heights])
         return Sheet(vertices, np.ascontiguousarray(task.triangles[known]))
+    assert not isinstance(reference, float)
     return Sheet(*reference)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -12,7 +13,8 @@ import numpy as np
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.assembly import assemble, intersect
 from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
-from ..project.project import Project, check_project
+from ..project.project import Project
+from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
@@ -69,7 +71,7 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
     ends = _phase_ends(project)
 
     @contextmanager
-    def timed(name: str):
+    def timed(name: str) -> Iterator[None]:
         began = time.perf_counter()
         yield
         timings[name] += time.perf_counter() - began

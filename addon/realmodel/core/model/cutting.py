@@ -5,21 +5,22 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, number_list, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
+from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
-from ..results.section_faults import traces_on_fence, traces_on_plane
-from ..results.section_holes import hole_lines, hole_places, line_through
+from ..results.sections.section_faults import traces_on_fence, traces_on_plane
+from ..results.sections.section_holes import hole_lines, hole_places, line_through
 from ..settings.method_options import check_threads
 from .section import Fence, Section
 
@@ -55,8 +56,8 @@ class Cut(ShortRepr, Generic[SomeModel]):
 
 def cut_by_plane(
     model: SomeModel,
-    point,
-    normal,
+    point: Sequence[float] | np.ndarray,
+    normal: Sequence[float] | np.ndarray,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -77,8 +78,8 @@ def cut_by_plane(
 
 def cut_by_surface(
     model: SomeModel,
-    vertices,
-    triangles,
+    vertices: ArrayLike,
+    triangles: ArrayLike,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -135,7 +136,7 @@ def _block_number(model: ModelData, block: int | str) -> int:
 
 
 def _cut(
-    model: SomeModel, call, threads: int, progress: Progress | None, cancel: Cancel | None
+    model: SomeModel, call: Callable, threads: int, progress: Progress | None, cancel: Cancel | None
 ) -> Cut[SomeModel]:
     """The cut made by call(native), a native function and its arguments after the model."""
     threads = check_threads(threads)
@@ -161,7 +162,7 @@ _ADVICE = {
 }
 
 
-def _refused(error) -> InputRefused:
+def _refused(error: NativeError) -> InputRefused:
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
     triangles = tuple(int(i) for i in error.items) if error.kind in ("branching", "one_sided") else ()
@@ -177,8 +178,8 @@ def _refused(error) -> InputRefused:
 
 def section(
     model: ModelData,
-    point,
-    normal,
+    point: Sequence[float] | np.ndarray,
+    normal: Sequence[float] | np.ndarray,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -218,7 +219,7 @@ def section(
 
 def fence(
     model: ModelData,
-    polyline,
+    polyline: ArrayLike,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -299,7 +300,9 @@ def _joined(panels: list[dict]) -> dict:
     }
 
 
-def _plane(point, normal) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _plane(
+    point: Sequence[float] | np.ndarray, normal: Sequence[float] | np.ndarray
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
     found = []
     for name, given in (("point", point), ("normal", normal)):
         try:

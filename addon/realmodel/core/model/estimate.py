@@ -12,7 +12,8 @@ from ..base.sheet import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..fields.solve import MOST_CENTERS
 from ..project.build_options import check_cells, check_stage
-from ..project.project import Project, check_project
+from ..project.project import Project
+from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
 from ..structures.fields import lattices
 from ..structures.setup import mesh_inputs

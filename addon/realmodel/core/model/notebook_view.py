@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.units import number_text
-from ..cells.model_data import ModelData
+from ..cells.model_data import ModelData, UsedSurfaces
 from ..drawing.drawing import BLACK, Drawing
 from ..drawing.png import write_png
 from ..notebook import blocks_of_meshes, polygon_mesh, with_data
 from ..results.automatic_library import model_with_library
-from ..results.section_data import SectionData, rgb_bytes
-from ..results.section_drawing import block_outlines, flat_of, flattened
+from ..results.sections.section_data import SectionData, rgb_bytes
+from ..results.sections.section_drawing import block_outlines, flat_of, flattened
 from ..simulation import PolyhedralMesh
 from .cutting import section
 
@@ -140,7 +140,7 @@ def to_pyvista(model: ModelData) -> pyvista.UnstructuredGrid:
     return with_data(grid, {"volume": model.cell_volumes, "color": colors})
 
 
-def surfaces_to_pyvista(model) -> pyvista.MultiBlock:
+def surfaces_to_pyvista(model: UsedSurfaces) -> pyvista.MultiBlock:
     """The surfaces, faults and bodies as they were used, unclipped, each as a mesh of triangles of PyVista,
     by their names.
 

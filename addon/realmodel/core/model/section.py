@@ -9,8 +9,8 @@ from pathlib import Path
 from ..base.atomic import Outputs
 from ..drawing.svg import write_svg
 from ..exporters.sections import section_writer
-from ..results.section_data import FenceData, SectionData
-from ..results.section_drawing import draw_section
+from ..results.sections.section_data import FenceData, SectionData
+from ..results.sections.section_drawing import draw_section
 
 
 class Section(SectionData):

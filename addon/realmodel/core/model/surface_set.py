@@ -18,7 +18,8 @@ from ..exporters.surfaces import save_surfaces
 from ..heights import Interpolation
 from ..notebook import ShortRepr
 from ..project.build_options import check_stage
-from ..project.project import Project, Rock, check_project
+from ..project.project import Project, Rock
+from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
 from ..structures.parts.parts import Structures
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
@@ -114,7 +115,12 @@ def build_surfaces(
 
 
 def _build(
-    work: Work, project: Project, stage: int | None, keep: StoreArray, reader: Reader, flat
+    work: Work,
+    project: Project,
+    stage: int | None,
+    keep: StoreArray,
+    reader: Reader,
+    flat: Callable[[Rock], Collection[int]] | None,
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs, with_arrays = read_inputs(work, project, reader)

@@ -42,7 +42,7 @@ def _cell_array(offsets: np.ndarray, corners: np.ndarray) -> Any:
 
 
 def with_data(
-    mesh, cell_data: Mapping[str, np.ndarray], names: Mapping[str, Iterable[str]] | None = None
+    mesh: Any, cell_data: Mapping[str, np.ndarray], names: Mapping[str, Iterable[str]] | None = None
 ) -> Any:
     """The mesh, to which cell data are added, and lists of texts as field data."""
     for name, values in cell_data.items():

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..base.errors import UsageError
 from .project import Project
 
 CELL_KINDS = ("columns", "blocks")
 
 
-def check_cells(cells) -> None:
+def check_cells(cells: object) -> None:
     """Raises UsageError for an unknown kind of cells."""
     if cells not in CELL_KINDS:
         raise UsageError(f"cells must be 'columns' or 'blocks', not {cells!r}")
 
 
-def check_stage(project: Project, stage) -> None:
+def check_stage(project: Project, stage: Any) -> None:
     """Raises UsageError for a stage that no rock mass has."""
     youngest = max(len(rock.surfaces) for rock in project.rocks) - 1
     if isinstance(stage, bool) or not hasattr(stage, "__index__") or not 0 <= int(stage) <= youngest:
@@ -24,7 +26,7 @@ def check_stage(project: Project, stage) -> None:
         )
 
 
-def check_memory(memory) -> None:
+def check_memory(memory: Any) -> None:
     """Raises UsageError for a limit of memory that is no number of bytes."""
     if memory is None:
         return

@@ -13,24 +13,27 @@ from ..settings.mesh_sizes import AUTO
 from ..settings.series import FIELD
 from .project import Project, Rock
 
-CELLS = 1000  # of a lattice, about: it is solved and cut within a quarter of a second
+CELLS = 1000  # of all lattices, about: they are solved and cut within about a third of a second
+_MOST_FIELDS = 4  # that share the cells: with less each would show nothing
 _TRIANGLES = 500  # of a planar mesh beside it
 
 
 def coarsened(project: Project) -> Project | None:
-    """The project with lattices of about CELLS cells, and planar meshes with edges about as long; None where
-    none of its rock masses has a finer field, or their files are not read."""
-    rocks = [_coarsened(rock) for rock in project.rocks]
+    """The project with lattices of about CELLS cells, which the fields on both sides of faults share, and
+    planar meshes with edges about as long; None where none of its rock masses has a finer field, or their
+    files are not read."""
+    cells = CELLS / min(1 + len(project.faults), _MOST_FIELDS)
+    rocks = [_coarsened(rock, cells) for rock in project.rocks]
     is_same = all(one is other for one, other in zip(rocks, project.rocks, strict=True))
     return None if is_same else replace(project, rocks=rocks)
 
 
-def _coarsened(rock: Rock) -> Rock:
+def _coarsened(rock: Rock, cells: float) -> Rock:
     is_field = [series.kind == FIELD for series in rock.series]
     extent = _extent(rock) if any(is_field) else None
     if extent is None:
         return rock
-    step = float(extent.prod() / CELLS) ** (1.0 / 3.0)
+    step = float(extent.prod() / cells) ** (1.0 / 3.0)
     fine = [
         of_field and (isinstance(series.resolution, str) or series.resolution < step)
         for of_field, series in zip(is_field, rock.series, strict=True)

@@ -7,11 +7,13 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ..base.errors import InputRefused
 from ..base.toml_table import Source
 from ..settings.method_options import OptionRefused, checked, is_name
 from ..settings.setting import Settings
+from .library import Library
 
 Refuse = Callable[..., InputRefused]
 
@@ -46,7 +48,7 @@ class Entry:
 
 
 @contextmanager
-def refused_by(refuse: Refuse, key: str | None = None, before: str = ""):
+def refused_by(refuse: Refuse, key: str | None = None, before: str = "") -> Iterator[None]:
     """Within it a wrong setting is refused where it is written: at its own key, or at another."""
     try:
         yield
@@ -66,7 +68,7 @@ def named_once(entries: Sequence, kind: str) -> Iterator:
         yield entry
 
 
-def check_values(entry, settings: Settings, keys: Sequence[str], refuse: Refuse) -> None:
+def check_values(entry: Any, settings: Settings, keys: Sequence[str], refuse: Refuse) -> None:
     """Refuses what the declarations of settings do not allow."""
     for key in keys:
         with refused_by(refuse, key):
@@ -88,7 +90,7 @@ def check_file(file: str | Path | None, key: str, refuse: Refuse) -> None:
         raise refuse(f"file not found: {file}", key, "check the path")
 
 
-def shapes_given(entry, keys: Sequence[str], refuse: Refuse) -> list[str]:
+def shapes_given(entry: Any, keys: Sequence[str], refuse: Refuse) -> list[str]:
     """The key that gives an entry its shape; none where it has no shape, refused where it has two."""
     arrays = entry.vertices is not None or entry.triangles is not None
     shapes = [key for key in keys if getattr(entry, key) is not None] + (["vertices"] if arrays else [])
@@ -99,7 +101,7 @@ def shapes_given(entry, keys: Sequence[str], refuse: Refuse) -> list[str]:
     return shapes
 
 
-def check_property(library, number: int, refuse: Refuse) -> None:
+def check_property(library: Library | None, number: int, refuse: Refuse) -> None:
     if number and library is not None and number not in library:
         known = ", ".join(str(entry.id) for entry in library.properties)
         raise refuse(f"the library has no property {number}", "property", f"it has {known}")

@@ -55,7 +55,7 @@ class Library:
     properties: list[Property] = field(default_factory=list)
     path: Path | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self.properties = list(self.properties)
         seen: set[int] = set()
         for entry in self.properties:

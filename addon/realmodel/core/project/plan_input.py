@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.algebra import begins_run
 from ..base.errors import InputRefused, place_text
@@ -21,7 +23,7 @@ from .entry import Refuse, check_file, refused_by
 from .region_rings import NamedRing, checked_region, given_rings, is_several, rings_of_shapes
 
 
-def map_layer(given) -> MapLayer | None:
+def map_layer(given: Any) -> MapLayer | None:
     """The file that outlines, lines or points are read from; None for arrays and well-known text."""
     if isinstance(given, MapLayer):
         return given
@@ -30,13 +32,13 @@ def map_layer(given) -> MapLayer | None:
     return None
 
 
-def layer_files(given) -> list[Path]:
+def layer_files(given: Any) -> list[Path]:
     """The files of a region, of constraints or of sizes."""
     layer = map_layer(given)
     return [] if layer is None else [Path(layer.file), *map_companions(Path(layer.file))]
 
 
-def check_layer(given, key: str, refuse: Refuse) -> None:
+def check_layer(given: Any, key: str, refuse: Refuse) -> None:
     """Refuses a file that does not exist, and invalid options of it."""
     layer = map_layer(given)
     if layer is None:
@@ -46,7 +48,7 @@ def check_layer(given, key: str, refuse: Refuse) -> None:
     check_file(layer.file, key, refuse)
 
 
-def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
+def shapes_of(given: Any, units: str = MODEL_UNIT) -> Shapes | None:
     """The shapes of a file or a well-known text; None where arrays are given."""
     layer = map_layer(given)
     if layer is not None:
@@ -55,7 +57,7 @@ def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
 
 
 def read_rings(
-    region, holes=(), units: str = MODEL_UNIT, call: Callable | None = None
+    region: Any, holes: Any = (), units: str = MODEL_UNIT, call: Callable | None = None
 ) -> tuple[np.ndarray | list[np.ndarray], list[np.ndarray], list[str]]:
     """The region and the holes of a rock mass as checked arrays, and warnings about shapes that were left
     out.
@@ -100,7 +102,7 @@ def read_constraints(given: Sequence, units: str = MODEL_UNIT) -> list[np.ndarra
     return found
 
 
-def is_place_elsewhere(at) -> bool:
+def is_place_elsewhere(at: object) -> bool:
     """Whether the place of a local edge length is a file or well-known text."""
     return isinstance(at, (Path, MapLayer)) or (isinstance(at, str) and at not in AT_WORDS)
 
@@ -128,7 +130,7 @@ def read_sizes(sizes: Sequence[Mapping], units: str = MODEL_UNIT) -> list[Mappin
     return found
 
 
-def places_of_constraint(given) -> np.ndarray:
+def places_of_constraint(given: ArrayLike) -> np.ndarray:
     """(N, 2) places of a line, or (1, 2) of a point given as [x, y], none repeated in a row."""
     try:
         places = np.array(given, np.float64)
@@ -152,7 +154,7 @@ def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
     return [line[begins_run(line)] for line in found]
 
 
-def ring_path(region, items) -> tuple:
+def ring_path(region: Any, items: Sequence[int]) -> tuple:
     """The key in the project file of the corner that a native error names first: (key, numbers...)."""
     if not items or isinstance(region, (str, Path, MapLayer)):
         return ("region",)

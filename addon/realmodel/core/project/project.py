@@ -1,60 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A project: rock masses with their surfaces, oldest first, from files or from arrays, and its checks."""
+"""A project: rock masses with their surfaces, oldest first, from files or from arrays."""
 
 from __future__ import annotations
 
 import builtins
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from ..base.algebra import are_among
-from ..base.errors import InputRefused
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
-from ..base.units import METERS, MODEL_UNIT
+from ..base.units import MODEL_UNIT
 from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations, along_bounds
 from ..settings.boreholes import Boreholes
-from ..settings.crs import checked_crs
 from ..settings.dips import DipFile, Dips, dip_file_of
 from ..settings.map_file import MapFile
 from ..settings.map_layer import MapLayer
-from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
-from ..settings.method_options import OptionRefused, is_name
 from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
     METHODS,
-    SURFACE_OPTIONS,
-    check_method,
-    check_uses_dips,
     checked_options,
 )
 from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE
-from ..settings.schema import ROCK, SURFACE
+from ..settings.series import FIELD
 from .entry import (
     Entry,
-    check_file,
-    check_property,
-    check_values,
-    named_once,
-    refused_by,
-    shapes_given,
 )
-from .field_checks import check_field_data, files_of_map, names_of_units
 from .library import Library
-from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
+from .plan_input import files_of_sizes, layer_files, map_layer
 from .region_rings import is_several
-from .series import Series, check_level_set, check_names_series, check_series, mark_level_sets
-from .structure_checks import check_structures
+from .series import Series
 from .structure_entries import Body, Fault, Shaped
 
 MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh need not resolve
@@ -261,8 +245,23 @@ class Rock(Entry):
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
-    def __post_init__(self):
-        mark_level_sets(self)
+    def __post_init__(self) -> None:
+        self.mark_level_sets()
+
+    def mark_level_sets(self) -> None:
+        """Says of each surface whether it is a level set of a field."""
+        fields = {series.name for series in self.series if series.kind == FIELD}
+        for surface in self.surfaces:
+            surface.is_level_set = surface.series in fields
+
+    @property
+    def has_fields(self) -> bool:
+        """Whether some of its surfaces are level sets of a field."""
+        return any(series.kind == FIELD for series in self.series)
+
+    def members(self, series: Series) -> list[int]:
+        """The numbers of the surfaces of a series."""
+        return [number for number, surface in enumerate(self.surfaces) if surface.series == series.name]
 
     @property
     def observation_file(self) -> ObservationFile | None:
@@ -287,6 +286,39 @@ class Rock(Entry):
         """The observations of a rock mass that is read; None where there are none."""
         assert self.observation_file is None
         return self.observations if isinstance(self.observations, Observations) else None
+
+    @property
+    def ground_file(self) -> PointFile | MeshFile | str | Path | None:
+        """The file that the ground of its map is read from; None where it is a surface of the rock mass, or
+        there is no map."""
+        ground = None if self.map is None else self.map.ground
+        is_surface = isinstance(ground, str) and ground in [surface.name for surface in self.surfaces]
+        return None if is_surface else ground
+
+    @property
+    def ground_number(self) -> int | None:
+        """The number of the surface that is the ground of its map; None without a map, or where none is."""
+        if self.map is None:
+            return None
+        names, youngest = [surface.name for surface in self.surfaces], len(self.surfaces) - 1
+        ground = self.ground_file
+        if ground is None:
+            return names.index(self.map.ground) if self.map.ground in names else youngest
+        file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
+        own = self.surfaces[-1].input_file
+        return youngest if own is None or Path(own) == file else None
+
+    @property
+    def map_files(self) -> list[Path]:
+        """The files of its map."""
+        if self.map is None:
+            return []
+        files = [*layer_files(self.map.polygons), *layer_files(self.map.faults)]
+        ground = self.ground_file
+        if ground is not None:
+            file = Path(ground.file if isinstance(ground, (PointFile, MeshFile)) else ground)
+            files += [file, *companions(file)]
+        return files
 
     @property
     def region_file(self) -> Path | None:
@@ -354,7 +386,7 @@ class Project:
             files += files_of_sizes(rock.size)
             files += rock.boreholes.files if rock.boreholes is not None else []
             files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
-            files += files_of_map(rock)
+            files += rock.map_files
             files += [Path(rock.dip_file.file)] if rock.dip_file is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
@@ -367,11 +399,16 @@ class Project:
                 files += [entry.input_file, *companions(entry.input_file)]
         return [Path(file) for file in files if file is not None]
 
+    def names_of_units(self, rock: Rock) -> list[str]:
+        """What a name in a table of a rock mass may mean: its blocks and surfaces, and the bodies."""
+        surfaces = [surface.name for surface in rock.surfaces]
+        return list(dict.fromkeys([*rock.block_names(), *surfaces, *(body.name for body in self.bodies)]))
+
     def stage(self, m: int) -> Project:
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
         rocks = [rock.stage(m) for rock in self.rocks]
         for rock in rocks:
-            known = names_of_units(self, rock)
+            known = self.names_of_units(rock)
             rock.names = {code: name if name in known else "" for code, name in rock.names.items()}
         return replace(self, rocks=rocks)
 
@@ -379,206 +416,3 @@ class Project:
 def surface_item(rock: Rock, surface: Surface) -> str:
     """The name of a surface in messages; of rows of the panel, too."""
     return f"rock '{rock.name}', surface '{surface.name}'"
-
-
-def check_project(project: Project) -> None:
-    """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
-    if not is_name(project.name):
-        raise InputRefused("a project needs a name", file=project.path)
-    if project.units not in METERS:
-        what = f"unknown unit {project.units!r}"
-        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
-    try:
-        checked_crs("crs", project.crs)
-    except OptionRefused as error:
-        raise InputRefused(error.what, file=project.path, item="crs", advice=error.advice) from error
-    if not project.rocks:
-        raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
-    for rock in named_once(project.rocks, "rock mass"):
-        _check_rock(project, rock)
-    check_structures(project)
-
-
-def _check_rock(project: Project, rock: Rock) -> None:
-    refuse = rock.refused
-    mark_level_sets(rock)  # surfaces may have come later
-    if not rock.surfaces:
-        raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
-    check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
-    _check_mesh(rock, refuse)
-    if rock.region is None and len(rock.holes):
-        raise refuse("it has holes but no region", "holes", "add the outline as region")
-    if isinstance(rock.region, (str, Path, MapLayer)) and len(rock.holes):
-        raise refuse(
-            "holes need a region given by coordinates", "holes", "put the holes into the region's file"
-        )
-    check_layer(rock.region, "region", refuse)
-    for given in rock.constraints:
-        check_layer(given, "constraints", refuse)
-    if len(rock.constraints) and not rock.interpolates:
-        what = "constraints have no effect, as no surface is interpolated"
-        raise refuse(what, "constraints")
-    check_field_data(project, rock)
-    check_series(rock)
-    names: set[str] = set()
-    for surface in rock.surfaces:
-        _check_surface(project, rock, surface)
-        if surface.name in names:
-            advice = "give each surface of a rock mass a unique name"
-            item = surface_item(rock, surface)
-            raise surface.refused("another surface has this name", "name", advice, item)
-        names.add(surface.name)
-    _check_references(rock)
-
-
-def _check_mesh(rock: Rock, refuse) -> None:
-    """Refuses settings from which no planar mesh can be made."""
-    if rock.triangles is not None and rock.edge_length not in (None, AUTO):
-        raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
-    try:
-        sizes = [_at_a_place(entry, refuse) for entry in rock.size]
-        local_lengths(sizes, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
-    except InputRefused as error:
-        raise refuse(f"{error.item}: {error.what}" if error.item else error.what, "size") from error
-
-
-def _at_a_place(entry, refuse):
-    """An entry of `size` that is at what a file or a text holds, with a place instead, once there is that
-    file; others as they are."""
-    if not (isinstance(entry, Mapping) and is_place_elsewhere(entry.get("at"))):
-        return entry
-    check_layer(entry["at"], "size", refuse)
-    return {**entry, "at": [0.0, 0.0]}
-
-
-def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
-    if not is_name(surface.name):
-        raise surface.refused("a surface has no name", "name", item=rock.item)
-    refuse = partial(surface.refused, item=surface_item(rock, surface))
-    check_names_series(rock, surface, refuse)
-    if surface.is_level_set:
-        check_level_set(rock, surface, refuse)
-    else:
-        _check_shape(rock, surface, refuse, bool(project.faults))
-        _check_dips(surface, refuse)
-    check_values(
-        surface,
-        SURFACE,
-        ("minimum_thickness", "true_thickness", "tie", "correlation", "rule", "property", "block"),
-        refuse,
-    )
-    check_property(project.library, surface.property, refuse)
-
-
-def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
-    """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
-    continued to faults."""
-    shapes = shapes_given(surface, ("points", "mesh"), refuse)
-    no_points = not shapes and not rock.has_field_data
-    if no_points and surface.method is None:
-        raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
-    if shapes:
-        check_file(surface.input_file, shapes[0], refuse)
-    with refused_by(refuse):
-        for file in (surface.mesh_file, surface.point_file):
-            if file is not None:
-                file.check()
-    if not surface.interpolated:
-        given = [*(["method"] if surface.method is not None else []), *surface.options]
-        given = [] if continues else given
-        of_points = ("minimum_thickness", "correlation", "left_out")
-        given += [key for key in of_points if getattr(surface, key) is not None]
-        given += ["true_thickness"] if surface.true_thickness else []
-        given += [] if surface.tie else ["tie"]
-        if given:
-            raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
-        if continues:
-            _check_method(surface, refuse)
-            _check_continuation(surface, refuse)
-        return
-    _check_method(surface, refuse, no_points)
-    if surface.true_thickness and not surface.has_thickness:
-        what = "'true_thickness' has no effect, as the surface keeps no thickness above another one"
-        raise refuse(what, "true_thickness", 'add minimum_thickness, or use method = "parallel"')
-    length = rock.edge_length if rock.triangles is None else rock.triangles
-    for key, value in (("region", rock.region), ("edge_length", length)):
-        if value is None:
-            raise refuse(
-                f"its points cannot be interpolated: {rock.item} has no {key}",
-                "points",
-                f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
-            )
-
-
-def _check_dips(surface: Surface, refuse) -> None:
-    if surface.dips is None:
-        return
-    file = surface.dip_file
-    with refused_by(refuse, "dips", "dips: "):
-        if file is not None:
-            file.check()
-    check_file(None if file is None else file.file, "dips", refuse)
-    if not surface.interpolated:
-        raise refuse("'dips' has no effect, as a mesh is not interpolated", "dips")
-    with refused_by(refuse):
-        check_uses_dips(surface.method or DEFAULT_METHOD)
-
-
-def _check_continuation(surface: Surface, refuse) -> None:
-    """Refuses options that give a ready mesh no heights where it does not reach its faults."""
-    for option in SURFACE_OPTIONS:
-        if isinstance(surface.options.get(option), str):
-            what = f"'{option}' names a surface; a mesh is continued from its own vertices"
-            raise refuse(what, option, "choose another method, or a number")
-    if surface.options.get("extrapolate") == "none":
-        what = 'extrapolate = "none" gives no heights where the mesh is continued to the faults'
-        raise refuse(what, "extrapolate", 'use "nearest" or "method"')
-
-
-def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
-    with refused_by(refuse):
-        check_method(surface.method or DEFAULT_METHOD)
-        if no_points and surface.needs_points:
-            method, _ = surface.method_options()
-            option = METHODS[method].instead_of_points
-            either = f", or {option} = ..." if option else ""
-            raise refuse(f"method '{method}' needs points", "method", f"add points = ...{either}")
-        surface.method_options()
-
-
-def _check_references(rock: Rock) -> None:
-    """Refuses unknown names of surfaces, a minimum thickness above nothing, and circular references."""
-    numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
-    needs: list[list[tuple[str, int]]] = []
-    for number, surface in enumerate(rock.surfaces):
-        item, needed = surface_item(rock, surface), []
-        for option in SURFACE_OPTIONS:
-            name = surface.options.get(option)
-            if not isinstance(name, str):
-                continue
-            if name not in numbers:
-                what = f"'{option}' names surface '{name}', which {rock.item} does not have"
-                raise surface.refused(what, option, f"it has {', '.join(numbers)}", item)
-            needed.append((option, numbers[name]))
-        for key in ("minimum_thickness", "correlation"):
-            if number == 0 and getattr(surface, key) is not None:
-                what = f"the oldest surface cannot have a {key}, as there is no surface beneath it"
-                raise surface.refused(what, key, item=item)
-        if surface.minimum_thickness is not None:
-            needed.append(("minimum_thickness", number - 1))
-        needs.append(needed)
-    done: set[int] = set()
-
-    def visit(number: int, above: tuple[int, ...]) -> None:
-        for option, needed in needs[number]:
-            if needed in (*above, number):
-                surface, other = rock.surfaces[number], rock.surfaces[needed]
-                what = f"'{option}' names '{other.name}', which depends on this surface"
-                raise surface.refused(what, option, item=surface_item(rock, surface))
-            if needed not in done:
-                visit(needed, (*above, number))
-        done.add(number)
-
-    for number in range(len(rock.surfaces)):
-        if number not in done:
-            visit(number, ())

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
+from ..base.errors import InputRefused
 from ..base.finite import is_number
 from ..base.toml_table import Source, Table, TomlDocument
 from ..base.units import METERS, MODEL_UNIT
@@ -27,7 +28,8 @@ from ..settings.setting import Settings
 from .entry import check_file, is_file, refused_by
 from .library import load_library
 from .plan_input import is_place_elsewhere
-from .project import Project, Rock, Surface, check_project
+from .project import Project, Rock, Surface
+from .project_checks import check_project
 from .series import Series
 from .structure_entries import Body, Fault
 
@@ -112,7 +114,7 @@ def _read_size(table: Table, folder: Path) -> list:
     return [_read_place(table, entry, number, folder) for number, entry in enumerate(size)]
 
 
-def _read_place(table: Table, entry, number: int, folder: Path):
+def _read_place(table: Table, entry: Any, number: int, folder: Path) -> Any:
     """An entry of `size`; where it is at a file, at a path or a MapLayer."""
     at = entry.get("at") if isinstance(entry, dict) else None
     if isinstance(at, dict):
@@ -123,7 +125,7 @@ def _read_place(table: Table, entry, number: int, folder: Path):
     return entry
 
 
-def _read_region(table: Table, folder: Path):
+def _read_region(table: Table, folder: Path) -> Any:
     region = table.content.get("region")
     if isinstance(region, list) and _is_list_of_rings(region):
         region = [_read_ring(table, ring, ("region", number)) for number, ring in enumerate(region)]
@@ -138,13 +140,13 @@ def _read_region(table: Table, folder: Path):
 
 
 def _is_list_of_rings(region: list) -> bool:
-    def is_ring(ring) -> bool:
+    def is_ring(ring: Any) -> bool:
         return isinstance(ring, list) and bool(ring) and all(isinstance(corner, list) for corner in ring)
 
     return bool(region) and all(map(is_ring, region))
 
 
-def _read_layer(table: Table, key: str, given, folder: Path):
+def _read_layer(table: Table, key: str, given: Any, folder: Path) -> Any:
     """Reads a file, well-known text, or a table with a file and its options."""
     if isinstance(given, str) and is_wkt(given):
         return given
@@ -254,10 +256,10 @@ def _inner(table: Table, key: str, content: dict) -> Table:
     return Table(table.document, content, (*table.path, key), f"{table.item}, {key}")
 
 
-def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
+def _read_ring(table: Table, ring: Any, path: tuple) -> np.ndarray:
     """One outline of coordinates. Errors name the line of the corner that is not two numbers."""
 
-    def refuse(what: str, *corner: int):
+    def refuse(what: str, *corner: int) -> InputRefused:
         where = Table(table.document, {}, (*table.path, *path, *corner), table.item)
         return where.refuse(what, advice="write an outline as [[x, y], [x, y], [x, y], ...]")
 
@@ -333,13 +335,13 @@ def _shape_files(table: Table, folder: Path) -> dict:
     raise table.refuse(f"'{key}' needs a file of points", key)
 
 
-def _read_trace(table: Table, folder: Path):
+def _read_trace(table: Table, folder: Path) -> Any:
     """A file, well-known text, one line, or several; z of points without one is NaN."""
     given = table.content["trace"]
     if isinstance(given, str):
         return given if is_wkt(given) else folder / table.text("trace", required=True)
 
-    def refuse(what: str, *at: int):
+    def refuse(what: str, *at: int) -> InputRefused:
         where = Table(table.document, {}, (*table.path, "trace", *at), table.item)
         return where.refuse(what, advice="write [[x, y], [x, y], ...], or [x, y, z] for each")
 

@@ -9,11 +9,13 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.atomic import Outputs
 from ..base.errors import UsageError
@@ -26,7 +28,8 @@ from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
 from ..settings.series import AUTO, FIELD
 from .library import Library, Property
-from .project import Project, Rock, Surface, check_project
+from .project import Project, Rock, Surface
+from .project_checks import check_project
 from .region_rings import is_several
 from .series import Series
 from .structure_entries import Body, Fault
@@ -141,11 +144,11 @@ def _rock_lines(rock: Rock) -> list[str]:
     return lines
 
 
-def _rings_text(rings) -> str:
+def _rings_text(rings: Any) -> str:
     return "[\n  " + ",\n  ".join(_ring_text(ring) for ring in rings) + ",\n]"
 
 
-def _ring_text(ring) -> str:
+def _ring_text(ring: Any) -> str:
     corners = [_point_text(point) for point in np.asarray(ring, np.float64).tolist()]
     rows = [", ".join(corners[start : start + 4]) for start in range(0, len(corners), 4)]
     return "[" + ",\n  ".join(rows) + "]"
@@ -156,7 +159,7 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
-def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
+def _series_lines(rock: Rock, series: Series, beside: Callable, write: Callable) -> list[str]:
     if series.dip_file is not None:
         raise UsageError(f"{series.item}: its file has not been read; build the model first")
     dips, file = series.dips, None
@@ -172,7 +175,7 @@ def _series_lines(rock: Rock, series: Series, beside, write) -> list[str]:
     return _lines(values)
 
 
-def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str]:
+def _surface_files(rock: Rock, surface: Surface, beside: Callable, write: Callable) -> dict[str, str]:
     """The names of the files of a surface, by their keys."""
     if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
@@ -187,7 +190,7 @@ def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str
             files["dips"] = write(target, dips_text(dips))
         return files
     target = beside(rock.name, surface.name, ending=".off")
-    return {"mesh": write(target, off_text(surface.vertices, surface.triangles))}
+    return {"mesh": write(target, off_text(*surface.triangulation()))}
 
 
 def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
@@ -209,7 +212,7 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     return _lines(values)
 
 
-def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]:
+def _structure_lines(kind: str, entry: Fault | Body, beside: Callable, write: Callable) -> list[str]:
     trace = entry.trace if isinstance(entry, Fault) else None
     if entry.input_file is not None or isinstance(trace, str):
         raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
@@ -226,7 +229,7 @@ def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]
         raise UsageError(
             f"{kind} '{entry.name}': no surface is fitted to its points yet; build the model first"
         )
-    mesh = write(beside(kind, entry.name, ending=".off"), off_text(entry.vertices, entry.triangles))
+    mesh = write(beside(kind, entry.name, ending=".off"), off_text(*entry.triangulation()))
     return _lines({"name": entry.name, "mesh": mesh} | values)
 
 
@@ -234,7 +237,7 @@ def _lines(values: Mapping) -> list[str]:
     return [f"{key} = {toml_value(value)}" for key, value in values.items() if value is not None]
 
 
-def toml_value(value) -> str:
+def toml_value(value: Any) -> str:
     """A value as TOML in one line. Raises UsageError for what TOML has no form for."""
     if hasattr(value, "settings"):  # a variogram found by an earlier interpolation
         value = value.settings()
@@ -258,7 +261,7 @@ def _text(value: str) -> str:
     return '"' + "".join(c if ord(c) >= 32 and ord(c) != 127 else f"\\u{ord(c):04x}" for c in escaped) + '"'
 
 
-def points_text(points) -> bytes:
+def points_text(points: ArrayLike) -> bytes:
     """Points (P, 3) as CSV."""
     return b"x,y,z\n" + _rows(np.asarray(points, np.float64), ",")
 
@@ -332,7 +335,7 @@ def observations_text(rock: Rock) -> bytes:
     return text.getvalue().encode()
 
 
-def off_text(vertices, triangles) -> bytes:
+def off_text(vertices: np.ndarray, triangles: np.ndarray) -> bytes:
     """A triangulation as an OFF file."""
     vertices, triangles = checked_triangulation(vertices, triangles)
     head = f"OFF\n{len(vertices)} {len(triangles)} 0\n".encode()

@@ -6,11 +6,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, place_text
-from ..base.work import refused_as
+from ..base.work import NativeError, refused_as
 from ..readers.maps.shapes import Shapes
 
 
@@ -24,7 +26,7 @@ class NamedRing:
     hole: bool
 
 
-def numbered_ring(ring, item: str) -> np.ndarray:
+def numbered_ring(ring: ArrayLike, item: str) -> np.ndarray:
     """One ring as (N, 2) float64, all its corners kept, so that their numbers are those of the input. Raises
     InputRefused where it bounds nothing."""
     corners = _corners(ring, item)
@@ -32,7 +34,7 @@ def numbered_ring(ring, item: str) -> np.ndarray:
     return corners
 
 
-def _corners(ring, item: str) -> np.ndarray:
+def _corners(ring: ArrayLike, item: str) -> np.ndarray:
     try:
         corners = np.array(ring, np.float64)
     except (TypeError, ValueError) as error:
@@ -65,7 +67,7 @@ def _without_repetition(corners: np.ndarray) -> np.ndarray:
     return corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
 
 
-def is_several(outline) -> bool:
+def is_several(outline: Any) -> bool:
     """Whether a given outline is a list of several."""
     if isinstance(outline, np.ndarray):
         return outline.ndim == 3
@@ -75,7 +77,7 @@ def is_several(outline) -> bool:
         return False
 
 
-def given_rings(outline, holes: Iterable = ()) -> list[NamedRing]:
+def given_rings(outline: Any, holes: Iterable = ()) -> list[NamedRing]:
     """Rings from arrays: one outline (N, 2) or several, which count even-odd, and holes in them."""
     if not is_several(outline):
         rings = [NamedRing("region", _corners(outline, "region"), 0, False)]
@@ -130,16 +132,16 @@ def checked_region(
     return [_without_repetition(ring) for ring in checked]
 
 
-def _at_once(function: Callable, *arguments):
+def _at_once(function: Callable, *arguments: Any) -> Any:
     return function(*arguments)
 
 
-def region_rings(outline, holes: Iterable = ()) -> list[np.ndarray]:
+def region_rings(outline: Any, holes: Iterable = ()) -> list[np.ndarray]:
     """The checked rings of an outline (N, 2), or of several, with holes."""
     return checked_region(given_rings(outline, holes))
 
 
-def refused_rings(error, names: Sequence[str], counts: Sequence[int] = ()) -> InputRefused:
+def refused_rings(error: NativeError, names: Sequence[str], counts: Sequence[int] = ()) -> InputRefused:
     """The error that the native module found in rings, in the user's terms. Corners count from 0."""
     place = tuple(error.place[:2]) if error.place is not None else None
     at = f" at {place_text(place)}" if place is not None else ""

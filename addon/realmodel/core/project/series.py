@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Series of a rock mass: consecutive surfaces that share their structure, and their checks."""
+"""Series of a rock mass: consecutive surfaces that share their structure."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.dips import DipFile, Dips, SpaceDips, dip_file_of
-from ..settings.schema import SERIES
-from ..settings.series import AUTO, FIELD, SHEET_METHODS
-from .entry import Entry, Refuse, check_file, check_values, named_once, refused_by
-
-# What a level set of a field cannot have, as it is not interpolated on the planar mesh.
-_OF_SHEETS = ("mesh", "vertices", "dips", "method", "minimum_thickness", "true_thickness", "correlation")
+from ..settings.series import AUTO, FIELD
+from .entry import Entry
 
 
 @dataclass
@@ -56,99 +50,3 @@ class Series(Entry):
             return self.dips.checked().of_sheets()
         assert self.dips is None or isinstance(self.dips, Dips)
         return None if self.dips is None else self.dips.checked()
-
-
-def members(rock, series: Series) -> list[int]:
-    """The numbers of the surfaces (of a Rock) of a series."""
-    return [number for number, surface in enumerate(rock.surfaces) if surface.series == series.name]
-
-
-def mark_level_sets(rock) -> None:
-    """Says of each surface of a rock mass whether it is a level set of a field."""
-    fields = {series.name for series in rock.series if series.kind == FIELD}
-    for surface in rock.surfaces:
-        surface.is_level_set = surface.series in fields
-
-
-def check_series(rock) -> None:
-    """Refuses series that make no sense. Raises InputRefused."""
-    for series in named_once(rock.series, "series"):
-        refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
-        check_values(series, SERIES, ("kind", "resolution"), refuse)
-        _check_dips(series, refuse)
-        own = members(rock, series)
-        if not own:
-            advice = f'write series = "{series.name}" in its surfaces'
-            raise refuse("no surface belongs to it", "name", advice)
-        for one, other in pairwise(own):
-            if other > one + 1:
-                between = rock.surfaces[one + 1]
-                what = f"its surfaces are not consecutive: '{between.name}' is between them"
-                raise refuse(what, "name", "give this surface the same series, or use two series")
-        if series.kind == FIELD:
-            _check_field(rock, series, refuse)
-        else:
-            _check_sheets(rock, series, own, refuse)
-
-
-def _check_sheets(rock, series: Series, own: list[int], refuse: Refuse) -> None:
-    if series.resolution != AUTO:
-        raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
-    for number in own:
-        surface = rock.surfaces[number]
-        if not surface.interpolated or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:
-            how = f"has method '{surface.method}'" if surface.interpolated else "is a mesh"
-            what = f"its surfaces are interpolated together, and '{surface.name}' {how}"
-            raise refuse(
-                what, "name", f"methods of sheets are {', '.join(SHEET_METHODS[:-1])} and {SHEET_METHODS[-1]}"
-            )
-        if number > own[0] and surface.correlation is not None:
-            what = f"'{surface.name}' has a correlation, but sheets are drawn together in ensembles"
-            raise refuse(what, "name", "leave correlation out; the oldest sheet may have one")
-
-
-def _check_dips(series: Series, refuse: Refuse) -> None:
-    file = series.dip_file
-    if file is not None:
-        with refused_by(refuse, "dips", "dips: "):
-            file.check()
-        check_file(file.file, "dips", refuse)
-    elif series.dips is not None and not isinstance(series.dips, SpaceDips):
-        if series.kind == FIELD or not isinstance(series.dips, Dips):
-            raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
-
-
-def _check_field(rock, series: Series, refuse: Refuse) -> None:
-    for key, value in (("region", rock.region), ("base_elevation", rock.base_elevation)):
-        if value is None:
-            what = f"its field has no end: {rock.item} has no {key}"
-            raise refuse(what, "name", f"give the rock mass a {key}")
-
-
-def check_level_set(rock, surface, refuse: Refuse) -> None:
-    """Refuses what makes no sense for a surface of a field. Raises InputRefused."""
-    for key in (*_OF_SHEETS, *surface.options):
-        value = surface.options[key] if key in surface.options else getattr(surface, key)
-        if value is not None and value is not False:
-            what = f"'{key}' has no effect: the surface is a level set of series '{surface.series}'"
-            advice = "give the dips to the series" if key == "dips" else "use points, and leave this out"
-            raise refuse(what, key, advice)
-    if surface.points is None and not rock.has_field_data:
-        raise refuse("it has no points", advice="add points = ...")
-    check_file(surface.input_file, "points", refuse)
-    with refused_by(refuse):
-        if surface.point_file is not None:
-            surface.point_file.check()
-
-
-def check_names_series(rock, surface, refuse: Refuse) -> None:
-    """Refuses a surface of a series that its rock mass does not have. Raises InputRefused."""
-    names = [series.name for series in rock.series]
-    if surface.series is not None and surface.series not in names:
-        advice = f"it has {', '.join(names)}" if names else "add [[rock.series]]"
-        raise refuse(f"{rock.item} has no series '{surface.series}'", "series", advice)
-
-
-def has_fields(rock) -> bool:
-    """Whether surfaces of a rock mass (Rock) are level sets of fields."""
-    return any(series.kind == FIELD for series in rock.series)

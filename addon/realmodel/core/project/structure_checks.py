@@ -4,18 +4,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 
 from ..settings.schema import FAULT
-from .entry import check_file, check_property, check_values, named_once, refused_by, shapes_given
+from .entry import Refuse, check_file, check_property, check_values, named_once, refused_by, shapes_given
+from .project import Project
 from .structure_entries import Body, Fault
 from .structure_history import displaced_surfaces
 
 _OF_TRACES = ("dip", "dip_direction", "elevation")
 
 
-def check_structures(project) -> None:
+def check_structures(project: Project) -> None:
     """Raises InputRefused, naming the line where it is written."""
     for fault in named_once(project.faults, "fault"):
         _check_fault(project, fault)
@@ -24,7 +27,7 @@ def check_structures(project) -> None:
     _check_ends(project)
 
 
-def _check_fault(project, fault: Fault) -> None:
+def _check_fault(project: Project, fault: Fault) -> None:
     refuse = fault.refused
     _check_shape(fault, refuse, ("trace", "points", "mesh"))
     for key in ("rocks", "ends_at"):
@@ -42,7 +45,7 @@ def _check_fault(project, fault: Fault) -> None:
     _check_names(project, refuse, "rocks", fault.rocks, "youngest", fault.youngest)
 
 
-def _check_trace(project, fault: Fault, refuse) -> None:
+def _check_trace(project: Project, fault: Fault, refuse: Refuse) -> None:
     """Refuses a trace without a dip, and what there is of one without a trace."""
     if fault.trace is None:
         for key in _OF_TRACES:
@@ -62,7 +65,7 @@ def _check_trace(project, fault: Fault, refuse) -> None:
             raise refuse(what, "elevation", _there(names) if names else None)
 
 
-def _check_body(project, body: Body) -> None:
+def _check_body(project: Project, body: Body) -> None:
     refuse = body.refused
     _check_shape(body, refuse, ("mesh",))
     if not isinstance(body.void, bool):
@@ -76,7 +79,7 @@ def _check_body(project, body: Body) -> None:
     _check_names(project, refuse, "rock", names, "after", body.after)
 
 
-def _check_shape(entry, refuse, files: tuple[str, ...]) -> None:
+def _check_shape(entry: Fault | Body, refuse: Refuse, files: tuple[str, ...]) -> None:
     """Refuses an entry without a shape, or with two."""
     shapes = shapes_given(entry, files, refuse)
     if not shapes:
@@ -89,7 +92,7 @@ def _check_shape(entry, refuse, files: tuple[str, ...]) -> None:
     check_file(entry.input_file, shapes[0], refuse)
 
 
-def _is_length(value) -> bool:
+def _is_length(value: Any) -> bool:
     if isinstance(value, (bool, str)):
         return False
     try:
@@ -98,7 +101,7 @@ def _is_length(value) -> bool:
         return False
 
 
-def _check_names(project, refuse, key: str, rocks, time_key: str, surface) -> None:
+def _check_names(project: Project, refuse: Refuse, key: str, rocks: Any, time_key: str, surface: Any) -> None:
     """Refuses unknown rock masses and surfaces."""
     known = {rock.name: [each.name for each in rock.surfaces] for rock in project.rocks}
     for name in rocks:
@@ -117,11 +120,11 @@ def _check_names(project, refuse, key: str, rocks, time_key: str, surface) -> No
         raise refuse(f"'{time_key}' names surface '{surface}', which does not exist", time_key, _there(every))
 
 
-def _there(names) -> str:
+def _there(names: Collection[str]) -> str:
     return f"there are {', '.join(names)}" if len(names) > 1 else f"there is {', '.join(names)}"
 
 
-def _check_ends(project) -> None:
+def _check_ends(project: Project) -> None:
     """Refuses faults that end at unknown faults, at each other, or at faults that displace less."""
     faults = {fault.name: fault for fault in project.faults}
     for fault in project.faults:

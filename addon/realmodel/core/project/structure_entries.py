@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -98,7 +99,7 @@ class Fault(Shaped):
         return None if isinstance(self.trace, str) and is_wkt(self.trace) else as_point_file(self.trace)
 
 
-def as_point_file(given) -> PointFile | None:
+def as_point_file(given: Any) -> PointFile | None:
     if isinstance(given, (str, Path)):
         return PointFile(given)
     return given if isinstance(given, PointFile) else None

@@ -3,20 +3,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from .project import Project
 from .structure_entries import Body, Fault
 
 
-def displaced_surfaces(project, fault: Fault) -> dict[int, int]:
+def displaced_surfaces(project: Project, fault: Fault) -> dict[int, int]:
     """For each rock mass that a fault may displace, by its number: the youngest surface that it displaces."""
     return _numbers(project, fault.rocks, fault.youngest)
 
 
-def body_times(project, body: Body) -> dict[int, int]:
+def body_times(project: Project, body: Body) -> dict[int, int]:
     """For each rock mass that a body may be in, by its number: the surface after which it came."""
     return _numbers(project, () if body.rock is None else (body.rock,), body.after)
 
 
-def _numbers(project, names, surface: str | None) -> dict[int, int]:
+def _numbers(project: Project, names: Sequence[str], surface: str | None) -> dict[int, int]:
     found = {}
     for number, rock in enumerate(project.rocks):
         if names and rock.name not in names:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
+from ..cells.model_data import ModelData
 from ..fields.series_field import SeriesField
 from ..settings.rules import RULES
 from ..structures.parts.parts import Structures
@@ -101,7 +102,7 @@ class ClosedForm:
                 return -own.distances(surface, points, self.compartments_of(work, points))
         return self.heights(work, surface, points) - points[:, 2]
 
-    def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
+    def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray) -> np.ndarray:
         """(N,) heights of a surface at points in the compartments `where`. That of a level set is where it
         would be if f rose by 1 along z: above a point where f is less than its level."""
         for own in self.fields:
@@ -120,7 +121,7 @@ class ClosedForm:
         return found
 
 
-def closed_forms(model) -> list[ClosedForm]:
+def closed_forms(model: ModelData) -> list[ClosedForm]:
     """The closed form of each rock mass of a model; blocks have the model's numbers."""
     number = {block.surface: n for n, block in enumerate(model.blocks)}
     return _forms(model.rock_inputs, model.structures, number)

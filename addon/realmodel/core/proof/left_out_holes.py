@@ -11,6 +11,7 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, run
+from ..cells.model_data import ModelData
 from ..project.project import Project, Rock, Surface
 from ..readers.tables.observations import Observations, in_one_interval
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
@@ -91,7 +92,7 @@ class HoleValidation:
 
 
 def cross_validate_holes(
-    model,
+    model: ModelData,
     folds: int | None = None,
     threads: int = 0,
     progress: Progress | None = None,
@@ -110,7 +111,7 @@ def cross_validate_holes(
     return run(lambda work: validated_holes(work, model, folds), progress, cancel, threads=threads)
 
 
-def validated_holes(work: Work, model, folds: int | None = None) -> HoleValidation:
+def validated_holes(work: Work, model: ModelData, folds: int | None = None) -> HoleValidation:
     """cross_validate_holes as the present phase of the work."""
     model.require_project("cross-validation")
     if folds is not None and (isinstance(folds, bool) or not isinstance(folds, int) or folds < 2):

@@ -95,7 +95,7 @@ def _misfits(work: Work, model: ModelData, tolerance: float | None, dip_toleranc
     return sorted(found, key=lambda each: (order[each.kind], -(each.by or 0.0)))
 
 
-def _range_of_heights(rock) -> float:
+def _range_of_heights(rock: Rock) -> float:
     parts = [surface.point_array()[:, 2] for surface in rock.surfaces]
     parts += [] if rock.observed is None else [rock.observed.places[:, 2]]
     heights = np.concatenate(parts) if parts else np.empty(0)

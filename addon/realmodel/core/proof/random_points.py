@@ -10,6 +10,7 @@ import numpy as np
 from ..base.errors import place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
+from ..cells.model_data import ModelData
 from ..surfaces.wrong_sides import heights_at
 from .closed_form import AIR, blocks_of_all, closed_forms
 
@@ -18,7 +19,7 @@ _LOOKED_AT = 200  # disagreeing points that are tested for rounding
 _SHOWN = 5  # offenders of each test
 
 
-def check_points(work: Work, model, arrays: dict, places: int, seed: int) -> list[dict]:
+def check_points(work: Work, model: ModelData, arrays: dict, places: int, seed: int) -> list[dict]:
     """The tests "places" and "surfaces" of a model with structures or level sets, as the native part gives
     those of others: about so many points spread in the model, beside its faces, and beside faults and bodies.
     arrays: of the model, as native tests take it."""
@@ -47,7 +48,7 @@ def check_points(work: Work, model, arrays: dict, places: int, seed: int) -> lis
     return [*found, _check_faces(work, model, places, random)]
 
 
-def _points(model, places: int, random) -> np.ndarray:
+def _points(model: ModelData, places: int, random: np.random.Generator) -> np.ndarray:
     """(N, 3): a third anywhere in the box of the model, a third near faces, a third near structures."""
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     margin = 0.02 * (high - low)
@@ -58,7 +59,8 @@ def _points(model, places: int, random) -> np.ndarray:
     corner = random.integers(0, np.diff(model.face_offsets)[some] - 1)
     at = model.face_vertices[first[some]], *(model.face_vertices[first[some] + corner + k] for k in (0, 1))
     beside = _in_triangles(np.stack([model.vertices[each] for each in at], axis=1), random)
-    shapes = [each.vertices[each.triangles] for each in (*model.structures.faults, *model.structures.bodies)]
+    structures = (*model.structures.faults, *model.structures.bodies)
+    shapes = [vertices[triangles] for vertices, triangles in (each.triangulation() for each in structures)]
     near = np.empty((0, 3))
     for shape in shapes:
         rows = random.integers(0, len(shape), -(-third // len(shapes)))
@@ -69,13 +71,13 @@ def _points(model, places: int, random) -> np.ndarray:
     return np.concatenate([spread, np.concatenate([beside, near]) + away * direction])
 
 
-def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
+def _in_triangles(corners: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """A random point in each of (N, 3, 3)."""
     weights = -np.log(random.uniform(1e-300, 1.0, corners.shape[:2]))
     return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
 
 
-def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
+def _offender(model: ModelData, point: np.ndarray, cell: int, block: int, said: int) -> dict:
     names = [f"block '{each.name}'" for each in model.blocks]
     text = f"the model has {names[block] if block >= 0 else 'nothing'}, the closed form "
     text += f"{names[said] if said >= 0 else 'nothing'} at {place_text(point)}"
@@ -89,7 +91,7 @@ def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dic
     }
 
 
-def _check_faces(work: Work, model, places: int, random) -> dict:
+def _check_faces(work: Work, model: ModelData, places: int, random: np.random.Generator) -> dict:
     """Whether the middles of some faces lie on the surface, fault or body that the faces name."""
     began = time.perf_counter()
     faces = np.flatnonzero(model.face_surface >= 0)
@@ -128,7 +130,7 @@ def _check_faces(work: Work, model, places: int, random) -> dict:
     return _entry("surfaces", "faces", len(faces), len(wrong), int(slivers.sum()), began, offenders)
 
 
-def _width(model, face: int) -> float:
+def _width(model: ModelData, face: int) -> float:
     """The mean width of a face: its area by its longest extent."""
     corners = model.vertices[model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]]
     apart = corners - corners[0]
@@ -136,20 +138,20 @@ def _width(model, face: int) -> float:
     return float(area / np.linalg.norm(apart, axis=1).max())
 
 
-def _rounding(model) -> float:
+def _rounding(model: ModelData) -> float:
     """How far rounding may move a vertex: by the coordinates of the whole, where this is a part of one."""
     return _ROUNDING * float(np.spacing(max(np.abs(model.vertices).max(), model.structures.largest)))
 
 
-def _are_sheets(model) -> np.ndarray:
+def _are_sheets(model: ModelData) -> np.ndarray:
     """(S,) bool: the surfaces with one height at each position."""
     return (model.surface_kind == 0) & ~model.surface_is_level_set
 
 
-def _steepness(model) -> float:
+def _steepness(model: ModelData) -> float:
     """The steepest slope of a sheet: heights are off by so much more than plan coordinates."""
     steepest = 0.0
-    for number in np.flatnonzero(_are_sheets(model)):
+    for number in np.flatnonzero(_are_sheets(model)).tolist():
         vertices, triangles = model.surface(number)
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)
@@ -159,7 +161,9 @@ def _steepness(model) -> float:
     return steepest
 
 
-def _entry(name: str, unit: str, examined: int, failed: int, undecided: int, began: float, offenders) -> dict:
+def _entry(
+    name: str, unit: str, examined: int, failed: int, undecided: int, began: float, offenders: list[dict]
+) -> dict:
     return {
         "name": name,
         "unit": unit,

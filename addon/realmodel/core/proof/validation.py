@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.errors import UsageError, place_text
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
 from ..settings.method_options import check_threads
 from .random_points import check_points
@@ -185,7 +186,7 @@ def _offender_line(offender: Offender) -> str:
 
 
 def validate(
-    model,
+    model: ModelData,
     places: int = PLACES_OF_CHECK,
     seed: int = 1,
     threads: int = 0,
@@ -239,7 +240,7 @@ def validate(
     )
 
 
-def _wrong_arrays(model) -> list[str]:
+def _wrong_arrays(model: ModelData) -> list[str]:
     """Sentences about arrays of another dtype or shape than docs/dev/geometry.md gives them."""
     columns = {"vertices": 3, "face_cells": 2}
     wrong = []
@@ -259,7 +260,7 @@ def _wrong_arrays(model) -> list[str]:
     return wrong
 
 
-def _native_model(model) -> dict:
+def _native_model(model: ModelData) -> dict:
     """The model as the native tests take it."""
     return {
         **{name: getattr(model, name) for name in _DTYPES},
@@ -270,7 +271,7 @@ def _native_model(model) -> dict:
     }
 
 
-def _bases(model) -> np.ndarray:
+def _bases(model: ModelData) -> np.ndarray:
     """(B,) float64 the base elevation that each block may stand on, NaN for none; (0,), not known, where a
     body stands on several, or in a tile on any."""
     if model.lacks_project is not None:
@@ -292,7 +293,7 @@ def _bases(model) -> np.ndarray:
     return np.array(found, np.float64)
 
 
-def _block_of_surface(model) -> np.ndarray:
+def _block_of_surface(model: ModelData) -> np.ndarray:
     """(S,) int32: the block beneath each surface; -1 beneath the oldest where there is no base."""
     of_surface = np.full(len(model.surface_names), -1, np.int32)
     for number, block in enumerate(model.blocks):
@@ -300,7 +301,7 @@ def _block_of_surface(model) -> np.ndarray:
     return of_surface
 
 
-def _test(entry: dict, model) -> ValidationTest:
+def _test(entry: dict, model: ModelData) -> ValidationTest:
     """A test from the dictionary of the native module, in which -1 means no number."""
     number, says = _SAYS[entry["name"]]
     if not model.is_stack:

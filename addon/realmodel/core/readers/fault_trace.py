@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class FaultLines:
         `strike` (the fault dips to the right of it), in upper or lower case."""
         return self._value("dip_direction", _direction)
 
-    def _value(self, key: str, read):
+    def _value(self, key: str, read: Callable[[Mapping, Sequence[float]], Any]) -> Any:
         found: dict[object, str] = {}
         for item, given in self.attributes.items():
             try:

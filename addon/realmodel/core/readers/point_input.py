@@ -171,7 +171,7 @@ def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarra
 class _Heights:
     """Looks among heights, piece by piece, for values that programs write for no data."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._count = 0
         self._of_value = dict.fromkeys(OFTEN_NO_VALUE, 0)
         self._low, self._high = np.inf, -np.inf  # of the others

@@ -4,15 +4,21 @@ Freiburg 2014, chapter 4)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, refused_as, run
+from ..base.work import Cancel, NativeError, Progress, Work, refused_as, run
 from ..settings.method_options import check_threads
+
+if TYPE_CHECKING:
+    from ..._native import Native
 
 SURFACES = ("the first surface", "the second surface")  # as refusals name them
 _KEPT = {
@@ -78,13 +84,14 @@ class Intersection:
     triangles with the same corners.
     """
 
-    def __init__(self, refinement):
+    def __init__(self, refinement: Native.Refinement):
         self._native = refinement
         self.vertices: np.ndarray = refinement.vertices
         self.triangles: np.ndarray = refinement.triangles
         self.source: np.ndarray = refinement.source
         self.source_triangle: np.ndarray = refinement.source_triangle
-        self.is_closed: tuple[bool, bool] = tuple(refinement.is_closed)
+        first, second = refinement.is_closed
+        self.is_closed: tuple[bool, bool] = first, second
 
     @cached_property
     def loops(self) -> list[Loop]:
@@ -159,7 +166,7 @@ class Intersection:
         ends = np.cumsum([len(block.triangles) for block in self.sub_blocks])[:-1]
         return list(zip(np.split(rows, ends), np.split(is_turned, ends), strict=True))
 
-    def _solid(self, operation):
+    def _solid(self, operation: str) -> tuple[np.ndarray, np.ndarray]:
         rows, is_turned = self.boundary(operation)
         triangles = self.triangles[rows]
         triangles[is_turned] = triangles[is_turned][:, [0, 2, 1]]
@@ -195,8 +202,8 @@ def _from_least(triangles: np.ndarray) -> np.ndarray:
 
 
 def intersect(
-    a,
-    b,
+    a: Sequence[ArrayLike],
+    b: Sequence[ArrayLike],
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -224,14 +231,16 @@ def intersect(
     return run(lambda work: intersect_within(work, a, b), progress, cancel, threads=threads)
 
 
-def intersect_within(work: Work, a, b, share: float = 1.0) -> Intersection:
+def intersect_within(
+    work: Work, a: Sequence[ArrayLike], b: Sequence[ArrayLike], share: float = 1.0
+) -> Intersection:
     """`intersect` as the first part of a job, which takes this share of its progress."""
     first, second = _checked(a, 0), _checked(b, 1)
     with work.phase(0.0, share, "intersecting"), refused_as(_refused) as native:
         return Intersection(work.native(native.intersect, *first, *second))
 
 
-def _checked(surface, number: int) -> tuple[np.ndarray, np.ndarray]:
+def _checked(surface: Sequence[ArrayLike], number: int) -> tuple[np.ndarray, np.ndarray]:
     try:
         vertices, triangles = surface
     except (TypeError, ValueError) as error:
@@ -242,7 +251,7 @@ def _checked(surface, number: int) -> tuple[np.ndarray, np.ndarray]:
         raise error.within(SURFACES[number]) from error
 
 
-def _refused(error) -> InputRefused:
+def _refused(error: NativeError) -> InputRefused:
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
     return InputRefused(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.algebra import begins_run
 from ..base.errors import UsageError
+from ..cells.model_data import ModelData
 from .geological_map import Ground, ground_of
 
 MOST_LEVELS = 10_000
@@ -46,7 +47,7 @@ def checked_interval(interval: float | None, low: float, high: float) -> float:
     return float(interval)
 
 
-def contours(model, interval: float | None = None, ground: Ground | None = None) -> list[Contour]:
+def contours(model: ModelData, interval: float | None = None, ground: Ground | None = None) -> list[Contour]:
     """Contours of the top of the model, then of each input surface that is no fault or body, at multiples of
     the interval. interval: as of `checked_interval`. ground: as of `geological_map`. Raises UsageError,
     BuildFailed.
@@ -114,7 +115,9 @@ def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: 
     return lines
 
 
-def _crossings(corners: np.ndarray, vertices: np.ndarray, side: np.ndarray, level: float):
+def _crossings(
+    corners: np.ndarray, vertices: np.ndarray, side: np.ndarray, level: float
+) -> tuple[np.ndarray, list[tuple[int, int]]]:
     """The crossings of the level with the side from corner `side` of each triangle: (T, 2), and the vertices
     of these edges. Both triangles of an edge get the same position."""
     row = np.arange(len(side))

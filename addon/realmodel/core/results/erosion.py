@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.joining import build_joined
+from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
 from ..notebook import ShortRepr
 from ..settings.rules import RULES
@@ -54,14 +55,14 @@ class Erosion(ShortRepr):
 
 
 def eroded(
-    model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+    model: ModelData, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
 ) -> Erosion:
     """Model.eroded."""
     model.require_project("what was eroded")
     return run(lambda work: _eroded(work, model), progress, cancel, threads=threads)
 
 
-def _eroded(work: Work, model) -> Erosion:
+def _eroded(work: Work, model: ModelData) -> Erosion:
     """Computes it backward in time, from the model itself to just before each surface that cuts anything."""
     stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
     arrivals = _arrivals_of_bodies(model)
@@ -97,21 +98,21 @@ def _eroded(work: Work, model) -> Erosion:
     return Erosion(volume, remaining, taken)
 
 
-def _arrivals_of_bodies(model) -> list[tuple[int, int]]:
+def _arrivals_of_bodies(model: ModelData) -> list[tuple[int, int]]:
     """(m, body): that a body came after surface m of some rock mass, oldest first."""
     return sorted({(m, n) for n, times in enumerate(model.structures.times) for m in times.values()})
 
 
-def _most_surfaces(model) -> int:
+def _most_surfaces(model: ModelData) -> int:
     return max(len(rock.surfaces) for rock in model.project.rocks)
 
 
-def _first_surfaces(model) -> np.ndarray:
+def _first_surfaces(model: ModelData) -> np.ndarray:
     """(R + 1,) the global index of each rock mass's oldest surface."""
     return np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
 
 
-def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
+def _cut_at(model: ModelData, k: int) -> list[tuple[int, np.ndarray]]:
     """For each rock mass whose surface k cuts older rock: its global index, and the older blocks."""
     found = []
     first_surfaces = _first_surfaces(model)
@@ -124,7 +125,7 @@ def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
     return found
 
 
-def _bodies_before(model, rock: int, k: int) -> list[int]:
+def _bodies_before(model: ModelData, rock: int, k: int) -> list[int]:
     """The blocks of bodies that were in a rock mass before its surface k."""
     first, times = _first_surfaces(model)[-1] + len(model.structures.faults), model.structures.times
     return [
@@ -134,7 +135,7 @@ def _bodies_before(model, rock: int, k: int) -> list[int]:
     ]
 
 
-def _stage_volumes(work: Work, model, m: int, until: tuple[int, int] | None = None) -> np.ndarray:
+def _stage_volumes(work: Work, model: ModelData, m: int, until: tuple[int, int] | None = None) -> np.ndarray:
     """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
@@ -173,7 +174,7 @@ def _with_bodies(structures: Structures, until: tuple[int, int]) -> Structures:
     return replace(structures, times=times)
 
 
-def _rounding(model, volumes: np.ndarray) -> np.ndarray:
+def _rounding(model: ModelData, volumes: np.ndarray) -> np.ndarray:
     """The rounding error of volumes: of the sums, and of the coordinates of the corners, each a few units in
     the last place."""
     vertices = model.surface_vertices

@@ -12,6 +12,7 @@ import numpy as np
 from ..base.algebra import dot, norm, twice_area
 from ..base.errors import BuildFailed, InputRefused
 from ..base.work import native_module
+from ..cells.model_data import ModelData
 from ..project.region_rings import checked_region, given_rings
 from .booleans import intersect
 from .plan_rings import covers_once, net_edges, polygons_of
@@ -50,7 +51,7 @@ class Ground:
     areas: list[MapArea]
 
 
-def geological_map(model, ground: Ground | None = None) -> list[MapArea]:
+def geological_map(model: ModelData, ground: Ground | None = None) -> list[MapArea]:
     """The areas where each block crops out, by block, then by compartment.
 
     Their polygons are unions of the faces on top, so they share borders vertex by vertex, and together are
@@ -63,7 +64,9 @@ def geological_map(model, ground: Ground | None = None) -> list[MapArea]:
     return (ground_of(model) if ground is None else ground).areas
 
 
-def _areas(model, plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray) -> list[MapArea]:
+def _areas(
+    model: ModelData, plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray
+) -> list[MapArea]:
     """The areas, from the edges of the ground in plan, with the ground to their left, and the cells of each
     edge."""
     of = np.stack([model.cell_block[cell], model.cell_compartment[cell]], axis=1)
@@ -79,7 +82,7 @@ def _areas(model, plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np
     return found
 
 
-def ground_of(model) -> Ground:
+def ground_of(model: ModelData) -> Ground:
     """The top of a model. Raises BuildFailed."""
     triangles, cell, upright = _outside(model)
     plan, vertex = _plan_vertices(model.vertices[:, :2])
@@ -122,9 +125,9 @@ def _apart(plan: np.ndarray) -> np.ndarray:
     return _ROUNDINGS * np.spacing(np.abs(plan).max(axis=0, initial=1.0))
 
 
-def _outside(model):
-    """The faces of the outside as triangles (T, 3), counter-clockwise seen from outside: the face of each
-    (T,), the corners, the cell behind it, and whether the face is upright."""
+def _outside(model: ModelData) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The faces of the outside as triangles (T, 3), counter-clockwise seen from outside; of each
+    (T,) the cell behind it, and whether its face is upright."""
     outside = np.flatnonzero((model.face_cells < 0).any(axis=1))
     turned = model.face_cells[outside, 0] < 0
     offsets, corners = model.face_corners(outside, turned)
@@ -148,7 +151,9 @@ def _edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
 
 
-def _divided(plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray):
+def _divided(
+    plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Edges in plan, divided at vertices that lie on them up to rounding: above and below a step, and on two
     sides of a border of rock masses, there may be different vertices."""
     first, second, _ = net_edges(start, end)  # the others have the same edge beside them
@@ -224,7 +229,9 @@ def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
     return covers_once(plan, polygons)
 
 
-def _highest(model, triangles: np.ndarray, vertex: np.ndarray, plan: np.ndarray, cell: np.ndarray) -> Ground:
+def _highest(
+    model: ModelData, triangles: np.ndarray, vertex: np.ndarray, plan: np.ndarray, cell: np.ndarray
+) -> Ground:
     """As ground_of, for ground with parts above one another: projected and divided along all edges; of pieces
     at the same position the highest."""
     rises = _rises(plan[vertex[triangles]])  # where vertices were joined some do no more

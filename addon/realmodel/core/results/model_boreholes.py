@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.algebra import ranks_in_runs
+from ..cells.model_data import ModelData
 
 _WALL = -1  # face_surface
 
@@ -27,7 +28,7 @@ class Interval:
         return self.top - self.bottom
 
 
-def borehole(model, x: float, y: float) -> list[Interval]:
+def borehole(model: ModelData, x: float, y: float) -> list[Interval]:
     """The blocks along the vertical line at the position (x, y) in plan, from above downward; nothing where
     there is no rock. On the border of two faces one of them counts.
 
@@ -65,7 +66,7 @@ def _merged(found: list[Interval]) -> list[Interval]:
     return merged
 
 
-def _faces_at(model, x: float, y: float) -> np.ndarray:
+def _faces_at(model: ModelData, x: float, y: float) -> np.ndarray:
     """The faces over and under a position that are no walls: a ray to the right leaves them."""
     offsets = model.face_offsets
     corners = model.vertices[model.face_vertices, :2]
@@ -81,7 +82,7 @@ def _faces_at(model, x: float, y: float) -> np.ndarray:
     return face[(times % 2 == 1) & (model.face_surface[face] != _WALL)]
 
 
-def _heights(model, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+def _heights(model: ModelData, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
     """The heights of faces at a position, and whether each faces up out of its first cell."""
     begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
     first = np.repeat(begin, size)

@@ -6,10 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.errors import UsageError
+from ..cells.model_data import ModelData
 from ..fields import ScalarField
+from ..surfaces.rock_input import RockInput
 
 
-def field_of(model, series: str, compartment: str | None) -> ScalarField:
+def field_of(model: ModelData, series: str, compartment: str | None) -> ScalarField:
     """Model.field."""
     found = {own.name: (entry, own) for entry in model.rock_inputs for own in entry.fields}
     if series not in found:
@@ -26,7 +28,7 @@ def field_of(model, series: str, compartment: str | None) -> ScalarField:
     return own.fields[names.index(compartment)]
 
 
-def names_of_compartments(model, entry) -> list[str]:
+def names_of_compartments(model: ModelData, entry: RockInput) -> list[str]:
     """What the compartments of a rock mass are called in a model."""
     names = [name or entry.rock.name for name in entry.divided().names]
     if len(model.rock_inputs) > 1:
@@ -34,7 +36,7 @@ def names_of_compartments(model, entry) -> list[str]:
     return names
 
 
-def local_compartments(model, entry) -> np.ndarray:
+def local_compartments(model: ModelData, entry: RockInput) -> np.ndarray:
     """For each compartment of a model its number in a rock mass; -1 where it is of another."""
     names = names_of_compartments(model, entry)
     known = {name: number for number, name in enumerate(names)}

@@ -9,12 +9,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.algebra import dot, norm
 from ..base.elementary import cos, sin
 from ..base.errors import UsageError
+from ..cells.model_data import ModelData
 from ..notebook import data_frame
-from .section_data import SectionData
+from .sections.section_data import SectionData
 
 if TYPE_CHECKING:
     import pandas
@@ -63,7 +65,7 @@ class HoleAxis:
         tilt = np.radians(self.dip)
         return np.array([*(float(cos(tilt)) * self.heading), -float(sin(tilt))])
 
-    def places(self, depths) -> np.ndarray:
+    def places(self, depths: ArrayLike) -> np.ndarray:
         """(N, 3) where depths (N,) along it are."""
         return np.array(self.collar) + np.asarray(depths, np.float64)[:, None] * self.direction
 
@@ -215,7 +217,7 @@ def contacts_between(intervals: Sequence[HoleInterval], axis: HoleAxis) -> list[
     return found
 
 
-def on_surfaces(model, contacts: Sequence[HoleContact], axis: HoleAxis) -> list[HoleContact]:
+def on_surfaces(model: ModelData, contacts: Sequence[HoleContact], axis: HoleAxis) -> list[HoleContact]:
     """Contacts with the surfaces that they lie on, and the standard deviations of their depths that follow
     from the variances of interpolated heights: a surface that is raised meets the hole farther along it by
     the slope of its triangle there."""

@@ -10,7 +10,7 @@ along the planes of the grid for that, so nothing is sampled.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -20,11 +20,13 @@ from ..base.algebra import ranks_in_runs
 from ..base.errors import UsageError
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module, run
+from ..cells.model_data import ModelData
 from ..heights.true_thickness import Base
 
 MOST_CELLS = 200_000_000
 _AUTOMATIC = 100  # cells along the longest side
 _PAIRS_AT_ONCE = 4_000_000
+CellSize = float | Sequence[float] | np.ndarray | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +47,7 @@ class RegularCells:
         return self.volumes / self.size.prod()
 
 
-def checked_size(model, size: float | Sequence[float] | None) -> np.ndarray:
+def checked_size(model: ModelData, size: CellSize) -> np.ndarray:
     """(3,) the size of cells: of one number that in all directions, of two that in plan and in height;
     None: a
     hundredth of the longest side of the model. Raises UsageError."""
@@ -59,8 +61,8 @@ def checked_size(model, size: float | Sequence[float] | None) -> np.ndarray:
 
 
 def regular_cells(
-    model,
-    size: float | Sequence[float] | None = None,
+    model: ModelData,
+    size: CellSize = None,
     step: Callable[[float], None] = lambda share: None,
 ) -> RegularCells:
     """The volume of each block in each cell of a grid that covers the model; its corners are multiples of the
@@ -96,7 +98,7 @@ def regular_cells(
     return RegularCells(origin, cell, counts, np.maximum(volumes, 0.0) * cell.prod())
 
 
-def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]:
+def frame_of(model: ModelData, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]:
     """The lowest corner of a grid that covers the model, and its numbers of cells along x, y and z."""
     if not len(model.vertices):
         return np.zeros(3), (1, 1, 1)
@@ -106,7 +108,7 @@ def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]
     return low * size, (nx, ny, nz)
 
 
-def _triangles(model, block: int) -> np.ndarray:
+def _triangles(model: ModelData, block: int) -> np.ndarray:
     """(T, 3, 3): the boundary of a block, without vertical triangles."""
     shape = model.block_boundary(block)
     if not len(shape.faces):
@@ -172,7 +174,7 @@ class PlanGrids:
     true_thickness: np.ndarray
 
 
-def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
+def plan_grids(model: ModelData, size: CellSize = None) -> PlanGrids:
     """The plan grids, exact at the centers of cells. size: as of `checked_size`; the height is ignored.
     Raises UsageError."""
     cell_size = checked_size(model, size)
@@ -209,7 +211,7 @@ def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
 
 
 def _true_thickness(
-    work: Work, model, block: int, centers: np.ndarray, heights: tuple[np.ndarray, np.ndarray]
+    work: Work, model: ModelData, block: int, centers: np.ndarray, heights: tuple[np.ndarray, np.ndarray]
 ) -> np.ndarray:
     """(N,) how far the top of a block is from its base at the centers of cells (N, 2); 0 where it is not.
     heights: (N,) of its top, and its vertical thickness."""
@@ -227,7 +229,9 @@ def _true_thickness(
     return found
 
 
-def _over_centers(triangles: np.ndarray, nx: int, ny: int):
+def _over_centers(
+    triangles: np.ndarray, nx: int, ny: int
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """In pieces: numbers of cells whose center lies under or over a triangle, the triangle's height there,
     and 1
     where it is seen from above, else -1. A center on an edge that two triangles share belongs to one of

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.work import Cancel, Progress, Work, run
+from ..cells.model_data import ModelData
 from ..heights import Task
 from ..heights.cross_validation import CrossValidation, distinct_points, validate
 from ..plots import smallest_angles
@@ -38,7 +40,11 @@ class SurfaceQuality:
 
 
 def surface_quality(
-    model, number: int, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+    model: ModelData,
+    number: int,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> SurfaceQuality:
     """The quality of a surface of a model, by its global index. Raises InputRefused, Cancelled."""
 
@@ -61,7 +67,7 @@ def surface_quality(
     return run(task, progress, cancel, threads=threads)
 
 
-def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation | None, str]:
+def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossValidation | None, str]:
     """Cross-validation by the method of the heights, or the reason why there is none."""
     result = model.interpolations[number]
     if result is None:
@@ -78,7 +84,7 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
     ]
     if others:
         return None, f"its heights follow another surface ({others[0]})"
-    points = np.empty((0, 3)) if surface.points is None else surface.points
+    points = surface.point_array()
     if len(points) < 2 or len(distinct_points(points)) < 2:
         return None, "it takes two points or more"
     vertices, triangles = model.surface(number)
@@ -101,7 +107,7 @@ def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation |
         return None, str(error)
 
 
-def _of_rock(model, number: int, find: Callable):
+def _of_rock(model: ModelData, number: int, find: Callable) -> Any:
     """What companions_of or alike_of finds for a surface, by its number in the model."""
     for rock in model.project.rocks:
         if number < len(rock.surfaces):
@@ -110,7 +116,9 @@ def _of_rock(model, number: int, find: Callable):
     return None
 
 
-def _deviation(vertices, triangles, variance) -> tuple[float | None, float | None]:
+def _deviation(
+    vertices: np.ndarray, triangles: np.ndarray, variance: np.ndarray
+) -> tuple[float | None, float | None]:
     """The mean over the area, and the maximum, of the square root of the variances (V,)."""
     deviation = np.sqrt(np.maximum(variance, 0.0))
     corners = deviation[triangles]

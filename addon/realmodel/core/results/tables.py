@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.packages import extra
+from ..cells.model_data import ModelData
 from ..notebook import data_frame
+from .model_boreholes import borehole
 from .regular_cells import plan_grids
 
 if TYPE_CHECKING:
@@ -20,7 +23,7 @@ _BLOCK = ("name", "rock", "surface", "property", "property_name", "volume", "sha
 _INTERVAL = ("block", "name", "property", "top", "bottom", "length")
 
 
-def block_entry(model, number: int, total: float) -> dict:
+def block_entry(model: ModelData, number: int, total: float) -> dict:
     """What is known of a block, by the names of the report. total: the volume of all blocks."""
     block, library = model.blocks[number], model.project.library
     entry = library.get(block.property) if library else None
@@ -37,7 +40,7 @@ def block_entry(model, number: int, total: float) -> dict:
     }
 
 
-def block_table(model) -> pandas.DataFrame:
+def block_table(model: ModelData) -> pandas.DataFrame:
     """The blocks, a row for each, from the oldest of each rock mass: `name`, `rock`, `surface` (that it was
     deposited beneath), `property` (library id, 0: none), `property_name`, `volume` (model units cubed),
     `share` of the volume of all blocks (from 0 to 1), `cells`, `components` (connected parts). The index
@@ -57,7 +60,7 @@ def block_table(model) -> pandas.DataFrame:
     return data_frame(rows, _BLOCK).rename_axis("block")
 
 
-def borehole_table(model, x: float, y: float) -> pandas.DataFrame:
+def borehole_table(model: ModelData, x: float, y: float) -> pandas.DataFrame:
     """The intervals of `borehole` at the position (x, y), a row for each, from above downward: `block` (its
     number), `name`, `property` (library id, 0: none), and `top`, `bottom` and `length`, model units.
 
@@ -78,12 +81,12 @@ def borehole_table(model, x: float, y: float) -> pandas.DataFrame:
             "bottom": each.bottom,
             "length": each.length,
         }
-        for each in model.borehole(x, y)
+        for each in borehole(model, x, y)
     ]
     return data_frame(rows, _INTERVAL)
 
 
-def map_dataset(model, cell_size: float | Sequence[float] | None = None) -> xarray.Dataset:
+def map_dataset(model: ModelData, cell_size: float | Sequence[float] | None = None) -> xarray.Dataset:
     """Maps of the model at the centers of cells in plan, exact there, as a Dataset of xarray: `elevation`
     (y, x) of the highest rock, NaN where there is none; `top` (block, y, x) of each block, NaN where it is
     not; `thickness` (block, y, x), 0 where it is not, of all its parts over the place together;
@@ -103,7 +106,9 @@ def map_dataset(model, cell_size: float | Sequence[float] | None = None) -> xarr
     rows, columns = grids.top.shape
     units = {"units": model.project.units}
 
-    def variable(names: tuple[str, ...], values, title: str, attrs=units) -> tuple:
+    def variable(
+        names: tuple[str, ...], values: ArrayLike, title: str, attrs: dict[str, str] = units
+    ) -> tuple:
         return names, values, {"long_name": title, **attrs}
 
     plan, stack = ("y", "x"), ("block", "y", "x")

@@ -6,9 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.work import native_module
+from ..cells.model_data import ModelData
 
 
-def volume_deviations(model) -> np.ndarray:
+def volume_deviations(model: ModelData) -> np.ndarray:
     """(B,) float64: what the standard deviation of each block's volume is at most, model units cubed; NaN
     where no surface of known variance bounds the block.
 
@@ -45,7 +46,7 @@ def volume_deviations(model) -> np.ndarray:
     return found
 
 
-def plan_areas(model) -> np.ndarray:
+def plan_areas(model: ModelData) -> np.ndarray:
     """(F,) float64: the areas of a model's faces seen from above."""
     if not len(model.face_vertices):
         return np.zeros(0)
@@ -55,14 +56,14 @@ def plan_areas(model) -> np.ndarray:
     return np.abs(np.add.reduceat(doubled, first)) / 2
 
 
-def _middles(model) -> np.ndarray:
+def _middles(model: ModelData) -> np.ndarray:
     """(F, 2) float64: the mean of the corners of each face in plan."""
     first, counts = model.face_offsets[:-1], np.diff(model.face_offsets)
     x, y = (np.add.reduceat(values, first) / counts for values in _plan(model))
     return np.column_stack([x, y]) + model.vertices[0, :2]
 
 
-def _plan(model) -> tuple[np.ndarray, np.ndarray]:
+def _plan(model: ModelData) -> tuple[np.ndarray, np.ndarray]:
     """x and y of the corners of all faces, relative to the first vertex."""
     plan = model.vertices[:, :2] - model.vertices[:1, :2]
     x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))

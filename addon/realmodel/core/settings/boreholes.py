@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from .method_options import OptionRefused
 from .point_file import check_name, check_units
@@ -76,7 +77,7 @@ class Boreholes:
         check_units(self.units)
 
 
-def check_column_names(columns, known: Sequence[str]) -> None:
+def check_column_names(columns: Any, known: Sequence[str]) -> None:
     """Refuses columns that are no table of names or numbers by known meanings. Raises OptionRefused."""
     if not isinstance(columns, Mapping):
         what = f"'columns' must be a table of column names, not {columns!r}"

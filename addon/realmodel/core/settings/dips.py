@@ -6,8 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, place_text
 from .field_table import FieldTable
@@ -210,14 +212,14 @@ def _in_use(dips: Dips | SpaceDips) -> np.ndarray:
     return np.ones(len(dips), bool) if dips.used is None else np.asarray(dips.used, bool)
 
 
-def _checked_use(used, count: int) -> np.ndarray | None:
+def _checked_use(used: Any, count: int) -> np.ndarray | None:
     given = None if used is None else np.ascontiguousarray(used, bool)
     if given is not None and given.shape != (count,):
         raise InputRefused(f"{count} dips have {given.size} of 'used'", item="dips")
     return given
 
 
-def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
+def _floats(values: ArrayLike, shape: tuple[int, ...], item: str) -> np.ndarray:
     try:
         array = np.ascontiguousarray(values, np.float64)
     except (TypeError, ValueError) as error:
@@ -227,7 +229,7 @@ def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
     return array
 
 
-def _texts(names, count: int, item: str) -> np.ndarray:
+def _texts(names: Any, count: int, item: str) -> np.ndarray:
     array = np.asarray(names, str)
     if array.shape != (count,):
         raise InputRefused(f"must be {count} names, one for each dip, not {array.shape}", item=item)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ COMPASS = {name: 45.0 * number for number, name in enumerate(("N", "NE", "E", "S
 _QUARTERS = ((0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0))
 
 
-def checked_direction(option: str, value) -> float | str | None:
+def checked_direction(option: str, value: Any) -> float | str | None:
     """A direction as it is used: degrees, or a key of COMPASS. Raises OptionRefused."""
     if value is None:
         return None

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError
 from ..base.finite import is_number
@@ -17,12 +19,12 @@ _SIZE_KEYS = ("at", "length", "distance")
 _AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
 
 
-def check_mesher(mesher) -> None:
+def check_mesher(mesher: object) -> None:
     if mesher not in MESHERS:
         raise UsageError(f"mesher {mesher!r} is unknown; use {', '.join(map(repr, MESHERS))}")
 
 
-def edge_length_fault(edge_length) -> str | None:
+def edge_length_fault(edge_length: Any) -> str | None:
     """The error in an edge length, "auto" included, or None."""
     if isinstance(edge_length, str) and edge_length == AUTO:
         return None
@@ -31,13 +33,13 @@ def edge_length_fault(edge_length) -> str | None:
     return f"edge_length must be a finite number above 0 or '{AUTO}', not {edge_length!r}"
 
 
-def triangles_fault(triangles) -> str | None:
+def triangles_fault(triangles: Any) -> str | None:
     """The error in a number of triangles, or None."""
     whole = is_number(triangles) and float(triangles).is_integer()
     return None if whole and triangles >= 1 else f"triangles must be a whole number from 1, not {triangles!r}"
 
 
-def size_of_edges(edge_length, triangles, points) -> tuple[float, float, np.ndarray | None]:
+def size_of_edges(edge_length: Any, triangles: Any, points: Any) -> tuple[float, float, np.ndarray | None]:
     """(edge length or 0, number of triangles or 0, points (P, 2) whose density counts or None)."""
     if edge_length is None and triangles is None:
         raise InputRefused("edge_length or triangles must be given")
@@ -66,7 +68,7 @@ def local_lengths(size: Iterable[Mapping], lines: list[np.ndarray], points: np.n
     return entries
 
 
-def _places_at(entry, item: str, lines: list[np.ndarray], points: np.ndarray | None) -> list:
+def _places_at(entry: Any, item: str, lines: list[np.ndarray], points: np.ndarray | None) -> list:
     if not isinstance(entry, Mapping) or set(entry) != set(_SIZE_KEYS):
         raise InputRefused(f"needs exactly {', '.join(_SIZE_KEYS)}, not {entry!r}", item=item)
     if not (is_number(entry["length"]) and entry["length"] > 0):
@@ -87,7 +89,7 @@ def _places_at(entry, item: str, lines: list[np.ndarray], points: np.ndarray | N
     return [places_of([at] if is_one else at, f"{item}, at")]
 
 
-def places_of(places, item: str, least: int = 1) -> np.ndarray:
+def places_of(places: ArrayLike, item: str, least: int = 1) -> np.ndarray:
     """(N, 2) float64 of places (N, 2) or (N, 3), N >= least. Raises InputRefused."""
     try:
         array = np.asarray(places, np.float64)

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -15,21 +16,21 @@ from .setting import Setting, Settings
 class OptionRefused(InputRefused):
     """A setting is not as it must be; `option` is its name, for the line in a file."""
 
-    def __init__(self, what: str, option: str | None = None, advice: str | None = None, **where):
+    def __init__(self, what: str, option: str | None = None, advice: str | None = None, **where: Any):
         super().__init__(what, advice=advice, **where)
         self.option = option
 
 
-def _is_whole(value) -> bool:
+def _is_whole(value: object) -> bool:
     return hasattr(value, "__index__") and not isinstance(value, (bool, np.bool_))
 
 
-def is_name(value) -> bool:
+def is_name(value: object) -> bool:
     """Whether a value may name something."""
     return isinstance(value, str) and bool(value.strip()) and not any(ord(c) < 32 for c in value)
 
 
-def checked(option: str, setting: Setting, value):
+def checked(option: str, setting: Setting, value: Any) -> Any:
     """The value of a setting as it is used. Raises OptionRefused."""
     if setting.check is not None:
         return setting.check(option, value)
@@ -58,7 +59,7 @@ def checked(option: str, setting: Setting, value):
     return number(option, setting, value)
 
 
-def number(option: str, setting: Setting, value) -> float:
+def number(option: str, setting: Setting, value: Any) -> float:
     name = option.rpartition(".")[2]
     try:
         given = float(value) if not isinstance(value, (bool, str)) else math.nan
@@ -78,7 +79,7 @@ def number(option: str, setting: Setting, value) -> float:
     return given
 
 
-def surface(option: str, value):
+def surface(option: str, value: Any) -> Any:
     """Another surface: a height, its name in a project, heights at the nodes (N,), or a triangulated surface
     (vertices (V, 3), triangles (T, 3))."""
     if value is None:
@@ -108,7 +109,7 @@ def surface(option: str, value):
     return number(option, Setting(), value)
 
 
-def _word(option: str, setting: Setting, value) -> str:
+def _word(option: str, setting: Setting, value: Any) -> str:
     if not isinstance(value, str) or value not in setting.words:
         choices = "' or '".join(setting.words)
         name = option.rpartition(".")[2]
@@ -116,7 +117,7 @@ def _word(option: str, setting: Setting, value) -> str:
     return value
 
 
-def table(option: str, parts: Settings, value) -> dict:
+def table(option: str, parts: Settings, value: Any) -> dict:
     """The values of a table by its parts; those without a default are needed. Raises OptionRefused."""
     if not isinstance(value, Mapping):
         shape = ", ".join(f"{key} = ..." for key in parts)
@@ -137,13 +138,13 @@ def table(option: str, parts: Settings, value) -> dict:
     return {key: given for key, given in found.items() if given is not None}
 
 
-def variogram(parts: Settings, structure: Settings):
+def variogram(parts: Settings, structure: Settings) -> Callable[[str, Any], Any]:
     """The check of a variogram: {model, range, sill, nugget}, or {nugget, structures = [{model, range, sill,
     anisotropy}, ...]} for a nested one; a Variogram found by an earlier interpolation is taken as well. None:
     to be fitted."""
     nested = {"nugget": parts["nugget"], "structures": Setting(check=lambda *given: structures(*given))}
 
-    def structures(option: str, value) -> list[dict]:
+    def structures(option: str, value: Any) -> list[dict]:
         if not isinstance(value, (list, tuple)) or not value:
             raise OptionRefused(
                 f"'{option}' must be a list of tables",
@@ -152,7 +153,7 @@ def variogram(parts: Settings, structure: Settings):
             )
         return [table(option, structure, entry) for entry in value]
 
-    def check(option: str, value) -> dict | None:
+    def check(option: str, value: Any) -> dict | None:
         if value is None:
             return None
         if hasattr(value, "settings"):
@@ -171,7 +172,7 @@ def variogram(parts: Settings, structure: Settings):
     return check
 
 
-def check_threads(threads) -> int:
+def check_threads(threads: Any) -> int:
     """The number of threads: 0 for as many as the machine has."""
     if not _is_whole(threads) or int(threads) < 0:
         raise UsageError(f"threads must be a whole number from 0 (all that there are), not {threads!r}")

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ..base.units import METERS, factors
 from .method_options import OptionRefused
@@ -112,12 +113,12 @@ class MeshFile:
         return plan, -height if self.z_axis == "down" else height
 
 
-def list_of(value) -> list:
+def list_of(value: Any) -> list:
     """A value, or a list of values, as a list."""
     return list(value) if isinstance(value, (list, tuple)) else [value]
 
 
-def check_columns(columns) -> None:
+def check_columns(columns: Any) -> None:
     said = "'columns' must be the names or numbers of three columns"
     advice = 'write columns = ["X", "Y", "Z"]'
     if not isinstance(columns, (list, tuple)) or len(columns) != 3:
@@ -129,7 +130,7 @@ def check_columns(columns) -> None:
             raise OptionRefused(f"{said}, not {column!r}", "columns", "column numbers start at 1")
 
 
-def check_where(where) -> None:
+def check_where(where: Any) -> None:
     advice = "write where = { val = 60 }"
     if not isinstance(where, Mapping):
         raise OptionRefused(f"'where' must be a table of columns and values, not {where!r}", "where", advice)
@@ -145,7 +146,7 @@ def check_name(key: str, name: object) -> None:
         raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
 
 
-def check_units(units) -> None:
+def check_units(units: object) -> None:
     parts = dict(units) if isinstance(units, Mapping) else {"xy": units}
     for part, unit in parts.items():
         if part not in ("xy", "z"):
@@ -155,12 +156,12 @@ def check_units(units) -> None:
             raise OptionRefused(f"unknown unit {unit!r}", "units", f"there are {', '.join(METERS)}")
 
 
-def check_z_axis(axis) -> None:
+def check_z_axis(axis: object) -> None:
     if axis not in ("up", "down"):
         raise OptionRefused(f'\'z_axis\' must be "up" or "down", not {axis!r}', "z_axis")
 
 
-def _is_value(value) -> bool:
+def _is_value(value: object) -> bool:
     if isinstance(value, str):
         return True
     if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -2,6 +2,9 @@
 """The settings of a project, a rock mass, a surface and the reading of files (setting.py says what follows).
 Those of kind "other" are read, checked and shown by code of their own; so are parts of some more."""
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 from ..base.units import METERS, UNIT_NAMES
 from .crs import checked_crs
 from .directions import checked_direction
@@ -16,14 +19,14 @@ from .setting import Setting
 _OTHER = Setting(kind="other")  # with its row in the document alone
 
 
-def _labels(registry):
+def _labels(registry: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
     return {name: (entry.label, entry.tip) for name, entry in registry.items()}
 
 
-def _without(fault):
+def _without(fault: Callable[[Any], str | None]) -> Callable[[str, Any], Any]:
     """The check of a value that `fault` finds nothing wrong with."""
 
-    def check(key, value):
+    def check(key: str, value: Any) -> Any:
         if value is not None and (what := fault(value)):
             raise OptionRefused(what, option=key)
         return value

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..base.finite import is_number
 
 AUTO = "auto"  # a resolution by the data
@@ -18,7 +20,7 @@ KINDS = {
 SHEET_METHODS = ("kriging", "universal_kriging", "dsi")  # by which sheets are interpolated together
 
 
-def resolution_fault(resolution) -> str | None:
+def resolution_fault(resolution: Any) -> str | None:
     """The error in a resolution, "auto" included, or None."""
     if isinstance(resolution, str) and resolution == AUTO:
         return None

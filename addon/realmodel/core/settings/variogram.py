@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.units import number_text
 
@@ -123,7 +124,7 @@ class Variogram:
         assert self.lags is not None and self.gamma is not None and self.pairs is not None
         return self.lags, self.gamma, self.pairs
 
-    def semivariance(self, distance) -> np.ndarray:
+    def semivariance(self, distance: ArrayLike) -> np.ndarray:
         """gamma at each `distance`, (N,) float64, in the direction of the longest range; to draw it beside
         `lags` and `gamma`."""
         distance = np.asarray(distance, np.float64)

@@ -11,6 +11,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
 from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.model_data import ModelData
 from ..settings.method_options import check_threads
 from .volume_mesh import PolyhedralMesh, model_arrays
 from .volume_warnings import changed_volumes
@@ -37,7 +38,7 @@ class CleanedCells(PolyhedralMesh):
 
 
 def cleaned_cells(
-    model,
+    model: ModelData,
     tolerance: float,
     *,
     threads: int = 0,
@@ -78,7 +79,7 @@ def cleaned_cells(
     return run(task, progress, cancel, threads=threads)
 
 
-def _assembled(model, tolerance: float, made: dict) -> CleanedCells:
+def _assembled(model: ModelData, tolerance: float, made: dict) -> CleanedCells:
     exact = PolyhedralMesh.of_model(model)
     assert exact.cell_compartment is not None  # that of a model has them
     return CleanedCells(

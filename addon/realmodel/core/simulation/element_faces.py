@@ -136,7 +136,7 @@ class ElementFaces:
             )
         return sets
 
-    def _part(self, shape: str, numbers: np.ndarray):
+    def _part(self, shape: str, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         faces = self._of[shape]
         rows = faces.first[numbers]
         return faces.corners[rows], faces.element[rows], faces.side[rows]
@@ -177,7 +177,7 @@ class _Faces:
             np.where(later, self.first, self.second),
         )
 
-    def _key(self, corners: np.ndarray):
+    def _key(self, corners: np.ndarray) -> np.ndarray:
         """A number for each face: the same for the same three lowest corners. A conforming mesh has no two
         faces of one shape with these in common."""
         low = np.sort(corners, axis=1).astype(np.int64)

@@ -6,13 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.work import Work, native_module
+from ..cells.model_data import ModelData
 from .native_call import call_native
 from .volume_mesh import model_arrays
 
 _FAULT = 1  # of surface_kind
 
 
-def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[tuple]) -> dict:
+def filled(work: Work, model: ModelData, edge_length: float, tolerance: float, sizes: list[tuple]) -> dict:
     """Tetrahedra of a model: points (P, 3), corners (E, 4), block and compartment (E,), triangles (F, 3)
     outside, between blocks or compartments and on faults, and surface (F,) of these.
 

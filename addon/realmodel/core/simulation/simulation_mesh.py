@@ -12,6 +12,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.model_data import ModelData
 from ..settings.mesh_sizes import check_mesher, local_lengths
 from ..settings.method_options import check_threads
 from ..surfaces.planar_mesh import MeshOptions, mesh_rings
@@ -44,7 +45,7 @@ class SimulationMesh(VolumeMesh):
 
 
 def simulation_mesh(
-    model,
+    model: ModelData,
     edge_length: float,
     minimum_thickness: float,
     layers: int | Mapping[str, int] | Sequence[int] | None = None,
@@ -124,7 +125,9 @@ def simulation_mesh(
     return run(task, progress, cancel, threads=threads)
 
 
-def _filled(work: Work, model, edge_length: float, minimum_thickness: float, sizes) -> SimulationMesh:
+def _filled(
+    work: Work, model: ModelData, edge_length: float, minimum_thickness: float, sizes: list[tuple]
+) -> SimulationMesh:
     """The mesh of a model without columns."""
     with work.phase(0.0, 1.0, "filling with tetrahedra"):
         made = filled(work, model, edge_length, minimum_thickness, sizes)
@@ -148,7 +151,7 @@ def _check_without_columns(what: str, elements: str, has_layers: bool) -> None:
         raise UsageError(f"layers and layer_thickness are for meshes of columns; {what} has none")
 
 
-def _check_thinnest(model, minimum_thickness: float) -> None:
+def _check_thinnest(model: ModelData, minimum_thickness: float) -> None:
     largest = float(np.abs(model.vertices).max(initial=0.0))
     if minimum_thickness < _THINNEST * largest:
         raise UsageError(
@@ -157,7 +160,9 @@ def _check_thinnest(model, minimum_thickness: float) -> None:
         )
 
 
-def layer_numbers(model, layers, layer_thickness) -> list[int]:
+def layer_numbers(
+    model: ModelData, layers: int | Mapping[str, int] | Sequence[int] | None, layer_thickness: float | None
+) -> list[int]:
     """How many layers each block is divided into, at most; 0: as many as it takes. Raises UsageError."""
     names = [block.name for block in model.blocks]
     if layers is None:
@@ -181,7 +186,7 @@ def layer_numbers(model, layers, layer_thickness) -> list[int]:
     return [int(value) for value in given]
 
 
-def _without_columns(model) -> str | None:
+def _without_columns(model: ModelData) -> str | None:
     """The reason why the model has no columns, or None."""
     if model.is_cut:
         return "a cut model"
@@ -211,7 +216,7 @@ def _of_plan(sizes: list[tuple], inner: list[np.ndarray]) -> list[Mapping]:
     return entries + of_inner  # so that messages have the numbers of the entries that were given
 
 
-def _assembled(model, made: dict, wanted: str, layers: list[int]) -> SimulationMesh:
+def _assembled(model: ModelData, made: dict, wanted: str, layers: list[int]) -> SimulationMesh:
     elements = {kind: made[kind] for kind in ("tetrahedron", "pyramid", "prism") if len(made[kind]["block"])}
     faces = {kind: made[kind] for kind in ("triangle", "quadrilateral") if len(made[kind][1])}
     if wanted == "tetrahedra" and elements:
@@ -248,7 +253,7 @@ def _assembled(model, made: dict, wanted: str, layers: list[int]) -> SimulationM
     )
 
 
-def _divided_blocks(model, asked: list[int], layers: list[int]) -> list[BuildWarning]:
+def _divided_blocks(model: ModelData, asked: list[int], layers: list[int]) -> list[BuildWarning]:
     """A warning for each block that was divided although nothing was said about layers."""
     return [
         BuildWarning(
@@ -262,7 +267,9 @@ def _divided_blocks(model, asked: list[int], layers: list[int]) -> list[BuildWar
     ]
 
 
-def _skewed_faces(model, count: int, most: float, place: tuple, tall: list[int]) -> list[BuildWarning]:
+def _skewed_faces(
+    model: ModelData, count: int, most: float, place: tuple, tall: list[int]
+) -> list[BuildWarning]:
     """A warning about faces whose skewness is above the limit of OpenFOAM's checkMesh."""
     if not count:
         return []
@@ -275,7 +282,7 @@ def _skewed_faces(model, count: int, most: float, place: tuple, tall: list[int])
     return [BuildWarning(f"{text}: checkMesh fails them; {advice}", "mesh_skewness")]
 
 
-def _of_tetrahedra(model, made: dict) -> SimulationMesh:
+def _of_tetrahedra(model: ModelData, made: dict) -> SimulationMesh:
     sizes = tetrahedron_volumes(made["points"], made["corners"])
     volumes = np.bincount(made["block"], sizes, minlength=len(model.blocks))
     return SimulationMesh(
@@ -293,7 +300,7 @@ def _of_tetrahedra(model, made: dict) -> SimulationMesh:
     )
 
 
-def _names(model) -> dict:
+def _names(model: ModelData) -> dict:
     return {
         "block_names": [block.name for block in model.blocks],
         "block_property": np.array([block.property for block in model.blocks], np.int32),

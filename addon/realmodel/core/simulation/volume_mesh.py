@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..cells.model_data import ModelData
 from ..notebook import ShortRepr, VtkCells, polyhedron_grid, volume_grid
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ class PolyhedralMesh(ShortRepr):
     surface_kind: np.ndarray
     cell_compartment: np.ndarray | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.cell_compartment is None:
             object.__setattr__(self, "cell_compartment", np.zeros(len(self.cell_block), np.int32))
 
@@ -160,7 +161,7 @@ class PolyhedralMesh(ShortRepr):
         )
 
     @classmethod
-    def of_model(cls, model) -> PolyhedralMesh:
+    def of_model(cls, model: ModelData) -> PolyhedralMesh:
         """The exact cells of a model; arrays are shared, not copied."""
         return cls(
             model.vertices,
@@ -177,7 +178,7 @@ class PolyhedralMesh(ShortRepr):
         )
 
 
-def model_arrays(model) -> dict[str, np.ndarray]:
+def model_arrays(model: ModelData) -> dict[str, np.ndarray]:
     """The arrays of a model's cells, as native functions take them."""
     return {
         name: getattr(model, name)

@@ -6,11 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.build_warning import BuildWarning
+from ..cells.model_data import ModelData
 
 _MOST_CHANGE = 0.1  # of a block's volume, without a warning
 
 
-def changed_volumes(model, volumes: np.ndarray, advice: str) -> list[BuildWarning]:
+def changed_volumes(model: ModelData, volumes: np.ndarray, advice: str) -> list[BuildWarning]:
     """A warning for each block whose volume in a mesh, (B,), differs by more than a tenth."""
     return [
         BuildWarning(

@@ -32,6 +32,17 @@ def warn_of_lacks(entry: RockInput, series: Series, lacks: list[str], compartmen
     entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
 
 
+def warn_of_direction(entry: RockInput, series: Series, compartments: list[str]) -> None:
+    """Adds the warning that compartments, by their names, have no dips, which alone say in which direction
+    rock of one surface gets younger."""
+    what = "compartment" if len(compartments) == 1 else "compartments"
+    text = (
+        f"{series.item}: {what} {number_list(compartments, _LISTED)} without dips: those of the others say "
+        "in which direction the rock gets younger there; give one"
+    )
+    entry.warnings.append(BuildWarning(text, "dips", entry.rock.name))
+
+
 def leave_out(entry: RockInput, series: Series, data: SeriesData, field: SolvedField) -> None:
     """Lists bounds that are left out of a field, with what they contradict; those of one observation once.
     Warns of them."""

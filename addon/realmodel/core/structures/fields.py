@@ -22,7 +22,7 @@ from ..fields import (
     within_lattice,
 )
 from ..fields.series_field import SeriesField
-from ..project.series import Series, members
+from ..project.series import Series
 from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
@@ -31,6 +31,7 @@ from .field_warnings import (
     leave_out,
     warn_of_contacts,
     warn_of_critical_points,
+    warn_of_direction,
     warn_of_field,
     warn_of_lacks,
     within_rock,
@@ -69,7 +70,7 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
     surfaces the level sets of these. Raises InputRefused."""
     for entry in work.share_out(inputs):
         given = [series for series in entry.rock.series if series.kind == FIELD]
-        waiting = [each for each in given if stage is None or members(entry.rock, each)[0] <= stage]
+        waiting = [each for each in given if stage is None or entry.rock.members(each)[0] <= stage]
         entry.fields = []
         top = _top_of_fields(entry) if waiting else 0.0
         for series in work.share_out(waiting):
@@ -84,11 +85,11 @@ def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:
     """The data and the lattice of each series of a rock mass, which is read, whose surfaces are level sets;
     as far as they are known before other surfaces are made. Raises InputRefused."""
     given = [series for series in entry.rock.series if series.kind == FIELD]
-    waiting = [series for series in given if members(entry.rock, series)]
+    waiting = [series for series in given if entry.rock.members(series)]
     top = _top(entry) if waiting else 0.0
     found = []
     for series in waiting:
-        data = SeriesData.of(entry, series, members(entry.rock, series))
+        data = SeriesData.of(entry, series, entry.rock.members(series))
         found.append((data, _lattice(entry, series, data.positions(), top)))
     return found
 
@@ -120,7 +121,7 @@ def _top(entry: RockInput, beyond: float = _BEYOND) -> float:
 
 
 def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> SeriesField:
-    numbers = members(entry.rock, series)
+    numbers = entry.rock.members(series)
     lattice = _lattice(entry, series, SeriesData.of(entry, series, numbers).positions(), top)
     data = SeriesData.of(entry, series, numbers, _PLACES * lattice.spacing[0])
     structure = entry.divided()
@@ -130,10 +131,8 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     draws = entry.field_draws.get(series.name)
     for number, family in enumerate(work.share_out(_families(entry, series, numbers))):
         within = Within(work, structure, numbers[-1], family)
-        chosen = within.has(sides)
-        if lacks := data.some(chosen).missing(data):
-            chosen = np.ones(len(sides), bool)
-            warn_of_lacks(entry, series, lacks, [structure.names[each] for each in family.members])
+        names = [structure.names[each] for each in family.members]
+        chosen = _chosen(entry, series, data, within.has(sides), names)
         own = data.some(chosen)
         with naming(f"{entry.rock.item}, {series.item}"):
             slits = Slits.of(entry, family, within, lattice)
@@ -158,6 +157,21 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     warn_of_critical_points(entry, series, points[within_rock(work, entry, points)])
     of_compartment = [fields[number] for number in range(len(structure.compartments))]
     return SeriesField(series.name, numbers[0], len(numbers), of_compartment, top)
+
+
+def _chosen(
+    entry: RockInput, series: Series, data: SeriesData, here: np.ndarray, names: list[str]
+) -> np.ndarray:
+    """(N,) bool: the data that the field of compartments, by their names, is made of: those `here`, with a
+    warning more where these do not say enough."""
+    own = data.some(here)
+    if lacks := own.missing(data):
+        warn_of_lacks(entry, series, lacks, names)
+        return np.ones(len(here), bool)
+    if len(data.numbers) == 1 and len(data.dips) and not len(own.dips):
+        warn_of_direction(entry, series, names)
+        return here | data.of_dips()
+    return here
 
 
 class _Solved(NamedTuple):

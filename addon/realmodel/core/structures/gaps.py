@@ -16,6 +16,7 @@ from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.triangles import edge_lengths
 from ..base.work import Work
+from ..project.project import Rock
 from ..project.structure_entries import Fault
 from ..settings.rules import RULES
 from ..surfaces.planar_mesh import triangulate_rings
@@ -119,7 +120,7 @@ def close_gaps(
     return faults, warnings
 
 
-def tops_of_faults(structures: Structures, number: int, rock) -> set[int]:
+def tops_of_faults(structures: Structures, number: int, rock: Rock) -> set[int]:
     """Of one rock mass the surfaces whose sheets are made before close_gaps looks at them: the youngest ones
     that faults displace, those that cut them later, what these need, and ready meshes."""
     youngest = [displaced[number] for displaced in structures.displaced if number in displaced]
@@ -146,7 +147,7 @@ class _Around:
         self.looked_at: tuple[Fault, _Samples] | None = None  # the last fault, and the places on its border
 
     def closed(
-        self, fault: Fault, ends: list[Fault], box, has_sheets: bool
+        self, fault: Fault, ends: list[Fault], box: np.ndarray, has_sheets: bool
     ) -> tuple[Fault, list[BuildWarning]]:
         """The fault, continued where its border all but reaches the end of the rock, and warnings."""
         if fault.dies_out and not ends:
@@ -173,7 +174,7 @@ class _Around:
         )
 
     def _looked_at(
-        self, fault: Fault, border: Border, conditions: _Conditions, box, ends: list[Fault]
+        self, fault: Fault, border: Border, conditions: _Conditions, box: np.ndarray, ends: list[Fault]
     ) -> _Samples:
         """Places on the border. A side of it is near the end of the rock if most of what it has inside is. A
         fault that dies out may end near walls and surfaces: it only reaches those at which it ends."""
@@ -274,7 +275,7 @@ class _Around:
     def _heights(self, sheet: Sheet, points: np.ndarray) -> np.ndarray:
         return heights_at(self.work, sheet, points[:, :2])
 
-    def require_end(self, fault: Fault, ends: list[Fault], box, has_sheets: bool) -> None:
+    def require_end(self, fault: Fault, ends: list[Fault], box: np.ndarray, has_sheets: bool) -> None:
         """Refuses a fault whose border certainly ends inside the rock. Raises InputRefused."""
         if fault.dies_out or self.structures.bodies:  # it may end inside a body
             return
@@ -356,7 +357,7 @@ def _smoothed(vertices: np.ndarray, border: Border, width: float) -> np.ndarray:
     return way
 
 
-def _spread(vertices: np.ndarray, border: Border, width: float):
+def _spread(vertices: np.ndarray, border: Border, width: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points (N, 3) on a border, the number (N,) of the edge of each, and the length (N,) that it stands
     for."""
     begin, end = vertices[border.edges].transpose(1, 0, 2)

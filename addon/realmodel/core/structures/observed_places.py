@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..base.algebra import norm
@@ -18,6 +20,10 @@ from .parts.parts import Structures
 
 # Of an edge length of the planar mesh, or of the lattice of a field alone.
 _NEAR = 0.25  # nearer to a fault, a boundary between blocks may be the fault
+
+
+# of places (N, 3) those in faults (N, F) and in bodies (N, B)
+SidesOf = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockInput]) -> None:
@@ -70,7 +76,7 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
     return work.native(native_module().structure_sides, given, np.ascontiguousarray(places)) < 0
 
 
-def _parted(observations: Observations, reach: float, sides) -> np.ndarray:
+def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
     """(N,) bool: places without a hole where blocks meet, as on a map, and a fault or the border of a body
     passes nearer in plan than `reach`: it may be this that divides them. sides: as of _off_structures."""
     alone = np.flatnonzero(observations.holes == "")
@@ -91,7 +97,7 @@ def _parted(observations: Observations, reach: float, sides) -> np.ndarray:
     return parted
 
 
-def _off_structures(observations: Observations, reach: float, sides) -> np.ndarray:
+def _off_structures(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
     """(N, 3) the places of observations. Where two intervals of a hole meet, and a fault or the border of a
     body passes nearer than `reach` along the hole, it may be this that divides them: no surface is known to
     be there, and both ends move into their intervals by that much.

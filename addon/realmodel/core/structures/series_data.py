@@ -101,6 +101,11 @@ class SeriesData:
         """(C + D + B, 3) the places of contacts, dips and bounds."""
         return np.concatenate([self.contacts, self.dips, self.bounds])
 
+    def of_dips(self) -> np.ndarray:
+        """(C + D + B,) bool: the rows of dips."""
+        counts = len(self.contacts), len(self.dips), len(self.bounds)
+        return np.repeat([False, True, False], counts)
+
     def missing(self, all_data: SeriesData) -> list[str]:
         """The names of the surfaces of which there are contacts in all data, but not here."""
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()

@@ -16,7 +16,6 @@ from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
-from ..project.series import has_fields
 from ..project.structure_entries import Fault
 from ..surfaces.field_data import apply_observations, left_out_warnings
 from ..surfaces.prepare import (
@@ -83,7 +82,7 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     place_level_sets(inputs)
-    middle = _SHEETS if any(map(has_fields, project.rocks)) else 1.0
+    middle = _SHEETS if any(rock.has_fields for rock in project.rocks) else 1.0
     with work.part(0.0, middle):
         if project.faults or project.bodies:
             structures = make_structures(work, project, inputs, stage, joins, keep)
@@ -96,7 +95,11 @@ def make_surfaces(
 
 
 def _make_whole_sheets(
-    work: Work, inputs: list[RockInput], stage: int | None, keep: StoreArray, flat
+    work: Work,
+    inputs: list[RockInput],
+    stage: int | None,
+    keep: StoreArray,
+    flat: Callable[[Rock], Collection[int]] | None,
 ) -> None:
     """As make_surfaces, where nothing divides rock masses."""
     for entry in work.share_out(inputs):
@@ -188,7 +191,9 @@ def _divide_inputs(work: Work, structures: Structures, inputs: list[RockInput], 
         apply_in_compartments(work, structures, inputs)
 
 
-def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage, keep) -> None:
+def _make_all(
+    work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, stage: int | None, keep: StoreArray
+) -> None:
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     for number, entry in enumerate(work.share_out(inputs)):
         make_sheets(work, entry, stage, keep, numbers[number] if numbers else None)
@@ -236,7 +241,7 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
         side = fault_sides(work, beside[None], FaultShape(vertices, triangles, fault.dies_out))
     except native.InputError as error:
         error.surface = 0
-        raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error
+        raise refused_structure(error, [fault], []) from error
     if side[0] > 0:
         return fault
     return replace(fault, triangles=np.ascontiguousarray(triangles[:, ::-1]))

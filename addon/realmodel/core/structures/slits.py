@@ -36,13 +36,16 @@ _STEP = 0.5  # of an edge of the lattice: over which slopes at dips are measured
 class Slit:
     """shape: of a fault that dies out. number: of the fault in the rock mass. pieces: (T, 3, 3) triangles of
     what continues it in the rock that it displaces. cells: (x, y, z) bool, those of the lattice that these
-    meet. reach: how far the fault goes from its tips."""
+    meet. reach: how far the fault goes from its tips. ends: the slits, by their places among all, at which it
+    ends, and the side of each that it is on; beyond their tips it has no mouth either, as the way round these
+    leads to where it is not: pieces and cells are those of these slits, too."""
 
     shape: FaultShape
     number: int
     pieces: np.ndarray
     cells: np.ndarray
     reach: float
+    ends: tuple[tuple[int, int], ...] = ()
 
     def mouth(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) from 0 beyond its tips to at most 1."""
@@ -57,9 +60,9 @@ class Slit:
 
 @dataclass(frozen=True, eq=False)
 class Slits:
-    """The faults that die out in a family of compartments. combinations: (S, F) int8 of their sides that
-    there are; members: of each the compartments. of_nodes: (S, nodes, F) int8: of each the sides of nodes:
-    beyond tips their own ones."""
+    """The faults that die out in a family of compartments, each after those at which it ends. combinations:
+    (S, F) int8 of their sides that there are, 0 beyond a fault at which it ends; members: of each the
+    compartments. of_nodes: (S, nodes, F) int8: of each the sides of nodes: beyond tips their own ones."""
 
     lattice: Lattice
     slits: list[Slit]
@@ -71,26 +74,34 @@ class Slits:
     def of(cls, entry: RockInput, family: Family, within: Within, lattice: Lattice) -> Slits:
         """Those of a family, whose places `within` tells. Raises InputRefused."""
         faults = entry.divided().faults
-        sides = sorted(set(family.members.values()))
-        members = [[n for n, own in family.members.items() if own == each] for each in sides]
-        slits = []
-        for number in family.dying:
-            ends = [other for other, _ in faults.ends[number] if other in family.dying]
-            ends += [n for n, own in enumerate(faults.ends) if number in [other for other, _ in own]]
-            if ends:
+        order = [number for number in faults.order() if number in family.dying]
+        columns = [family.dying.index(number) for number in order]
+        sides = sorted({tuple(own[at] for at in columns) for own in family.members.values()})
+        members = [
+            [n for n, own in family.members.items() if tuple(own[at] for at in columns) == each]
+            for each in sides
+        ]
+        slits: list[Slit] = []
+        for number in order:
+            branches = [n for n, own in enumerate(faults.ends) if number in [other for other, _ in own]]
+            dividing = [n for n in branches if n not in family.dying]
+            if dividing:
                 raise InputRefused(
-                    f"it dies out in a series with a field, and fault '{faults.names[ends[0]]}' and it end "
-                    "at one another",
+                    f"it dies out in a series with a field, and fault '{faults.names[dividing[0]]}', which "
+                    "does not, ends at it",
                     item=f"fault '{faults.names[number]}'",
-                    advice="let them cross, or make one of them end outside of the rock",
+                    advice="let them cross, or make the other one die out, too",
                 )
-            slits.append(_slit(entry, number, within, lattice))
+            ends = tuple((order.index(at), side) for at, side in faults.ends[number] if at in family.dying)
+            slits.append(_slit(entry, number, within, lattice, [(at, side, slits[at]) for at, side in ends]))
         combinations = np.array(sides, np.int8).reshape(len(sides), -1)
         positions = lattice.positions()
         of_nodes = np.repeat(combinations[:, None], len(positions), axis=1)
         for n, slit in enumerate(slits):
             beyond = np.flatnonzero(_corners(slit.cells).ravel(order="F"))
             of_nodes[:, beyond, n] = fault_sides(within.work, positions[beyond], slit.shape)
+            for at, side in slit.ends:
+                of_nodes[of_nodes[:, :, at] == -side, n] = 0
         return cls(lattice, slits, combinations, members, of_nodes)
 
     def numbers(self, sides: np.ndarray) -> np.ndarray:
@@ -135,8 +146,10 @@ class Slits:
         for n, slit in enumerate(self.slits):
             here = np.flatnonzero(self._meets(slit, points))
             found[here, n] = fault_sides(work, points[here], slit.shape)
-            found[:, n] *= 0.5 * slit.mouth(work, points)
-        return found
+            for at, side in slit.ends:
+                found[found[:, at] == -side, n] = 0.0
+        mouths = self._columns([slit.mouth(work, points) for slit in self.slits], len(points))
+        return 0.5 * found * mouths
 
     @cached_property
     def _same(self) -> np.ndarray:
@@ -161,7 +174,10 @@ class Slits:
         return np.column_stack([np.empty((count, 0)), *each])
 
 
-def _slit(entry: RockInput, number: int, within: Within, lattice: Lattice) -> Slit:
+def _slit(
+    entry: RockInput, number: int, within: Within, lattice: Lattice, ends: list[tuple[int, int, Slit]]
+) -> Slit:
+    """The slit of a fault. ends: those at which it ends, with their places and the side that it is on."""
     structure = entry.divided()
     shape = structure.faults.shapes[number]
     box = np.ascontiguousarray(np.stack(lattice.corners))
@@ -169,17 +185,22 @@ def _slit(entry: RockInput, number: int, within: Within, lattice: Lattice) -> Sl
     size = _PIECE * lattice.spacing[0]
     pieces = _divided(beyond, size, box)
     pieces = pieces[_in_rock(entry, number, within, pieces, size)]
+    for _, side, other in ends:
+        pieces = pieces[fault_sides(within.work, pieces.mean(axis=1), other.shape) != -side]
     cells = np.zeros(np.subtract(lattice.counts, 1), bool)
     for corner in np.stack(np.meshgrid(*[(0, 1)] * 3), -1).reshape(-1, 3):
         at = np.where(corner, pieces.max(axis=1), pieces.min(axis=1)) if len(pieces) else np.empty((0, 3))
         cells[tuple(_cell_of(lattice, at, np.where(corner, _BESIDE, -_BESIDE)).T)] = True
+    for _, _, other in ends:
+        cells |= other.cells
+        pieces = np.concatenate([pieces, other.pieces])
     reach = 0.0
     if len(pieces):
         vertices = shape.vertices[np.unique(shape.triangles)]
         near = vertices[((vertices >= box[0]) & (vertices <= box[1])).all(axis=1)]
         found = within.work.native(native_module().nearest_triangles, pieces, np.ascontiguousarray(near))
         reach = float(found[1].max(initial=lattice.spacing[0]))
-    return Slit(shape, number, pieces, cells, reach)
+    return Slit(shape, number, pieces, cells, reach, tuple((at, side) for at, side, _ in ends))
 
 
 def _in_rock(entry: RockInput, number: int, within: Within, pieces: np.ndarray, size: float) -> np.ndarray:

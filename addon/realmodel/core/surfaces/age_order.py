@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -81,7 +82,7 @@ def _natural(name: str) -> tuple:
     )
 
 
-def _compared(names, points, holes) -> tuple[np.ndarray, np.ndarray]:
+def _compared(names: Sequence[str], points: list[np.ndarray], holes: Any) -> tuple[np.ndarray, np.ndarray]:
     """(n, n) twice: the weight of what speaks for surface i below surface j, and at how many shared places it
     is."""
     count = len(points)
@@ -101,7 +102,7 @@ def _compared(names, points, holes) -> tuple[np.ndarray, np.ndarray]:
     return below, shared
 
 
-def _in_holes(names, holes) -> np.ndarray:
+def _in_holes(names: Sequence[str], holes: Any) -> np.ndarray:
     """(n, n) int64: in how many holes surface i is met below surface j."""
     number = {name: k for k, name in enumerate(names)}
     found = np.zeros((len(names), len(names)), np.int64)
@@ -148,7 +149,7 @@ def _fewest_against(below: np.ndarray, by_name: list[int]) -> list[int]:
     return min((_improved(below, order) for order in starts), key=lambda order: _against(below, order))
 
 
-def _against(below: np.ndarray, order) -> int:
+def _against(below: np.ndarray, order: Sequence[int]) -> int:
     at = np.asarray(order, int)
     return int(np.tril(below[np.ix_(at, at)], -1).sum())
 

@@ -14,10 +14,11 @@ from ..base.errors import number_list, place_text
 from ..base.sheet import Sheet
 from ..base.units import number_text
 from ..base.work import Work, native_module
+from ..heights.interpolation import Interpolation
 from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
 from ..settings.methods import METHODS, SURFACE_OPTIONS
-from ..settings.rules import RULES
+from ..settings.rules import RULES, Rule
 from .data_sources import sources_of_rock
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -156,7 +157,7 @@ def _hole(rock: Rock, point: np.ndarray) -> str:
     return f" of borehole '{hole}'{at}" if hole else ""
 
 
-def _remedy(result, is_tied: bool) -> str:
+def _remedy(result: Interpolation | None, is_tied: bool) -> str:
     if is_tied:
         return "check the point, through which the surface makes a bump"
     nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
@@ -251,7 +252,7 @@ class _Blocks:
     def __len__(self) -> int:
         return len(self.tops)
 
-    def add(self, z: np.ndarray, rule) -> None:
+    def add(self, z: np.ndarray, rule: Rule) -> None:
         """The next surface, with heights z (N,), NaN where it has none."""
         covered = np.isfinite(z)
         z = np.maximum(z if rule.cuts else np.fmax(z, np.where(covered, self.top, np.nan)), self.firm)

@@ -12,7 +12,6 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import naming, number_list
 from ..base.work import Work
-from ..project.field_checks import ground_number
 from ..project.project import Project, Rock, Surface
 from ..project.series import Series
 from ..project.structure_history import body_times
@@ -96,7 +95,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         hole_ends=picks.ends or rock.hole_ends,
     )
     return FieldData(
-        read, picks, surfaces, list(picks.points), left_out, map_warnings, ground_number(given), mapped
+        read, picks, surfaces, list(picks.points), left_out, map_warnings, given.ground_number, mapped
     )
 
 

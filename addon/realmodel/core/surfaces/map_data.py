@@ -16,7 +16,6 @@ from ..base.text import no_step
 from ..base.units import MODEL_UNIT
 from ..base.work import native_module
 from ..heights.interpolate import interpolate
-from ..project.field_checks import ground_file
 from ..project.plan_input import read_rings, shapes_of
 from ..project.project import Project, Rock, Surface
 from ..readers import UnitNames, is_mesh_file
@@ -49,7 +48,7 @@ def with_ground(rock: Rock) -> Rock:
 
 def _ground_shape(rock: Rock) -> dict | None:
     """The points or the mesh of the ground; None where it is a surface."""
-    ground = ground_file(rock)
+    ground = rock.ground_file
     if ground is None:
         return None
     if isinstance(ground, (PointFile, MeshFile)):

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
-from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
+from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
 from ..heights.ties import tie_data
 from ..project.region_rings import numbered_ring, region_rings
 from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
@@ -45,8 +47,8 @@ class MeshOptions:
     triangles: int | None = None
     size: Iterable[Mapping] = ()
     constraints: Iterable = ()
-    constraint_points: np.ndarray | None = None
-    points: np.ndarray | None = None
+    constraint_points: ArrayLike | None = None
+    points: ArrayLike | None = None
 
     def request(self) -> dict:
         """What the native mesher is asked for. Raises InputRefused and UsageError."""
@@ -66,16 +68,16 @@ class MeshOptions:
 
 
 def mesh_region(
-    outline,
-    holes=(),
+    outline: ArrayLike,
+    holes: Iterable[ArrayLike] = (),
     edge_length: float | str | None = None,
     mesher: str = DEFAULT_MESHER,
     *,
     triangles: int | None = None,
     size: Iterable[Mapping] = (),
     constraints: Iterable = (),
-    constraint_points=None,
-    points=None,
+    constraint_points: ArrayLike | None = None,
+    points: ArrayLike | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -123,16 +125,16 @@ def mesh_region(
 
 
 def estimate_mesh(
-    outline,
-    holes=(),
+    outline: ArrayLike,
+    holes: Iterable[ArrayLike] = (),
     edge_length: float | str | None = None,
     mesher: str = DEFAULT_MESHER,
     *,
     triangles: int | None = None,
     size: Iterable[Mapping] = (),
     constraints: Iterable = (),
-    constraint_points=None,
-    points=None,
+    constraint_points: ArrayLike | None = None,
+    points: ArrayLike | None = None,
 ) -> MeshEstimate:
     """The expected size of the mesh of mesh_region with the same arguments. Raises the same errors, as far as
     they come before meshing."""
@@ -144,7 +146,7 @@ def estimate_mesh(
     return MeshEstimate(round(made), round(memory))
 
 
-def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions):
+def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions) -> tuple[np.ndarray, np.ndarray]:
     """mesh_region within a work that is already running, from checked rings."""
     return _native_call(work, native_module().mesh_region, rings, options.request())
 
@@ -155,7 +157,7 @@ def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         return native.triangulate_rings(rings)
 
 
-def triangulate_polygon(outline, holes=()) -> np.ndarray:
+def triangulate_polygon(outline: ArrayLike, holes: Iterable[ArrayLike] = ()) -> np.ndarray:
     """Divides a polygon with holes into triangles of its corners: by ear clipping, then swapping edges until
     the triangulation is constrained Delaunay.
 
@@ -173,12 +175,12 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
         return native.triangulate_polygon(rings)
 
 
-def _native_call(work: Work, function, rings: Sequence[np.ndarray], request: dict):
+def _native_call(work: Work, function: Callable, rings: Sequence[np.ndarray], request: dict) -> Any:
     with refused_as(refused_region):
         return work.native(function, list(rings), request)
 
 
-def refused_region(error) -> InputRefused:
+def refused_region(error: NativeError) -> InputRefused:
     """The refusal of a region that the native part found fault with."""
     place = tuple(error.place[:2]) if error.place is not None else None
     what = str(error)

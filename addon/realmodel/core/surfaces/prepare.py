@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -118,7 +119,7 @@ def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
     or of text, boreholes, observations, maps and dips, which are read into arrays. Raises InputRefused."""
 
-    def is_plain(given) -> bool:
+    def is_plain(given: Any) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
 
     def task(work: Work) -> list[Rock]:

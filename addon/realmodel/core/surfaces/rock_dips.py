@@ -13,7 +13,7 @@ from ..base.work import Work
 from ..heights import heights
 from ..heights.interpolation import Task
 from ..project.project import Rock, Surface, surface_item
-from ..project.series import Series, members
+from ..project.series import Series
 from ..readers.tables.observations import LeftOut
 from ..settings.dips import Dips
 from ..settings.methods import (
@@ -53,7 +53,7 @@ def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndar
 def _of_sheets(entry: RockInput, series: Series, dips: Dips) -> np.ndarray:
     """(D, S) bool: the surfaces that each dip of a series of sheets counts for: that which it names, or those
     of the series under and over its block; without a name all of them, as they are conformable."""
-    rock, own = entry.rock, members(entry.rock, series)
+    rock, own = entry.rock, entry.rock.members(series)
     of_surfaces, of_blocks = dips.named
     counts = np.zeros((len(dips), len(rock.surfaces)), bool)
     counts[:, own] = ((of_surfaces == "") & (of_blocks == ""))[:, None]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -190,7 +191,7 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     if method != "auto":
         return
     with naming(surface_item(rock, surface), surface.shape_source):
-        method, options = chosen(work, surface.points, settings, surface.known_dips())
+        method, options = chosen(work, surface.point_array(), settings, surface.known_dips())
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
@@ -254,7 +255,13 @@ def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.nd
 
 
 def raised_above(
-    rock: Rock, number: int, count: int, nodes: int, thickness: float, by, place
+    rock: Rock,
+    number: int,
+    count: int,
+    nodes: int,
+    thickness: float,
+    by: float,
+    place: Sequence[float] | np.ndarray,
 ) -> BuildWarning:
     """The warning about a surface that was raised at some of its nodes to its minimum thickness above the
     older one. count: of these nodes; by, place: the largest rise, and where it is."""

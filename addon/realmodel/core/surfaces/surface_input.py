@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.algebra import are_among
 from ..base.errors import InputRefused, naming
@@ -85,7 +86,7 @@ class SurfaceInput:
 
     def _points(self, file: Path | None, step: Step, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
-        points: object = surface.points
+        points: Any = surface.points
         warnings: list[str] = []
         if surface.point_file is not None:
             points, warnings = read_point_file(surface.point_file, self.units, step, gather)
@@ -110,10 +111,12 @@ class SurfaceInput:
         dips = self.surface.own_dips()
         return None if dips is None else dips.checked()
 
-    def _mesh(self, step: Step, arrays: MappedArrays | None):
+    def _mesh(
+        self, step: Step, arrays: MappedArrays | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, list[str]]:
         surface = self.surface
         if surface.mesh_file is None:
-            return *checked_triangulation(surface.vertices, surface.triangles), None, []
+            return *checked_triangulation(*surface.triangulation()), None, []
         if arrays is None:
             mesh = read_mesh(surface.mesh_file, step)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
@@ -123,7 +126,7 @@ class SurfaceInput:
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
 
 
-def _without(pieces: Iterable[np.ndarray], left_out) -> Iterator[np.ndarray]:
+def _without(pieces: Iterable[np.ndarray], left_out: ArrayLike) -> Iterator[np.ndarray]:
     """Pieces (P, 3) of points without those at places (Q, 3)."""
     places = np.asarray(left_out, np.float64).reshape(-1, 3)
     for piece in pieces:

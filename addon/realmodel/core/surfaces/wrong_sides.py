@@ -13,7 +13,7 @@ from ..base.errors import place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Rock
-from ..settings.rules import RULES
+from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
 
 _TIED = 1e-9  # of the range of its points: how near to them a surface is
@@ -91,7 +91,7 @@ class _Beneath:
         self.top, self.firm = _Floor(count), _Floor(count)
         self.last: np.ndarray | None = None
 
-    def add(self, z: np.ndarray, number: int, rule) -> None:
+    def add(self, z: np.ndarray, number: int, rule: Rule) -> None:
         own = _Floor(len(z))
         own.raise_to(z, number)
         covered = np.isfinite(z)
@@ -111,7 +111,7 @@ class _Floor:
         self.z = np.full(count, -np.inf)
         self.surface = np.full(count, -1)
 
-    def raise_to(self, z: np.ndarray, surface) -> None:
+    def raise_to(self, z: np.ndarray, surface: int | np.ndarray) -> None:
         higher = z > self.z  # never where NaN
         self.z = np.where(higher, z, self.z)
         self.surface = np.where(higher, surface, self.surface)
@@ -133,7 +133,9 @@ class WrongPoints:
     by: float
 
     @classmethod
-    def of(cls, points: np.ndarray, beyond: np.ndarray, others, numbers: np.ndarray) -> WrongPoints | None:
+    def of(
+        cls, points: np.ndarray, beyond: np.ndarray, others: int | np.ndarray, numbers: np.ndarray
+    ) -> WrongPoints | None:
         """None where all are right, up to the rounding of surfaces that meet at contacts of both. beyond: how
         far each of the points (N, 3) is; others: beyond which surface, one or (N,); numbers: theirs."""
         heights = points[:, 2]
@@ -175,7 +177,9 @@ class WrongPoints:
         return BuildWarning(text, kind, rock.name, surface.name, tuple(self.items))
 
 
-def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
+def listed(
+    rock: Rock, number: int, beyond: np.ndarray, side: str, others: int | np.ndarray
+) -> list[BuildWarning]:
     """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
     others: the numbers of these surfaces, one or (N,)."""
     points = rock.surfaces[number].point_array()

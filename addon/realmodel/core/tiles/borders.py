@@ -16,7 +16,7 @@ import numpy as np
 
 from ..base.algebra import begins_run, ranks_in_runs
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
-from ..cells.model_data import SomeModel
+from ..cells.model_data import ModelData, SomeModel
 
 _BASE = -2  # face_surface of the flat base
 
@@ -70,7 +70,7 @@ class BorderEdges:
     second: np.ndarray
 
     @classmethod
-    def of(cls, model, vertices: np.ndarray, faces: np.ndarray | None = None) -> BorderEdges:
+    def of(cls, model: ModelData, vertices: np.ndarray, faces: np.ndarray | None = None) -> BorderEdges:
         """vertices: all on the border, ascending. faces: among which all are that have an edge there,
         ascending; None: not known."""
         on = np.zeros(len(model.vertices), bool)
@@ -91,7 +91,7 @@ class BorderEdges:
         at, face, following = at[kept], face[kept], following[kept]
         return cls(vertices, face, at, corners[at], corners[following])
 
-    def on(self, model, side: Side) -> BorderEdges:
+    def on(self, model: ModelData, side: Side) -> BorderEdges:
         """What is on one side; of the edges those that are not vertical."""
         places = model.vertices
         vertices = self.vertices[places[self.vertices, side.axis] == side.line]
@@ -106,7 +106,7 @@ def _pairs(edges: BorderEdges) -> np.ndarray:
     return low << 32 | np.maximum(edges.first, edges.second)
 
 
-def _interfaces_of(model, edges: BorderEdges) -> tuple[np.ndarray, np.ndarray]:
+def _interfaces_of(model: ModelData, edges: BorderEdges) -> tuple[np.ndarray, np.ndarray]:
     """Of the edges that lie on interfaces: their pairs of vertices, each once, and what they lie on."""
     surface = model.face_surface[edges.face].astype(np.int64)
     block = model.cell_block[model.face_cells[edges.face, 0]]
@@ -116,7 +116,7 @@ def _interfaces_of(model, edges: BorderEdges) -> tuple[np.ndarray, np.ndarray]:
     return pairs, on[of_interface][first]
 
 
-def interfaces_on(model, edges: BorderEdges) -> Interfaces:
+def interfaces_on(model: ModelData, edges: BorderEdges) -> Interfaces:
     """The interfaces of a model on one side of it. edges: on this side."""
     pairs, on = _interfaces_of(model, edges)
     return Interfaces(on, np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF]))
@@ -185,7 +185,7 @@ def _moved_on(offsets: np.ndarray, first: np.ndarray, by: np.ndarray) -> np.ndar
 
 
 def _insertion(
-    model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray, first_number: int
+    model: ModelData, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray, first_number: int
 ) -> _Insertion | None:
     """What of a neighbor's vertices is inserted on a side; None: nothing. first_number: of new vertices."""
     pairs, on = _interfaces_of(model, edges)
@@ -232,7 +232,7 @@ def _on_line(places: np.ndarray, side: Side) -> np.ndarray:
 
 
 def _numbered(
-    model, side: Side, there: np.ndarray, added: np.ndarray, first_number: int
+    model: ModelData, side: Side, there: np.ndarray, added: np.ndarray, first_number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
     one: edges may meet in a vertex that one of them passes. there: the vertices on the side."""
@@ -264,7 +264,7 @@ class Patches:
     open: int = 0
 
 
-def patches_on(model, side: Side, edges: BorderEdges, positions: np.ndarray) -> Patches:
+def patches_on(model: ModelData, side: Side, edges: BorderEdges, positions: np.ndarray) -> Patches:
     """The patches of a model on one side of it. edges: on this side. positions: where on the line either tile
     has vertices, ascending. An edge that passes one without a vertex is divided there for the patches alone.
     """
@@ -293,13 +293,15 @@ def patches_on(model, side: Side, edges: BorderEdges, positions: np.ndarray) -> 
     return Patches(shape[order], model.cell_block[cell[order]], cell[order], alone)
 
 
-def positions_on(model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray) -> np.ndarray:
+def positions_on(
+    model: ModelData, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray
+) -> np.ndarray:
     """Where on a side a model has vertices, or its neighbor, ascending. edges: on this side."""
     own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
     return np.unique(np.concatenate([own, places[other.ends.ravel(), side.along]]))
 
 
-def _ends(model, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _ends(model: ModelData, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(E, 2) positions along the line and heights of edges' ends (E, 2), the lesser position first."""
     along, height = model.vertices[ends, side.along], model.vertices[ends, 2]
     turned = along[:, 0] > along[:, 1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -106,7 +107,7 @@ def write_catalog(catalog: Catalog, folder: Path) -> None:
             file.write(("\n".join(lines) + "\n").encode())
 
 
-def _lines(**values) -> list[str]:
+def _lines(**values: Any) -> list[str]:
     return [f"{key} = {toml_value(value)}" for key, value in values.items() if value is not None]
 
 

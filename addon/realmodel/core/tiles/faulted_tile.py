@@ -120,7 +120,7 @@ def _numbered_as_whole(model: ModelData, whole: Whole, window: Window) -> CellCo
     )
 
 
-def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray):
+def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray) -> tuple:
     """What cell_compartments gives for the cells of the tile, by all faults of the whole."""
     inputs, few, structures = window.inputs, window.structures, whole.structures
     surfaces = sum(len(entry.surfaces) for entry in inputs)
@@ -141,7 +141,7 @@ def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray):
     return compartments(inputs, as_whole, structures)
 
 
-def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels) -> Model:
+def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels: tuple) -> Model:
     volume = own.cell_volumes()
     cells, components = own.count_blocks(len(whole.blocks))
     blocks = [

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -389,7 +389,7 @@ def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:
     return ((sides[:, rest] == fixed[rest]) | (sides[:, rest] == 0)).all(axis=1)
 
 
-def _mesh_alone(entry: _Entry, **more) -> _Entry:
+def _mesh_alone(entry: _Entry, **more: Any) -> _Entry:
     """A fault or body with its arrays alone, and the file that they are from for messages."""
     return replace(entry, mesh=None, source=None, shape_file=entry.shape_source()[0], **more)
 

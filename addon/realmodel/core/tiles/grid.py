@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -60,12 +60,12 @@ class TileGrid:
         return ((column, row) for row in rows for column in columns)
 
 
-def _strip(lines: np.ndarray, places, side: Literal["left", "right"]) -> np.ndarray:
+def _strip(lines: np.ndarray, places: float | np.ndarray, side: Literal["left", "right"]) -> np.ndarray:
     """The columns or rows that coordinates lie in; on a line that on this side of it."""
     return (np.searchsorted(lines, places, side) - 1).clip(0, len(lines) - 2)
 
 
-def checked_size(tile_size) -> tuple[float, float]:
+def checked_size(tile_size: Any) -> tuple[float, float]:
     """Width and height of tiles. Raises UsageError."""
     try:
         width, height = (float(side) for side in tile_size)

@@ -11,22 +11,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..cells.cell_complex import CellComplex
 from .grid import TileGrid
 
 
-def owners(model, grid: TileGrid) -> np.ndarray:
+def owners(whole: CellComplex, grid: TileGrid) -> np.ndarray:
     """(C, 2) int64: column and row of the tile that each cell belongs to."""
-    order = np.lexsort(model.vertices.T[::-1])
+    order = np.lexsort(whole.vertices.T[::-1])
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
-    size = np.diff(model.face_offsets)
+    size = np.diff(whole.face_offsets)
     lowest = np.full(len(size), len(order), np.int64)
-    np.minimum.at(lowest, np.repeat(np.arange(len(size)), size), rank[model.face_vertices])
-    first = np.full(len(model.cell_block), len(order), np.int64)
+    np.minimum.at(lowest, np.repeat(np.arange(len(size)), size), rank[whole.face_vertices])
+    first = np.full(len(whole.cell_block), len(order), np.int64)
     for side in range(2):
-        there = model.face_cells[:, side] >= 0
-        np.minimum.at(first, model.face_cells[there, side], lowest[there])
-    places = model.vertices[order[first]]
+        there = whole.face_cells[:, side] >= 0
+        np.minimum.at(first, whole.face_cells[there, side], lowest[there])
+    places = whole.vertices[order[first]]
     lines = (grid.x, grid.y)
     at = [
         (np.searchsorted(line, places[:, axis], "right") - 1).clip(0, len(line) - 2)
@@ -35,15 +36,15 @@ def owners(model, grid: TileGrid) -> np.ndarray:
     return np.column_stack(at)
 
 
-def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
+def reach_of(whole: CellComplex, mine: np.ndarray) -> tuple[float, float, float, float]:
     """A box in plan around some cells, (C,) bool, and those that share a face with one."""
-    faces = np.append(mine, False)[model.face_cells].any(axis=1)
+    faces = np.append(mine, False)[whole.face_cells].any(axis=1)
     near = np.zeros(len(mine) + 1, bool)
-    near[model.face_cells[faces]] = True
+    near[whole.face_cells[faces]] = True
     near[-1] = False
-    faces = near[model.face_cells].any(axis=1)
-    corners = model.face_vertices[np.repeat(faces, np.diff(model.face_offsets))]
-    plan = model.vertices[corners, :2]
+    faces = near[whole.face_cells].any(axis=1)
+    corners = whole.face_vertices[np.repeat(faces, np.diff(whole.face_offsets))]
+    plan = whole.vertices[corners, :2]
     x, y = plan.T  # min(axis=0) would take several times as long
     return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
@@ -63,21 +64,24 @@ class Seam:
     place: np.ndarray
 
     @classmethod
-    def of(cls, model, faces: np.ndarray, own: np.ndarray, part: np.ndarray, is_one: np.ndarray) -> Seam:
-        """faces: some of a model. own: (F,) which of each one's cells is the tile's. part, is_one: theirs."""
-        key = face_keys(model, faces)
+    def of(
+        cls, whole: CellComplex, faces: np.ndarray, own: np.ndarray, part: np.ndarray, is_one: np.ndarray
+    ) -> Seam:
+        """faces: some of the whole; own: (F,) which of the two cells of each is the tile's. part, is_one: of
+        both cells."""
+        key = face_keys(whole, faces)
         order = np.argsort(key, kind="stable")
         faces, own = faces[order], own[order]
-        cells = model.face_cells[faces]
+        cells = whole.face_cells[faces]
         rows = np.arange(len(faces))
-        block = np.column_stack([model.cell_block[cells[rows, side]] for side in (own, 1 - own)])
-        first = model.face_vertices[model.face_offsets[faces]]
+        block = np.column_stack([whole.cell_block[cells[rows, side]] for side in (own, 1 - own)])
+        first = whole.face_vertices[whole.face_offsets[faces]]
         return cls(
             key[order],
             part[order].astype(np.int32),
             block.astype(np.int32).reshape(-1, 2),
             is_one[order],
-            model.vertices[first].reshape(-1, 3),
+            whole.vertices[first].reshape(-1, 3),
         )
 
     def arrays(self, prefix: str) -> dict[str, np.ndarray]:
@@ -105,15 +109,15 @@ class Seam:
         return tuple(self.place[0].tolist())
 
 
-def face_keys(model, faces: np.ndarray) -> np.ndarray:
+def face_keys(whole: CellComplex, faces: np.ndarray) -> np.ndarray:
     """(F,) uint64: the same for the same polygon on the same surface, whichever cell it is seen from. A sum
     of hashes of its corners does not depend on their order."""
-    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    offsets, corners = whole.face_corners(faces, np.zeros(len(faces), bool))
     hashed = np.zeros(len(corners), np.uint64)
-    for coordinates in (model.vertices[corners] + 0.0).T:  # -0.0 is 0.0
+    for coordinates in (whole.vertices[corners] + 0.0).T:  # -0.0 is 0.0
         hashed = _mixed(hashed ^ np.ascontiguousarray(coordinates).view(np.uint64))
     sums = np.add.reduceat(hashed, offsets[:-1]) if len(faces) else hashed
-    return _mixed(sums ^ model.face_surface[faces].astype(np.uint64))
+    return _mixed(sums ^ whole.face_surface[faces].astype(np.uint64))
 
 
 def _mixed(values: np.ndarray) -> np.ndarray:

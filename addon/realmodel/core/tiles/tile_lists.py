@@ -25,7 +25,7 @@ class TileLists:
     def __enter__(self) -> TileLists:
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         for name in self._begun:
             self._file_of(name).unlink(missing_ok=True)
 

@@ -17,7 +17,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..base.sheet import Sheet
-from ..base.work import Work, refused_as, run
+from ..base.work import NativeError, Work, refused_as, run
 from ..cells.assembly import assemble
 from ..cells.blocks import blocks_of_arrays
 from ..cells.built_cells import BuiltCells
@@ -388,7 +388,7 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path) -> BuiltTile:
 class _NumberedError(Exception):
     """A native InputError with the triangles' numbers in the whole."""
 
-    def __init__(self, error, numbers: list[np.ndarray]):
+    def __init__(self, error: NativeError, numbers: list[np.ndarray]):
         super().__init__(str(error))
         self.kind, self.surface, self.place = error.kind, error.surface, error.place
         self.items = error.items

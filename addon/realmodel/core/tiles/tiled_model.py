@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import functools
 import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
@@ -78,7 +80,7 @@ class TiledModel(ShortRepr):
     unequal: int
     warnings: list[BuildWarning]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self._model = functools.lru_cache(_KEPT)(lambda number: self.tiles[number].model())
 
     @property
@@ -92,7 +94,9 @@ class TiledModel(ShortRepr):
         surfaces = [surface.name for rock in self.project.rocks for surface in rock.surfaces]
         return surfaces + [each.name for each in (*self.project.faults, *self.project.bodies)]
 
-    def section(self, point, normal, threads: int = 0) -> Section:
+    def section(
+        self, point: Sequence[float] | np.ndarray, normal: Sequence[float] | np.ndarray, threads: int = 0
+    ) -> Section:
         """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
         is moved off it by a rounding."""
         point, normal = (np.asarray(each, np.float64) for each in (point, normal))
@@ -107,7 +111,7 @@ class TiledModel(ShortRepr):
 
         return self._joined(meets, lambda model: model.section(point, normal, threads))
 
-    def fence(self, polyline, threads: int = 0) -> Fence:
+    def fence(self, polyline: ArrayLike, threads: int = 0) -> Fence:
         """As Model.fence; polygons come by tile."""
         line = np.asarray(polyline, np.float64)
         if line.ndim != 2 or line.shape[1:] != (2,) or len(line) < 2:
@@ -148,7 +152,7 @@ class TiledModel(ShortRepr):
             places[on, axis] += _OFF * np.spacing(np.abs(lines).max())
         return places
 
-    def _joined(self, meets, cut):
+    def _joined(self, meets: Callable, cut: Callable) -> Any:
         """The sections of the tiles that a cutter meets as one."""
         numbers = [number for number, tile in enumerate(self.tiles) if meets(tile)]
         if not self.tiles:

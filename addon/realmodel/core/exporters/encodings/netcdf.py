@@ -22,7 +22,14 @@ class NetcdfFile:
     attributes: dict[str, str | np.generic | np.ndarray] = field(default_factory=dict)
     variables: dict[str, tuple] = field(default_factory=dict)
 
-    def add(self, name: str, dimensions: tuple[str, ...], values: np.ndarray, /, **attributes) -> None:
+    def add(
+        self,
+        name: str,
+        dimensions: tuple[str, ...],
+        values: np.ndarray,
+        /,
+        **attributes: str | float | np.ndarray,
+    ) -> None:
         self.variables[name] = (dimensions, values, attributes)
 
     def write(self, file: BinaryIO) -> None:

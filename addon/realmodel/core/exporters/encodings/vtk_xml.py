@@ -37,7 +37,13 @@ def write_grid(file: BinaryIO, arrays: Sequence[tuple[str, str, np.ndarray]]) ->
     file.write(END)
 
 
-def write_image(file: BinaryIO, origin, size, counts, arrays: Sequence[tuple[str, np.ndarray]]) -> None:
+def write_image(
+    file: BinaryIO,
+    origin: np.ndarray,
+    size: np.ndarray,
+    counts: tuple[int, int, int],
+    arrays: Sequence[tuple[str, np.ndarray]],
+) -> None:
     """Writes a whole file of type ImageData. origin, size, counts: as of RegularCells. arrays: of the cells,
     by name, x fastest, of little-endian int32 or float64; programs color by the first."""
     extent = " ".join(f"0 {count}" for count in counts)

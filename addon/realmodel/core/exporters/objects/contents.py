@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.algebra import norm
+from ...cells.model_data import ModelData
 from ...project.library import Property
 from ...project.project import Rock
 from ...readers.tables.observations import Observations
@@ -94,7 +95,7 @@ class Contents:
     boundary_names: list[str]
 
     @classmethod
-    def of(cls, model) -> Contents:
+    def of(cls, model: ModelData) -> Contents:
         """Those of a model."""
         triangles = FaceTriangles.of(model)
         parts, library = model_parts(model, triangles), model.project.library
@@ -129,7 +130,7 @@ class Contents:
         )
 
 
-def _known_values(model, number: int) -> dict[str, np.ndarray]:
+def _known_values(model: ModelData, number: int) -> dict[str, np.ndarray]:
     if model.surface_kind[number] != 0 or model.lacks_project is not None:
         return {}
     values = model.surface_attributes(number)
@@ -138,7 +139,7 @@ def _known_values(model, number: int) -> dict[str, np.ndarray]:
     }
 
 
-def _holes(model) -> list[Hole]:
+def _holes(model: ModelData) -> list[Hole]:
     """The boreholes of all rock masses: as they were logged; of those without intervals their picks."""
     found, first = [], 0
     number_of = {block.surface: number for number, block in enumerate(model.blocks) if block.cells}
@@ -162,7 +163,13 @@ def _holes(model) -> list[Hole]:
     return found
 
 
-def _picked(rock: Rock, name: str, beneath: Sequence[int], collar, picks) -> Hole | None:
+def _picked(
+    rock: Rock,
+    name: str,
+    beneath: Sequence[int],
+    collar: tuple[float, ...] | None,
+    picks: Sequence[tuple[str, tuple[float, ...]]],
+) -> Hole | None:
     """A hole by its picks; None where they are on no surface of the rock mass. Beneath a surface's pick lies
     the block deposited beneath it; above the highest one, if its collar is known, that beneath the next
     younger surface. beneath: the block of each surface."""
@@ -180,7 +187,13 @@ def _picked(rock: Rock, name: str, beneath: Sequence[int], collar, picks) -> Hol
     return made.hole(name) if stops else None
 
 
-def _logged(rock: Rock, log: Observations, blocks: Sequence[int], collar, picks) -> Hole:
+def _logged(
+    rock: Rock,
+    log: Observations,
+    blocks: Sequence[int],
+    collar: tuple[float, ...] | None,
+    picks: Sequence[tuple[str, tuple[float, ...]]],
+) -> Hole:
     """A hole by its intervals; what is between them is not known. blocks: that of each row. Named are the
     contacts where two intervals meet, and picks."""
     made = _Path()
@@ -209,7 +222,7 @@ class _Path:
         self._surfaces: list[str] = []
         self._blocks: list[int] = []
 
-    def go_to(self, place, block: int, surface: str = "") -> None:
+    def go_to(self, place: tuple[float, ...], block: int, surface: str = "") -> None:
         """The next place, and the block above it. At the last place again only the surface may be new."""
         place = tuple(float(value) for value in place)
         if self._places and place == self._places[-1]:
@@ -219,7 +232,7 @@ class _Path:
         self._places.append(place)
         self._surfaces.append(surface)
 
-    def insert(self, place, surface: str) -> None:
+    def insert(self, place: tuple[float, ...], surface: str) -> None:
         """Names a place that may be between others, by its height."""
         place = tuple(float(value) for value in place)
         if place in self._places:

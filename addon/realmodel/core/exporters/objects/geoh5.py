@@ -16,15 +16,18 @@ import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import extra
+from ...cells.model_data import ModelData
 from ...results.regular_cells import RegularCells, regular_cells
-from ...results.section_data import rgb_bytes
+from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _UNITS = {"m": "meter", "ft": "feet"}  # those that a workspace has
 _OUTSIDE = 0  # the number that the format keeps for what is not known
 
 
-def write_geoh5(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_geoh5(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """Writes a model. size: of the cells of a block model, as of regular_cells.checked_size; None: none."""
     library = extra("geoh5py", "writing geoh5", "geoh5")
     contents = Contents.of(model)
@@ -48,7 +51,9 @@ def _workspace_class(library: Any) -> Any:
     """A workspace whose root always has the same identifier."""
 
     class _Workspace(library.Workspace):
-        def create_root(self, entity_attributes: dict | None = None, type_attributes: dict | None = None):
+        def create_root(
+            self, entity_attributes: dict | None = None, type_attributes: dict | None = None
+        ) -> Any:
             attributes = {"uid": stable_uuid("geoh5", "root"), **(entity_attributes or {})}
             return super().create_root(attributes, type_attributes)
 
@@ -58,7 +63,7 @@ def _workspace_class(library: Any) -> Any:
 class _Objects:
     """Makes the objects of a workspace."""
 
-    def __init__(self, workspace: Any, model, contents: Contents):
+    def __init__(self, workspace: Any, model: ModelData, contents: Contents):
         from geoh5py import data, groups, objects
 
         self._data, self._groups, self._objects = data, groups, objects
@@ -81,7 +86,7 @@ class _Objects:
             )
         return self._made[name]
 
-    def _create(self, kind: str, name: str, group: str, **attributes) -> Any:
+    def _create(self, kind: str, name: str, group: str, **attributes: Any) -> Any:
         made = getattr(self._objects, kind).create(
             self._workspace,
             name=name,

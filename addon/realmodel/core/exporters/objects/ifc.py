@@ -10,19 +10,22 @@ spaces alone). A borehole is an IfcBorehole of strata.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import extra
-from ...results.section_data import rgb_bytes
+from ...cells.model_data import ModelData
+from ...results.sections.section_data import rgb_bytes
 from .contents import BlockShell, Contents, Hole
 from .ifc_entities import Entities
 
 _RADIUS = 0.1  # of boreholes, in meters
 
 
-def write_ifc(model, path, outputs: Outputs, step: Callable[[float], None]) -> None:
+def write_ifc(model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None]) -> None:
     """Writes a model."""
     library = extra("ifcopenshell", "writing IFC", "ifc")
     contents = Contents.of(model)
@@ -37,7 +40,7 @@ def write_ifc(model, path, outputs: Outputs, step: Callable[[float], None]) -> N
 class _Writer:
     """Makes the entities of a model."""
 
-    def __init__(self, entities: Entities, model, contents: Contents):
+    def __init__(self, entities: Entities, model: ModelData, contents: Contents):
         self.entities, self._model, self._contents = entities, model, contents
         self._triangles = contents.triangles
         self._materials: dict[int, list] = {}  # elements by the number of their property
@@ -60,7 +63,7 @@ class _Writer:
             self._associate(prop, elements)
         step(1.0)
 
-    def _stratum(self, shell: BlockShell, geomodel):
+    def _stratum(self, shell: BlockShell, geomodel: Any) -> Any:
         entities, block = self.entities, self._model.blocks[shell.number]
         own, corners = self._triangles.around(shell.number)
         cells = self._model.face_cells[self._triangles.face[own]]
@@ -75,7 +78,7 @@ class _Writer:
         self._describe(made, shell)
         return made
 
-    def _describe(self, made, shell: BlockShell) -> None:
+    def _describe(self, made: Any, shell: BlockShell) -> None:
         entities, block = self.entities, self._model.blocks[shell.number]
         color = rgb_bytes(np.array(shell.part.color)).tobytes().hex()
         entities.properties(made, "Pset_GeotechnicalStratumCommon", {"StratumColour": f"#{color}"})
@@ -89,7 +92,7 @@ class _Writer:
         entities.properties(made, "RealModel_Block", known)
         entities.volume(made, "Qto_VolumetricStratumBaseQuantities", block.volume)
 
-    def _borders(self, strata: dict, geomodel) -> list:
+    def _borders(self, strata: dict, geomodel: Any) -> list:
         """What lies between two blocks on one surface, wall or cut, and on surfaces beneath the outside."""
         entities, names = self.entities, self._contents.boundary_names
         triangles = self._triangles
@@ -112,7 +115,7 @@ class _Writer:
             borders.append(made)
         return borders
 
-    def _borehole(self, hole: Hole):
+    def _borehole(self, hole: Hole) -> Any:
         entities = self.entities
         made = entities.product("IfcBorehole", "borehole", hole.name, entities.site)
         if not hole.blocks:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...base.units import METERS, UNIT_NAMES
+from ...cells.model_data import ModelData
 from .contents import stable_uuid
 
 SCHEMA = "IFC4X3_ADD2"
@@ -21,7 +22,7 @@ class Entities:
     """Makes entities of a file. Coordinates are written less the model's origin, so that programs with short
     numbers show them: a place in plan, in whole units, which the site has, or the map conversion."""
 
-    def __init__(self, library: Any, model):
+    def __init__(self, library: Any, model: ModelData):
         self.file = library.file(schema=SCHEMA)
         self._library, self._model, self._name = library, model, model.project.name
         self._styles: dict[tuple, Any] = {}
@@ -90,7 +91,7 @@ class Entities:
             found.append(make("IfcConversionBasedUnit", exponents, kind, words, factor))
         return [*found, make("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN")]
 
-    def _place_site(self, context) -> Any:
+    def _place_site(self, context: Any) -> Any:
         """Where the site is: at the origin of a map conversion, where the project names its system, or else
         at the model's origin."""
         make, crs = self.file.create_entity, self._model.project.crs
@@ -101,7 +102,7 @@ class Entities:
         make("IfcMapConversion", context, system, east, north, 0.0, 1.0, 0.0, 1.0)
         return self._axes
 
-    def product(self, kind: str, word: str, name: str, parent) -> Any:
+    def product(self, kind: str, word: str, name: str, parent: Any) -> Any:
         """An element whose placement is that of another. word: no other element of this name has it."""
         return self.file.create_entity(
             kind,
@@ -110,13 +111,13 @@ class Entities:
             ObjectPlacement=self.file.create_entity("IfcLocalPlacement", parent.ObjectPlacement, self._axes),
         )
 
-    def show(self, element, context: str, kind: str, items: Sequence) -> None:
+    def show(self, element: Any, context: str, kind: str, items: Sequence) -> None:
         """Gives an element its shape."""
         make = self.file.create_entity
         shape = make("IfcShapeRepresentation", self._contexts[context], context, kind, items)
         element.Representation = make("IfcProductDefinitionShape", None, None, [shape])
 
-    def triangles(self, corners: np.ndarray, is_closed: bool, style) -> Any:
+    def triangles(self, corners: np.ndarray, is_closed: bool, style: Any) -> Any:
         """Triangles (T, 3) of vertices of the model."""
         make = self.file.create_entity
         used, numbers = np.unique(corners, return_inverse=True)
@@ -136,7 +137,7 @@ class Entities:
         points = make("IfcCartesianPointList3D", (places - self._origin).tolist())
         return make("IfcIndexedPolyCurve", points, SelfIntersect=False)
 
-    def tube(self, places: np.ndarray, radius: float, style) -> Any:
+    def tube(self, places: np.ndarray, radius: float, style: Any) -> Any:
         """A round rod along places. radius: in meters."""
         scaled = radius / float(METERS[self._model.project.units])
         item = self.file.create_entity("IfcSweptDiskSolid", self.line(places), scaled)
@@ -151,7 +152,7 @@ class Entities:
             self._styles[key] = make("IfcSurfaceStyle", name, "BOTH", [shading])
         return self._styles[key]
 
-    def aggregate(self, whole, parts: Sequence) -> None:
+    def aggregate(self, whole: Any, parts: Sequence) -> None:
         """Says that a thing consists of others."""
         self.file.create_entity(
             "IfcRelAggregates",
@@ -160,7 +161,7 @@ class Entities:
             RelatedObjects=parts,
         )
 
-    def contain(self, site, elements: Sequence) -> None:
+    def contain(self, site: Any, elements: Sequence) -> None:
         """Says that elements are in the site."""
         self.file.create_entity(
             "IfcRelContainedInSpatialStructure",
@@ -169,7 +170,7 @@ class Entities:
             RelatingStructure=site,
         )
 
-    def connect(self, one, other, border, name: str) -> None:
+    def connect(self, one: Any, other: Any, border: Any, name: str) -> None:
         """Says that two elements meet in a third one."""
         self.file.create_entity(
             "IfcRelConnectsWithRealizingElements",
@@ -191,7 +192,7 @@ class Entities:
             RelatingMaterial=made,
         )
 
-    def properties(self, element, name: str, values: dict) -> None:
+    def properties(self, element: Any, name: str, values: dict) -> None:
         """A set of properties: texts as labels, numbers as they are; those that are None are left out."""
         make = self.file.create_entity
         kinds = {str: "IfcLabel", int: "IfcInteger", float: "IfcReal"}
@@ -204,14 +205,14 @@ class Entities:
             element, make("IfcPropertySet", self._guid(name, element.GlobalId), None, name, None, found)
         )
 
-    def volume(self, element, name: str, volume: float) -> None:
+    def volume(self, element: Any, name: str, volume: float) -> None:
         """A set of quantities with the volume."""
         make = self.file.create_entity
         quantity = make("IfcQuantityVolume", "Volume", None, None, volume)
         guid = self._guid(name, element.GlobalId)
         self._define(element, make("IfcElementQuantity", guid, None, name, None, None, [quantity]))
 
-    def _define(self, element, definition) -> None:
+    def _define(self, element: Any, definition: Any) -> None:
         self.file.create_entity(
             "IfcRelDefinesByProperties",
             self._guid("defines", definition.GlobalId),

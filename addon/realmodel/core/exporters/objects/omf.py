@@ -12,21 +12,25 @@ import datetime
 import json
 import uuid
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
 from ...base.atomic import Outputs
 from ...base.packages import omf_library, quiet
-from ...results.regular_cells import regular_cells
-from ...results.section_data import rgb_bytes
+from ...cells.model_data import ModelData
+from ...results.regular_cells import RegularCells, regular_cells
+from ...results.sections.section_data import rgb_bytes
 from ..shapes.parts import Part
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid
 
 _LONG_AGO = datetime.datetime(1970, 1, 1)  # of all that the library dates: the same model has the same bytes
 
 
-def write_omf(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+def write_omf(
+    model: ModelData, path: Path, outputs: Outputs, step: Callable[[float], None], size: np.ndarray | None
+) -> None:
     """Writes a model. size: of the cells of a block model, as of regular_cells.checked_size; None: none."""
     omf = omf_library("writing OMF")
     contents = Contents.of(model)
@@ -52,7 +56,7 @@ def write_omf(model, path, outputs: Outputs, step: Callable[[float], None], size
     step(1.0)
 
 
-def _write(omf, project, file: BinaryIO) -> None:
+def _write(omf: Any, project: Any, file: BinaryIO) -> None:
     """As the library's OMFWriter does, which wants a name in small letters."""
     writer = omf.OMFWriter
     writer.initialize_header(file, project.uid)
@@ -61,7 +65,7 @@ def _write(omf, project, file: BinaryIO) -> None:
     file.write(text.encode())
 
 
-def _date(entity, *words: str) -> None:
+def _date(entity: Any, *words: str) -> None:
     """Gives an entity and all in it identifiers and dates that are always the same."""
     entity._backend.update(uid=stable_uuid("omf", *words), date_created=_LONG_AGO, date_modified=_LONG_AGO)
     for name, value in list(entity._backend.items()):
@@ -74,7 +78,7 @@ def _date(entity, *words: str) -> None:
 class _Elements:
     """Makes the elements of a project."""
 
-    def __init__(self, omf: Any, model, contents: Contents):
+    def __init__(self, omf: Any, model: ModelData, contents: Contents):
         self._omf, self._model, self._contents = omf, model, contents
         self._block_names = contents.block_names
 
@@ -89,7 +93,7 @@ class _Elements:
             found.append(self._picks(contents.holes))
         return found
 
-    def _block(self, shell: BlockShell):
+    def _block(self, shell: BlockShell) -> Any:
         block = self._model.blocks[shell.number]
         rock = self._model.project.rocks[block.rock].name
         data = [
@@ -100,7 +104,7 @@ class _Elements:
         text = f"Block of rock mass {rock}; property {block.property}; volume {block.volume!r}"
         return self._triangles(shell.part, text, data)
 
-    def _property(self, shell: BlockShell):
+    def _property(self, shell: BlockShell) -> Any:
         """The property of a block, the same on each triangle, with a legend for each thing known of it."""
         indices = np.zeros(len(shell.surface), np.int64)
         data = self._mapped("property", "faces", indices, [shell.part.material])
@@ -116,14 +120,14 @@ class _Elements:
         data.legends = [*data.legends, *legends]
         return data
 
-    def _surface(self, shape: SurfaceShape):
+    def _surface(self, shape: SurfaceShape) -> Any:
         data = [
             self._omf.ScalarData(name=name, location="vertices", array=self._omf.ScalarArray(values))
             for name, values in shape.values.items()
         ]
         return self._triangles(shape.part, shape.group, data)
 
-    def _triangles(self, part: Part, description: str, data: list):
+    def _triangles(self, part: Part, description: str, data: list) -> Any:
         omf = self._omf
         return omf.SurfaceElement(
             name=part.name,
@@ -136,7 +140,7 @@ class _Elements:
             data=data,
         )
 
-    def _boreholes(self, holes: Sequence[Hole]):
+    def _boreholes(self, holes: Sequence[Hole]) -> Any:
         omf = self._omf
         sizes = [len(hole.places) for hole in holes]
         first = np.cumsum([0, *sizes[:-1]])
@@ -163,7 +167,7 @@ class _Elements:
             ],
         )
 
-    def _picks(self, holes: Sequence[Hole]):
+    def _picks(self, holes: Sequence[Hole]) -> Any:
         omf = self._omf
         picks = [
             (place, number, surface)
@@ -184,7 +188,7 @@ class _Elements:
             ],
         )
 
-    def cells(self, cells):
+    def cells(self, cells: RegularCells) -> Any:
         """A block model: of each cell the block with the largest share, and all shares. The last axis, w,
         runs first."""
         omf = self._omf
@@ -206,7 +210,9 @@ class _Elements:
             data=data,
         )
 
-    def _mapped(self, name: str, location: str, indices: Sequence[int] | np.ndarray, names: Iterable[str]):
+    def _mapped(
+        self, name: str, location: str, indices: Sequence[int] | np.ndarray, names: Iterable[str]
+    ) -> Any:
         """Numbers in a list of names."""
         omf = self._omf
         return omf.MappedData(
@@ -216,5 +222,5 @@ class _Elements:
             legends=[self._legend("name", omf.StringArray(array=list(names)))],
         )
 
-    def _legend(self, name: str, values):
+    def _legend(self, name: str, values: Any) -> Any:
         return self._omf.Legend(name=name, values=values)

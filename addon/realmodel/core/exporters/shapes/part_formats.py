@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any, BinaryIO
 
 from .dxf import write_dxf
 from .gltf import write_glb
@@ -26,7 +27,7 @@ def part_writers(parts_of: Callable, unit_of: Callable[..., str]) -> dict[str, C
     """Functions (item, file) by ending that write parts_of(item). unit_of(item): of its lengths."""
 
     def writer(write: Callable[..., None]) -> Callable[..., None]:
-        def write_it(item, file) -> None:
+        def write_it(item: Any, file: BinaryIO) -> None:
             unit = {"unit": unit_of(item)} if write is write_tsurf else {}
             write(parts_of(item), file, lambda _: None, **unit)
 

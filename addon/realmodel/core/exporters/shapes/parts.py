@@ -10,6 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from ...base.work import native_module
+from ...cells.model_data import ModelData, UsedSurfaces
+from ...results.sections.section_data import SectionData
 
 _PLAIN = (0.7, 0.7, 0.7)  # for parts without a property
 
@@ -58,7 +60,7 @@ class FaceTriangles:
     blocks: np.ndarray
 
     @classmethod
-    def of(cls, model) -> FaceTriangles:
+    def of(cls, model: ModelData) -> FaceTriangles:
         """Those of all blocks of a model."""
         blocks = model.face_blocks
         faces = np.flatnonzero(blocks[:, 0] != blocks[:, 1])
@@ -77,7 +79,7 @@ class FaceTriangles:
         return own, corners
 
 
-def model_parts(model, triangles: FaceTriangles | None = None) -> list[Part]:
+def model_parts(model: ModelData, triangles: FaceTriangles | None = None) -> list[Part]:
     """The closed boundary of each existing block, named after it. Blocks share the triangles between them.
     triangles: those of the model, where they are known already."""
     names = distinct_names(block.name for block in model.blocks)
@@ -105,7 +107,7 @@ def model_parts(model, triangles: FaceTriangles | None = None) -> list[Part]:
     return parts
 
 
-def block_materials(model) -> dict[int, str]:
+def block_materials(model: ModelData) -> dict[int, str]:
     """The name of the property of each block."""
     library = model.project.library
     used = {block.property for block in model.blocks}
@@ -114,7 +116,7 @@ def block_materials(model) -> dict[int, str]:
     return dict(zip(named, distinct_names(named.values()), strict=True))
 
 
-def surface_parts(surfaces) -> list[Part]:
+def surface_parts(surfaces: UsedSurfaces) -> list[Part]:
     """The surfaces of a SurfaceSet or a Model, each as it was used."""
     parts = []
     for number, name in enumerate(distinct_names(surfaces.surface_names)):
@@ -124,7 +126,7 @@ def surface_parts(surfaces) -> list[Part]:
     return parts
 
 
-def section_parts(section) -> list[Part]:
+def section_parts(section: SectionData) -> list[Part]:
     """The polygons of a section or fence, those of each block together."""
     names = distinct_names(section.block_names)
     sizes = np.diff(section.offsets)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...base.work import native_module
 from ...simulation import PolyhedralMesh
-from ...simulation.patches import boundary_patches, solver_names
+from ...simulation.patches import Patch, boundary_patches, solver_names
 
 POLY_MESH = "constant/polyMesh"
 _HEADER = """FoamFile
@@ -95,7 +95,7 @@ def write_openfoam(mesh: PolyhedralMesh, folder: Path, step: Callable[[float], N
     step(1.0)
 
 
-def _ordered(mesh: PolyhedralMesh):
+def _ordered(mesh: PolyhedralMesh) -> tuple[np.ndarray, int, list[Patch], np.ndarray]:
     """The faces in OpenFOAM's order: those between cells by the lower cell and then the higher, then the
     outside patch by patch; how many are inner; the patches, and where each begins, and the last ends."""
     inner = native_module().inner_faces(mesh.face_cells, mesh.cells)
@@ -122,7 +122,7 @@ def _rises(mesh: PolyhedralMesh, faces: np.ndarray) -> np.ndarray:
     return rises
 
 
-def _boundary(patches, starts) -> str:
+def _boundary(patches: list[Patch], starts: np.ndarray) -> str:
     text = f"{len(patches)}\n(\n"
     for number, patch in enumerate(patches):
         group = f"        inGroups        1({patch.group});\n" if patch.group != patch.name else ""

@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
     return walk.shapes
 
 
-def _parsed(text: str):
+def _parsed(text: str) -> Any:
     """One JSON text; or several after each other, as one collection: one a line, or each behind a record
     separator (RFC 8142)."""
     decoder = json.JSONDecoder(parse_constant=_refuse_constant)
@@ -67,7 +68,7 @@ class _NotANumberError(ValueError):
     pass
 
 
-def _refuse_constant(name: str):
+def _refuse_constant(name: str) -> NoReturn:
     raise _NotANumberError(name)
 
 
@@ -81,7 +82,7 @@ class _Walk:
     def refuse(self, what: str, item: str) -> InputRefused:
         return InputRefused(what, file=self.file, item=item or None)
 
-    def node(self, node, item: str) -> None:
+    def node(self, node: Any, item: str) -> None:
         kind = node.get("type") if isinstance(node, dict) else None
         if kind == "FeatureCollection":
             for number, feature in enumerate(self.members(node, "features", item), 1):
@@ -126,7 +127,7 @@ class _Walk:
             raise self.refuse(f"not GeoJSON: {node['type']} without a list '{key}'", item)
         return members
 
-    def polygon(self, rings, item: str) -> None:
+    def polygon(self, rings: Any, item: str) -> None:
         if not isinstance(rings, list):
             raise self.refuse("the coordinates of a Polygon must be a list of rings", item)
         found = []
@@ -137,14 +138,14 @@ class _Walk:
             found.append(self.positions(ring, where, 3))
         self.shapes.add_polygon(item, found)
 
-    def positions(self, places, item: str, least: int) -> np.ndarray:
+    def positions(self, places: Any, item: str, least: int) -> np.ndarray:
         """(N, 2) float64 of a list of at least so many positions; (N, 3) where heights are wanted."""
         if not isinstance(places, list) or len(places) < least:
             raise self.refuse(f"a list of at least {least} positions is needed", item)
         found = [self.position(place, item, number) for number, place in enumerate(places, 1)]
         return np.array(found, np.float64).reshape(-1, self.shapes.ordinates)
 
-    def position(self, position, item: str, number: int) -> tuple[float, ...]:
+    def position(self, position: Any, item: str, number: int) -> tuple[float, ...]:
         count = self.shapes.ordinates
         plain = isinstance(position, list) and len(position) >= 2
         if not plain or not all(is_number(coordinate) for coordinate in position[:count]):

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -87,7 +88,7 @@ def read_shapefile(
     return shapes
 
 
-def _shapes(shp) -> Iterator:
+def _shapes(shp: Any) -> Iterator:
     """The shapes one after another. The iterator of pyshp remembers where each one was."""
     at, number, size = _FIRST, 0, shp.file.seek(0, os.SEEK_END)
     while at < size:
@@ -103,15 +104,15 @@ class _opened:
     def __init__(self, path: Path | None):
         self.file = None if path is None else path.open("rb")
 
-    def __enter__(self):
+    def __enter__(self) -> Any:
         return self.file
 
-    def __exit__(self, *_error):
+    def __exit__(self, *_error: object) -> None:
         if self.file is not None:
             self.file.close()
 
 
-def _add(shape, item: str, shapes: Shapes) -> None:
+def _add(shape: Any, item: str, shapes: Shapes) -> None:
     if shape.shapeType == 0:  # a feature without a shape
         return
     places = np.array([point[:2] for point in shape.points], np.float64).reshape(-1, 2)

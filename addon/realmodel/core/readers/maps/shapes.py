@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -165,7 +166,7 @@ class Selection:
         there = "; ".join(f"{name} is {names_shown(list(values))}" for name, values in self.seen.items())
         raise self._nothing(f"no feature has {said}", file=self.file, item=self.item, advice=there)
 
-    def _nothing(self, what: str, **where) -> NothingSelected:
+    def _nothing(self, what: str, **where: Any) -> NothingSelected:
         error = NothingSelected(what, **where)
         error.names, error.values = list(self.known), list(next(iter(self.seen.values())))
         return error
@@ -179,7 +180,7 @@ def of_name(name: str, attributes: Mapping) -> str | None:
     return next((key for key in attributes if str(key).lower() == name.lower()), None)
 
 
-def _equal(value, wanted) -> bool:
+def _equal(value: Any, wanted: Any) -> bool:
     if isinstance(wanted, str):
         return str(value).strip() == wanted.strip()
     if value is None or isinstance(value, bool):

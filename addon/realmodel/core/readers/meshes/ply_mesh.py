@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -115,7 +116,7 @@ class _Numbers(_Bytes):
         return self._numbers[begin : begin + size].tobytes()
 
 
-def _header(lines: list[str]):
+def _header(lines: list[str]) -> tuple[str, dict[str, tuple]]:
     """("ascii" or a kind of binary, {element: (count, [(property, type of its length or None, type)])})."""
     kind, order = "", ""
     elements: dict[str, tuple] = {}
@@ -134,7 +135,7 @@ def _header(lines: list[str]):
     return kind, elements
 
 
-def _vertices(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: Step) -> int:
+def _vertices(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: MeshRows, step: Step) -> int:
     """Reads the vertices from a byte on; where they end."""
     row = np.dtype([(name, form) for name, _, form in properties])
     if not 0 <= count * row.itemsize <= len(body) - at:
@@ -147,7 +148,7 @@ def _vertices(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, ste
     return at + count * row.itemsize
 
 
-def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: Step) -> int:
+def _faces(body: _Bytes, at: int, count: int, properties: list[tuple], mesh: MeshRows, step: Step) -> int:
     """Reads the faces from a byte on; where they end."""
     keys = [name for name, length, _ in properties if length and name in _CORNERS]
     if len(keys) != 1:
@@ -160,7 +161,7 @@ def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: 
     return at
 
 
-def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
+def _some_faces(body: _Bytes, at: int, count: int, properties: list[tuple], key: str) -> tuple[Any, int]:
     """The corners of this number of faces, and their end."""
     _, sizes, _ = _face(body, at, properties, key)
     fields: list[tuple] = []
@@ -180,7 +181,7 @@ def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
     return faces, at
 
 
-def _face(body: _Bytes, at: int, properties, key: str):
+def _face(body: _Bytes, at: int, properties: list[tuple], key: str) -> tuple[Any, list[int], int]:
     """One face: its corners, the length of each property, and its end."""
     corners, sizes = None, []
     for name, length, form in properties:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...base.algebra import begins_run
 from ...base.errors import InputRefused
@@ -67,7 +68,7 @@ class MeshRows:
         self._triangle_count = 0
         self._lowest, self._highest = 0, -1  # corners
 
-    def add_vertices(self, vertices) -> None:
+    def add_vertices(self, vertices: ArrayLike) -> None:
         with np.errstate(invalid="ignore"):  # NaN of any kind is refused
             vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
         bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
@@ -133,7 +134,7 @@ class MeshRows:
 
 
 def mesh_of_faces(
-    file: Path, vertices, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None
+    file: Path, vertices: ArrayLike, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None
 ) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
@@ -144,7 +145,7 @@ def mesh_of_faces(
     return found.mesh()
 
 
-def mesh_of_corners(file: Path, corners, sizes: Sequence[int] = (3,)) -> TriangleMesh:
+def mesh_of_corners(file: Path, corners: ArrayLike, sizes: Sequence[int] = (3,)) -> TriangleMesh:
     """The mesh of faces that are given by the places (C, 3) of their corners, one face after another; equal
     places become one vertex, in the order of their coordinates. sizes: the number of corners of each face, or
     that of all. Raises InputRefused."""

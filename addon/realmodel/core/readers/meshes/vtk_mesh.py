@@ -7,6 +7,7 @@ from __future__ import annotations
 import base64
 import re
 import zlib
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -112,7 +113,7 @@ def _faces(arrays: _Arrays, piece: ElementTree.Element) -> _Faces:
     return faces
 
 
-def _strip(row) -> list:
+def _strip(row: Sequence) -> list:
     return [row[k : k + 3] if k % 2 == 0 else [row[k + 1], row[k], row[k + 2]] for k in range(len(row) - 2)]
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def _equal(column: np.ndarray, wanted: list) -> np.ndarray:
     return np.isin(column.astype(str), [str(value) for value in wanted])
 
 
-def _shown(where) -> str:
+def _shown(where: Any) -> str:
     return " and ".join(f"{name} = {value!r}" for name, value in where.items())
 
 

@@ -13,6 +13,7 @@ import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -82,7 +83,7 @@ def read_geotiff(
 
 
 @contextmanager
-def _no_logging():
+def _no_logging() -> Iterator[None]:
     """Suppresses the log messages of tifffile about tags; errors are raised."""
     logger = logging.getLogger("tifffile")
     before, logger.disabled = logger.disabled, True
@@ -92,7 +93,7 @@ def _no_logging():
         logger.disabled = before
 
 
-def _check(file: Path, tiff, page, is_kept_in_memory: bool) -> None:
+def _check(file: Path, tiff: Any, page: Any, is_kept_in_memory: bool) -> None:
     """Raises InputRefused for an image that is no raster of heights, or that cannot be read."""
 
     def refuse(what: str, advice: str | None = None) -> InputRefused:
@@ -128,14 +129,14 @@ def _check(file: Path, tiff, page, is_kept_in_memory: bool) -> None:
         )
 
 
-def _part_shape(page) -> tuple[int, int]:
+def _part_shape(page: Any) -> tuple[int, int]:
     """Rows and columns of a tile, or of a strip."""
     if page.is_tiled:
         return page.tilelength, page.tilewidth
     return min(page.rowsperstrip, page.imagelength), page.imagewidth
 
 
-def _bands(file: Path, tifffile, tiff, page, step: Step) -> Iterator[np.ndarray]:
+def _bands(file: Path, tifffile: Any, tiff: Any, page: Any, step: Step) -> Iterator[np.ndarray]:
     """Rows of heights (rows, columns) float64, one row of tiles, or a part of a strip, after another."""
     rows, columns = page.imagelength, page.imagewidth
     stored = page.dtype.newbyteorder(tiff.byteorder)
@@ -189,7 +190,7 @@ def _cut_off(file: Path) -> InputRefused:
     return InputRefused("a damaged TIFF: a strip or tile is cut off", file=file)
 
 
-def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:
+def _decompressed(tifffile: Any, compression: int, data: bytes, size: int) -> bytes:
     """At least the bytes that are there, at most `size`."""
     if compression == _LZW:
         if data[:2] == b"\0\1":
@@ -232,7 +233,7 @@ def _no_value(file: Path, tags: dict) -> list[float]:
         raise InputRefused(f"its nodata is not a number: '{text:.40}'", file=file) from error
 
 
-def _scaled(z: np.ndarray, metadata) -> np.ndarray:
+def _scaled(z: np.ndarray, metadata: Any) -> np.ndarray:
     """Heights that GDAL stored as integers with a scale and an offset."""
     parts = {}
     for role in ("scale", "offset"):
@@ -243,7 +244,9 @@ def _scaled(z: np.ndarray, metadata) -> np.ndarray:
     return z if parts["offset"] is None else z + parts["offset"]
 
 
-def _place(file: Path, tags: dict, keys: dict):
+def _place(
+    file: Path, tags: dict, keys: dict
+) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
     """The position of the first height, and the steps to the next one across and down."""
     matrix: tuple[float, ...] | None = None
     if _TRANSFORMATION in tags and len(tags[_TRANSFORMATION]) == 16:

@@ -48,7 +48,7 @@ def read_irap_grid(
     return Raster(z.reshape(shape), (west, south), (dx * across, dx * up), (-dy * up, dy * across))
 
 
-def _text(file: Path, step: Step):
+def _text(file: Path, step: Step) -> tuple:
     raw = text_content(file)
     numbers: list[float] = []  # the header is 19 of them, on lines of any length
     line, at = 0, 0
@@ -65,7 +65,7 @@ def _text(file: Path, step: Step):
     return heights, (rows, columns), (west, south), (dx, dy), angle
 
 
-def _binary(file: Path):
+def _binary(file: Path) -> tuple:
     raw = FileBytes(file)
     begin = _HEAD.size + _SECOND.size + _THIRD
     if len(raw) < begin:

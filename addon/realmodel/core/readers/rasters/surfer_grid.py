@@ -39,7 +39,7 @@ def read_surfer_grid(
     return Raster(z.reshape(shape), (west, south), (dx, 0.0), (0.0, dy))
 
 
-def _text(file: Path, step: Step):
+def _text(file: Path, step: Step) -> tuple:
     raw = text_content(file)
     lines = [line for line, _ in zip(header_lines(raw), range(5), strict=False)]
     if len(lines) < 5:
@@ -55,7 +55,7 @@ def _text(file: Path, step: Step):
     return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
 
-def _binary_6(file: Path, _step: Step):
+def _binary_6(file: Path, _step: Step) -> tuple:
     raw = FileBytes(file)
     if len(raw) < _HEAD_6.size:
         raise InputRefused(f"the header is cut off at byte {len(raw)}", file=file)
@@ -67,7 +67,7 @@ def _binary_6(file: Path, _step: Step):
     return heights, (rows, columns), [], (west, south), spacing
 
 
-def _binary_7(file: Path, _step: Step):
+def _binary_7(file: Path, _step: Step) -> tuple:
     raw = FileBytes(file)
     sections: dict[bytes, tuple[int, int]] = {}
     at = 0

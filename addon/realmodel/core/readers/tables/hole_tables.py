@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -153,7 +153,7 @@ class Row:
         return value
 
 
-def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step):
+def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
     table = _opened(given, file, known)
@@ -209,7 +209,7 @@ def _opened(given: Reading, file: Path, known: Columns) -> Table:
     return open_table(file, Expected(given.separator, (), names, 1, 2))
 
 
-def _parts(body: str, separator: str):
+def _parts(body: str, separator: str) -> Iterator[str]:
     """Entries of the first lines."""
     for line in body[:20_000].split("\n"):
         yield from fields(line, separator)

@@ -142,7 +142,7 @@ def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:
     return follows
 
 
-def source_text(hole: str, depth: float, place) -> str:
+def source_text(hole: str, depth: float, place: Sequence[float] | np.ndarray) -> str:
     """The hole with the depth, or the place where there is none: hole 'B1' at 12.5; else the place alone."""
     at = place_text(np.asarray(place).tolist())
     if not hole:

@@ -9,13 +9,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
-from ...base.work import native_module, on_threads
+from ...base.work import NativeError, native_module, on_threads
 from ...settings.point_file import PointFile, list_of
 from .table_layout import (
     Expected,
@@ -186,7 +187,7 @@ def _pieces(
     mark, columns, filters, missing = reading
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
-    def read(piece: bytes):
+    def read(piece: bytes) -> Any:
         return native.read_numbers(
             piece, (table.layout.separator, mark), columns, filters, missing, on_threads(1)
         )
@@ -243,7 +244,7 @@ def body_rows(table: Table) -> Iterator[list[str]]:
     return (table.layout.fields(line) for line in body.splitlines() if line.strip())
 
 
-def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
+def _has_decimal_commas(table: Table, columns: Sequence[int], error: NativeError) -> bool:
     entry = _entry(table, error)
     if "," not in entry:
         return False
@@ -255,16 +256,16 @@ def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
             file=table.file,
             line=error.items[0],
             advice='set decimal = "," for decimal commas, or remove the separators',
-        ) from error
+        )
     return bool(is_comma)
 
 
-def _entry(table: Table, error) -> str:
+def _entry(table: Table, error: NativeError) -> str:
     begin, end = error.items[2:4]
     return table.raw[begin:end].decode(table.encoding, "replace").strip()
 
 
-def _refused(table: Table, columns: Sequence[int], decimal: str, error) -> InputRefused:
+def _refused(table: Table, columns: Sequence[int], decimal: str, error: NativeError) -> InputRefused:
     line = error.items[0]
     if error.kind == "too_few":
         needed = max(columns) + 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -129,7 +129,12 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
     return " "
 
 
-def _header(headings, commented, wanted, known) -> tuple[int | None, tuple[str, ...] | None]:
+def _header(
+    headings: list[tuple[int, list[str]]],
+    commented: list[tuple[int, list[str]]],
+    wanted: Iterable[str],
+    known: Collection[str],
+) -> tuple[int | None, tuple[str, ...] | None]:
     """The line with the names of the columns: the one that has the requested names, if any; a comment counts
     only if it has all of them."""
     asked = [name.strip().lower() for name in wanted]

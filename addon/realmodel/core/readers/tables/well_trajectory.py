@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...base.elementary import atan2, cos, sin
 
@@ -70,7 +71,7 @@ def _sin_by(x: float) -> float:
     return sin(x) / x if x else 1.0
 
 
-def dogleg_angles(begin, end) -> np.ndarray:
+def dogleg_angles(begin: ArrayLike, end: ArrayLike) -> np.ndarray:
     """(...) the angles in radians between directions (..., 3) of length 1; as exact for small ones as for
     large."""
     begin, end = np.asarray(begin, float), np.asarray(end, float)

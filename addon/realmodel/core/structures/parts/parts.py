@@ -180,7 +180,7 @@ def structures_of(project: Project, faults: list[Fault], bodies: list[Body]) -> 
 
 def divide(work: Work, structures: Structures, box: np.ndarray) -> Structures:
     """The parts of a box, (2, 3). Raises InputRefused."""
-    with refused_as(lambda error: refused_structure(error, structures)) as native:
+    with refused_as(lambda error: refused_structure(error, structures.faults, structures.bodies)) as native:
         sides, low, high = work.native(native.structure_parts, box.tolist(), structures.native())
     return replace(structures, sides=sides, low=low, high=high, box=box)
 

@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...base.errors import InputRefused, number_list, place_text
+from ...base.work import NativeError
+from ...project.structure_entries import Body, Fault
 
 _ADVICE = {
     "not_closed": "close its surface: each edge must belong to two triangles",
@@ -17,7 +21,7 @@ _ADVICE = {
 }
 
 
-def ends_inside(fault, place: tuple[float, float, float] | None) -> InputRefused:
+def ends_inside(fault: Fault, place: tuple[float, ...] | None) -> InputRefused:
     """The refusal of a fault whose border is inside the rock at a place; the caller raises it."""
     file, line = fault.shape_source()
     what = "it ends inside the rock that it displaces" + (f" near {place_text(place)}" if place else "")
@@ -25,25 +29,24 @@ def ends_inside(fault, place: tuple[float, float, float] | None) -> InputRefused
     return InputRefused(what, file=file, line=line, item=fault.item, advice=advice, place=place)
 
 
-def refused_structure(error, structures) -> InputRefused:
+def refused_structure(error: NativeError, faults: Sequence[Fault], bodies: Sequence[Body]) -> InputRefused:
     """The refusal for a native InputError about structures; the caller raises it."""
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
     advice: str | None = _ADVICE.get(error.kind)
-    if not 0 <= error.surface < len(structures):
+    if not 0 <= error.surface < len(faults) + len(bodies):
         return InputRefused(f"{error}{near}", advice=advice, place=place)
-    count = len(structures.faults)
-    is_fault = error.surface < count
-    entry = structures.faults[error.surface] if is_fault else structures.bodies[error.surface - count]
+    fault = faults[error.surface] if error.surface < len(faults) else None
+    entry = fault or bodies[error.surface - len(faults)]
     file, line = entry.shape_source()
     what, items = str(error), [int(item) for item in error.items]
     if error.kind == "does_not_meet" and items:
-        what = f"it ends at fault '{structures.faults[items[0]].name}', but does not meet it"
-    elif error.kind == "ends_inside" and is_fault and entry.dies_out:
+        what = f"it ends at fault '{faults[items[0]].name}', but does not meet it"
+    elif error.kind == "ends_inside" and fault is not None and fault.dies_out:
         what = "beyond its tip the surfaces differ on its two sides"
         advice = "extend it, or give data beyond the tip that agree"
-    elif error.kind == "ends_inside" and is_fault:
-        return ends_inside(entry, place)
+    elif error.kind == "ends_inside" and fault is not None:
+        return ends_inside(fault, place)
     elif items:
         what = f"{what} (triangle{'s' if len(items) > 1 else ''} {number_list(items)})"
     return InputRefused(what + near, file=file, line=line, item=entry.item, advice=advice, place=place)

@@ -137,7 +137,9 @@ def _beyond(
     return beyond, group
 
 
-def _corners(places, ends, away, group: np.ndarray, by: float) -> np.ndarray:
+def _corners(
+    places: np.ndarray, ends: np.ndarray, away: np.ndarray, group: np.ndarray, by: float
+) -> np.ndarray:
     """(K, 3) where the lines meet into which the edges before and after each group of vertices go on."""
     count = int(group.max()) + 1
     size = np.bincount(group, minlength=count)[:, None]

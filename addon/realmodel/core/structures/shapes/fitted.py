@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -24,7 +25,7 @@ _NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
 
-def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
+def fit_sticks(sticks: Sequence[np.ndarray], extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
     """The surface through fault sticks: their points, and triangles between neighbors.
 
     sticks: arrays (N, 3), each from one end to the other, in any order and either direction. extend: how far
@@ -118,7 +119,9 @@ def _longer(sticks: list[np.ndarray], by: float) -> list[np.ndarray]:
     return found
 
 
-def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: int):
+def _between(
+    left: np.ndarray, right: np.ndarray, first_left: int, first_right: int
+) -> Iterator[tuple[int, int, int]]:
     """The triangles of the strip between two sticks, as vertex numbers."""
     at_left, at_right = _shares(left), _shares(right)
     i = j = 0
@@ -139,7 +142,7 @@ def _shares(stick: np.ndarray) -> np.ndarray:
     return way / way[-1]
 
 
-def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = True):
+def fit_points(work: Work, points: np.ndarray, extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
     """The smooth surface through scattered points, over the plane that fits them best.
 
     points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
@@ -161,7 +164,7 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     task = Task(work, np.ascontiguousarray(local), nodes, options, triangles)
     found = heights(_METHOD, task)
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
-    return vertices, triangles
+    return Sheet(vertices, triangles)
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -188,7 +191,7 @@ def convex_hull(plan: np.ndarray) -> np.ndarray:
     """(N, 2) corners of the convex hull of points, counter-clockwise (Andrew's monotone chain)."""
     points = np.unique(plan, axis=0).tolist()
 
-    def half(given):
+    def half(given: Iterable[list[float]]) -> list[list[float]]:
         chain: list[list[float]] = []
         for x, y in given:
             while len(chain) > 1:

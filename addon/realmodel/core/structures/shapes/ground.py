@@ -4,6 +4,8 @@ their data."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...base.errors import InputRefused
@@ -96,7 +98,7 @@ def _data(entry: RockInput, number: int) -> np.ndarray:
     return np.empty((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 
 
-def _number(surface: Surface):
+def _number(surface: Surface) -> Callable[[str], float]:
     """number(key): what a surface says of it; 0 where that is no number."""
 
     def number(key: str) -> float:

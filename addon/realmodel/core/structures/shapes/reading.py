@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +52,7 @@ def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarnin
     shape_file = fault.input_file or fault.shape_file
     with naming(fault.item, fault.shape_source):
         if fault.points is not None:
-            points: object = fault.points
+            points: Any = fault.points
             texts: list[str] = []
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
@@ -111,7 +113,7 @@ def _tops(project: Project, inputs: list[RockInput], fault: Fault) -> list[Top]:
     return tops
 
 
-def _fitted(work: Work, fault: Fault, points) -> Sheet:
+def _fitted(work: Work, fault: Fault, points: np.ndarray | Sequence[np.ndarray]) -> Sheet:
     sideways = not fault.dies_out
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
         return fit_points(work, checked_points(points), fault.extend, sideways)
@@ -147,7 +149,7 @@ def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
 
 def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> Sheet:
     if entry.mesh_file is None:
-        vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
+        vertices, triangles = checked_triangulation(*entry.triangulation())
     else:
         mesh = read_mesh(entry.mesh_file)
         vertices, texts = mesh.in_model(entry.mesh_file, units)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -113,7 +114,7 @@ def _farthest(plan: np.ndarray, place: np.ndarray) -> float:
     return float(norm(np.abs(plan - place).max(axis=0)))
 
 
-def _lines_of(given) -> list[np.ndarray]:
+def _lines_of(given: Any) -> list[np.ndarray]:
     """The lines (N, 3) of arrays (N, 2) or (N, 3)."""
     several = len(given) and np.ndim(given[0]) > 1
     found = []

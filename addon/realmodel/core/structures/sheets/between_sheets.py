@@ -32,11 +32,12 @@ def places_between(
         t, m = pairs[start : start + _AT_ONCE].T
         number, places = _places_in_parts(one[t], other[t], beyond[m], within)
         found.append((t[number], places))
-    numbers, places = zip(*found, strict=True)
-    return np.concatenate(numbers), np.concatenate(places)
+    return np.concatenate([number for number, _ in found]), np.concatenate([places for _, places in found])
 
 
-def _places_in_parts(one: np.ndarray, other: np.ndarray, crossing: np.ndarray, within: Within):
+def _places_in_parts(
+    one: np.ndarray, other: np.ndarray, crossing: np.ndarray, within: Within
+) -> tuple[np.ndarray, np.ndarray]:
     """As places_between has them, of one triangle (3, 3) of `crossing` (P, 3, 3) for each pair."""
     origin = one[:, 0]
     one, other, crossing = (each - origin[:, None] for each in (one, other, crossing))

@@ -4,7 +4,7 @@ of a neighbor, shifted by the throw of the fault between them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -274,7 +274,7 @@ def make_borrowed(
 
 
 @contextmanager
-def named(rock: Rock, number: int):
+def named(rock: Rock, number: int) -> Iterator[None]:
     """Within it errors name a surface of a rock mass."""
     try:
         yield
@@ -299,7 +299,7 @@ def _moved(shift: Shift) -> str:
     return f"{way} by {' to '.join(amounts)}"
 
 
-def _drawn_together(surface, family: Family, sheets: Sheets) -> Sheets:
+def _drawn_together(surface: InterpolatedSurface | ReadyMesh, family: Family, sheets: Sheets) -> Sheets:
     """Sheets by sides, equal beyond the tips; the same ones where they were."""
     drawn = surface.drawn_together(family, sheets)
     return {

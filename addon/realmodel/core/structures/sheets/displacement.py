@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Throw and heave: the displacement of surfaces along each fault."""
+"""Measures throw and heave along faults, at the cutoff lines of sheets."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...base.algebra import dot, norm
 from ...base.sheet import Sheet
 from ...base.triangles import unit_normals
-from ...base.work import Work, native_module, on_threads, run
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, fault_sides
 from .cutoffs import Cutoff, cutoff_of
@@ -20,58 +19,6 @@ from .within import box_of, parts_of_lines, walls_of
 _LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
 _NOTHING = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
 _AT_ONCE = 1 << 21  # pairs of a place and a segment
-
-
-@dataclass(frozen=True)
-class Displacement:
-    """Of one surface along one fault, at places (N, 3) on the cutoff line of its sheet below the fault: throw
-    and heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault,
-    negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
-    measured across the fault: in the vertical plane through the place and the direction in which the fault
-    dips there. length: (N,) of the part of the cutoff line that each place is the middle of."""
-
-    fault: str
-    rock: str
-    surface: str
-    places: np.ndarray
-    throw: np.ndarray
-    heave: np.ndarray
-    length: np.ndarray
-
-    @property
-    def mean_throw(self) -> float:
-        """Along the cutoff line."""
-        return _mean(self.throw, self.length)
-
-    @property
-    def mean_heave(self) -> float:
-        """Along the cutoff line."""
-        return _mean(self.heave, self.length)
-
-
-def _mean(values: np.ndarray, length: np.ndarray) -> float:
-    return float((values * length).sum() / length.sum())
-
-
-def displacements(model) -> list[Displacement]:
-    """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
-    return run(lambda work: _displacements(work, model), threads=model.threads)
-
-
-def _displacements(work: Work, model) -> list[Displacement]:
-    found = []
-    for number, fault in enumerate(model.structures.faults):
-        for entry in model.rock_inputs:
-            structure = entry.structure
-            if number not in structure.faults.numbers:
-                continue
-            at = structure.faults.numbers.index(number)
-            for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
-                measured = _Measured(work, structure, at, k).everywhere()
-                if len(measured[0]):
-                    name = entry.rock.surfaces[k].name
-                    found.append(Displacement(fault.name, entry.rock.name, name, *measured))
-    return found
 
 
 class _Places:
@@ -101,10 +48,10 @@ def throws_between(
     work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
-    return _Measured(work, structure, fault, surface).between(below, above)[:2]
+    return Measured(work, structure, fault, surface).between(below, above)[:2]
 
 
-class _Measured:
+class Measured:
     """Measures the displacement of one surface by one fault."""
 
     def __init__(self, work: Work, structure: RockStructure, fault: int, surface: int):
@@ -135,7 +82,7 @@ class _Measured:
                     pairs.setdefault((*rows[below].tolist(), *rows[above].tolist()), (below, above))
         return list(pairs.values())
 
-    def between(self, below: int, above: int):
+    def between(self, below: int, above: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """As everywhere, of two compartments."""
         upper = self._cutoff(above, 1)
         if not (len(upper.ends) and len(self._cutoff(below, -1).ends)):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import replace
 
@@ -67,7 +67,7 @@ class InterpolatedSurface:
             self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
-        self.most = (-1, None)
+        self.most: tuple[int, Interpolation | None] = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
         """Leaves out points that others at their place in plan contradict, with a warning."""
@@ -296,7 +296,9 @@ class InterpolatedSurface:
         result = self.made[next(iter(sheets.values()))][0]
         return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
 
-    def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
+    def _with_equal_ends(
+        self, family: Family, some: Iterable[int], values: dict, meshed: np.ndarray, result: Interpolation
+    ) -> Sheets:
         """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
         of some of the faults that die out. result: the interpolation that is known of them."""
         nodes, triangles = self.entry.planar_mesh()
@@ -323,7 +325,7 @@ class InterpolatedSurface:
         family: Family,
         sides: tuple[int, ...],
         own: np.ndarray,
-        surface=None,
+        surface: Surface | None = None,
         trend: Sheet | None = None,
         lips: Sequence[Lip] = (),
     ) -> Sheet:
@@ -332,8 +334,8 @@ class InterpolatedSurface:
         faults that die out here, of these points."""
         points = self._points(family, own, None if trend is not None else lips)
         one = self._from_points(family, sides, points, surface or self.surface, self.entry.region, trend)
-        sheet = one.surfaces[self.number]
-        result = one.interpolations[self.number]
+        sheet = one.surface(self.number)
+        result = one.interpolation(self.number)
         self.made[sheet] = result, one.attributes[self.number]
         if trend is None and own.sum() > self.most[0]:
             self.most = (int(own.sum()), result)
@@ -348,7 +350,15 @@ class InterpolatedSurface:
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
         return points if lips is None else np.concatenate([points, self._beyond(family, own, lips)])
 
-    def _from_points(self, family: Family, sides, points: np.ndarray, surface, region, trend=None):
+    def _from_points(
+        self,
+        family: Family,
+        sides: tuple[int, ...],
+        points: np.ndarray,
+        surface: Surface,
+        region: Sheet | None,
+        trend: Sheet | None = None,
+    ) -> RockInput:
         """The RockInput with the surface from points (P, 3) on the mesh of a region, and warnings."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
@@ -371,7 +381,7 @@ class InterpolatedSurface:
             attributes={},
             structure=None,
         )
-        give_heights(self.work, one, self.number, trend and self._trend(trend))
+        give_heights(self.work, one, self.number, None if trend is None else self._trend(trend))
         return one
 
     def _that_say_more(self) -> list[int]:
@@ -382,7 +392,7 @@ class InterpolatedSurface:
             return beside
         return conformable_run(rock, self.number)
 
-    def _counts_by_node(self, surface) -> bool:
+    def _counts_by_node(self, surface: Surface) -> bool:
         """Whether heights at some nodes do not depend on others, so that these need not be found."""
         settings = surface.method_options()[1]
         return (
@@ -393,11 +403,13 @@ class InterpolatedSurface:
             and not needed_surfaces(self.entry.rock, self.number)
         )
 
-    def _values_at(self, family: Family, points: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+    def _values_at(
+        self, family: Family, points: np.ndarray, surface: Surface, nodes: np.ndarray
+    ) -> np.ndarray:
         """As _values_on_nodes, at some nodes alone, from points (P, 3), of a surface that counts by node."""
         region = Sheet(np.ascontiguousarray(nodes), np.empty((0, 3), np.int32))
         one = self._from_points(family, (), points, surface, region)
-        result = one.interpolations[self.number]
+        result = one.interpolation(self.number)
         for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
             warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
             self.entry.divided().warn(list(family.members), warning)
@@ -426,7 +438,7 @@ class InterpolatedSurface:
         lips, options = [*parting, *lips], self.surface.method_options()
         return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
-    def _with_own_points(self, family: Family, surface):
+    def _with_own_points(self, family: Family, surface: Surface) -> Surface:
         """Another surface with only its points and dips in the family's compartments."""
         if surface.points is None:
             return surface
@@ -533,7 +545,7 @@ class InterpolatedSurface:
         }
 
 
-def _settled(surface, found):
+def _settled(surface: Surface, found: Interpolation) -> Surface:
     """The surface with the variogram that was found once: so the two sides of a fault have the same."""
     variogram = found.variogram
     if variogram is None or not variogram.fitted:

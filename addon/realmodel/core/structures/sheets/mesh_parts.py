@@ -102,7 +102,9 @@ def _one_way_up(plan: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.where((_areas(plan, triangles) < 0)[:, None], triangles[:, ::-1], triangles)
 
 
-def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) -> np.ndarray:
+def _gaps(
+    plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
     """Of triangles between the borders of a mesh those that bridge a fault: (K, 3) vertices of the mesh.
 
     They have corners of parts on both sides of it. Where there is an edge of a triangle that itself passes
@@ -151,7 +153,9 @@ def _spread(triangles: np.ndarray, marked: np.ndarray) -> np.ndarray:
         marked = wider
 
 
-def _overlay(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.ndarray, box: np.ndarray):
+def _overlay(
+    work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.ndarray, box: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (N, 2) and triangles (K, 3) of what parts that overlap in plan cover together, with the gaps; all
     their borders are edges."""
     plan = np.ascontiguousarray(vertices[:, :2])

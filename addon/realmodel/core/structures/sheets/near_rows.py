@@ -17,6 +17,9 @@ from ...surfaces.sides import FaultShape, fault_sides
 _RINGS = 2  # of triangles around those in which a compartment is
 
 
+Row = tuple[int, ...]  # the side of each of some faults: -1, 1, or 0 where it is not
+
+
 def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     """(N,) bool: some nodes, and those that share a triangle with one of them."""
     found = nodes.copy()
@@ -24,7 +27,9 @@ def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     return found
 
 
-def triangles_met(work: Work, fault: FaultShape, low, high, triangles) -> np.ndarray:
+def triangles_met(
+    work: Work, fault: FaultShape, low: np.ndarray, high: np.ndarray, triangles: np.ndarray
+) -> np.ndarray:
     """(T,) uint8: the triangles that a fault touches, 1, or passes, 2, beyond its ends, between two
     heights."""
     triangles = np.ascontiguousarray(triangles)
@@ -36,9 +41,9 @@ def near_rows(
     mesh: Sheet,
     common: np.ndarray,
     faults: Sequence[FaultShape],
-    rows: Sequence[tuple[int, ...]],
-    values_of: Callable[[tuple[int, ...], np.ndarray], np.ndarray],
-) -> dict[tuple[int, ...], np.ndarray]:
+    rows: Sequence[Row],
+    values_of: Callable[[Row, np.ndarray], np.ndarray],
+) -> dict[Row, np.ndarray]:
     """Values (N, C) at the nodes of a planar mesh, first of all heights, of each row of sides.
 
     They are the row's own where its compartment may be at some height that the row has there, and those in
@@ -77,7 +82,14 @@ def near_rows(
     return found
 
 
-def _add_sides(work: Work, mesh: Sheet, some: np.ndarray, heights, faults, on: dict) -> None:
+def _add_sides(
+    work: Work,
+    mesh: Sheet,
+    some: np.ndarray,
+    heights: Sequence[np.ndarray],
+    faults: Sequence[FaultShape],
+    on: dict,
+) -> None:
     """Adds to `on`, by fault and side, those of some nodes at which a height is on that side, and those of
     triangles that the fault passes between the heights, beyond its ends."""
     plan, triangles = mesh

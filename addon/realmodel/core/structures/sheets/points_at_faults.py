@@ -210,7 +210,9 @@ def _best(choice: _Choice, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray
     return placed
 
 
-def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock: str, surface: str):
+def placed_warning(
+    points: np.ndarray, moved: np.ndarray, names: list[str], rock: str, surface: str
+) -> BuildWarning | None:
     """The warning about points that are not on the side on which they lie; None where there are none."""
     count = int(moved.any(axis=1).sum())
     if not count:
@@ -261,7 +263,7 @@ def _spacing(points: np.ndarray) -> float:
     return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)
 
 
-def at_height(dips: Dips, height) -> np.ndarray:
+def at_height(dips: Dips, height: float | np.ndarray) -> np.ndarray:
     """(D, 3) the places of dips; heights, or one, of those that have none."""
     return np.column_stack([dips.positions, np.where(np.isfinite(dips.heights), dips.heights, height)])
 

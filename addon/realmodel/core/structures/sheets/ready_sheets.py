@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ...base.errors import InputRefused, place_text
@@ -215,7 +217,9 @@ class ReadyMesh:
         plan = np.ascontiguousarray(vertices[:, :2])
         return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)
 
-    def _with_equal_ends(self, family: Family, some, heights: dict, plan: np.ndarray, triangles: np.ndarray):
+    def _with_equal_ends(
+        self, family: Family, some: Iterable[int], heights: dict, plan: np.ndarray, triangles: np.ndarray
+    ) -> Sheets:
         """Sheets with some heights, by sides, drawn together beyond the ends of some of the faults that die
         out."""
         shapes = self.entry.divided().faults.shapes

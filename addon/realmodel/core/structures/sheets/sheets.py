@@ -13,6 +13,7 @@ import numpy as np
 from ...base.mapped_arrays import StoreArray, as_it_is
 from ...base.sheet import Sheet
 from ...base.work import Work
+from ...project.project import Rock
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import sides_of
@@ -93,13 +94,13 @@ def make_sheets(
         entry.divided().warnings = [each for each in warnings if each[1].surface not in younger]
 
 
-def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
+def _by_kind(rock: Rock, stage: int | None) -> tuple[list[int], list[int]]:
     """The surfaces that are interpolated, each after those that it needs, and the others."""
     interpolated = interpolation_order(rock, stage)
     return interpolated, [number for number in range(_count(rock, stage)) if number not in interpolated]
 
 
-def _count(rock, stage: int | None) -> int:
+def _count(rock: Rock, stage: int | None) -> int:
     """The number of surfaces up to a stage."""
     return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
 
@@ -149,7 +150,7 @@ def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray)
             structure=None,
         )
 
-        def holds(places: np.ndarray, row=row) -> np.ndarray:
+        def holds(places: np.ndarray, row: np.ndarray = row) -> np.ndarray:
             return (sides_of(work, places, structure.faults) == row).all(axis=1)
 
         found = points_too_low(work, one, [number])

@@ -24,6 +24,8 @@ _STRETCHES = 8  # of a fault along its strike at most, in each of which the medi
 _IN_EACH = 5  # places at least
 _OUTLIERS = 0.05  # of values, at either end, that do not count
 
+# the number of a surface, and places (N, 3) on a fault with its throw (N,) there
+Known = tuple[int, np.ndarray, np.ndarray]
 Sheets = dict[tuple[int, ...], Sheet]  # of a family, by the sides of faults that die out
 
 
@@ -186,7 +188,9 @@ class Throws:
                 pairs.append(pair if a[fault] < 0 else pair[::-1])
         return pairs
 
-    def _first(self, numbers: Iterable[int], fault: int, pairs, limit: int):
+    def _first(
+        self, numbers: Iterable[int], fault: int, pairs: list[tuple[int, int]], limit: int
+    ) -> Known | None:
         """The number of the first of some surfaces on which a throw is known, and that: places (N, 3) and
         throw (N,). At most one of the two sheets is taken over."""
         for number in numbers:
@@ -203,9 +207,11 @@ class Throws:
                 return number, *known
         return None
 
-    def _measured(self, number: int, fault: int, pairs) -> tuple[np.ndarray, np.ndarray] | None:
+    def _measured(
+        self, number: int, fault: int, pairs: Iterable[tuple[int, int]]
+    ) -> tuple[np.ndarray, np.ndarray] | None:
         """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
-        different: dict[tuple[int, ...], tuple[int, int]] = {}
+        different: dict[tuple[Sheet | None, ...], tuple[int, int]] = {}
         for pair in pairs:
             different.setdefault(tuple(self.structure.sheets[each][number] for each in pair), pair)
         parts = [
@@ -218,7 +224,7 @@ class Throws:
         places, throw = (np.concatenate(each) for each in zip(*parts, strict=True))
         return places, throw
 
-    def _share(self, family: Family, number: int, older, younger) -> float:
+    def _share(self, family: Family, number: int, older: Known, younger: Known) -> float:
         """Where a surface lies between two others along a fault in a family, by thickness: 0 at the older
         one, 1 at the younger one."""
         plan = np.concatenate([older[1], younger[1]])[:, :2]

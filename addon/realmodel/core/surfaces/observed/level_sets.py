@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...project.project import Rock
-from ...project.series import members
 from ...readers.tables.observations import Bounds, Observations
 from ...settings.series import FIELD
 
@@ -44,7 +43,7 @@ class FieldStatements:
         self._ways = self._within_intervals()
         for series in rock.series:
             if series.kind == FIELD:
-                missing |= self._add(members(rock, series), said, at[0])
+                missing |= self._add(rock.members(series), said, at[0])
         self.not_adjacent = np.sort(self._first[missing])
 
     def _within_intervals(self) -> np.ndarray:

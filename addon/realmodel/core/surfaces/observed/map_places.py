@@ -4,7 +4,7 @@ contact, and places within polygons."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -163,9 +163,9 @@ def _within(
         for row in others[inside(polygons[number].rings, plan[others])].tolist():
             claimed.setdefault((int(min(owner[row], number)), int(max(owner[row], number))), []).append(row)
     left_out = []
-    for (a, b), rows in claimed.items():
+    for (a, b), those in claimed.items():
         text = (
-            f"{polygons[a].item} and {polygons[b].item} overlap, as at {place_text(plan[rows[0]].tolist())}"
+            f"{polygons[a].item} and {polygons[b].item} overlap, as at {place_text(plan[those[0]].tolist())}"
         )
         left_out.append(LeftOut("overlap", text, polygons[a].unit))
     twice = np.unique([row for rows in claimed.values() for row in rows]).astype(np.int64)
@@ -175,7 +175,7 @@ def _within(
     return (plan[kept], classes[owner[kept]]), left_out
 
 
-def _in_boxes(polygons: list[UnitPolygon], plan: np.ndarray):
+def _in_boxes(polygons: list[UnitPolygon], plan: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
     """The number of each polygon whose box has places (N, 2), and their rows."""
     order = np.argsort(plan[:, 0], kind="stable")
     x = plan[order, 0]

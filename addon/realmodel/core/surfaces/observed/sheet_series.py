@@ -10,7 +10,6 @@ import numpy as np
 
 from ...heights.companions import Companions
 from ...project.project import Rock, Surface
-from ...project.series import members
 from ...readers.tables.observations import Bounds
 from ...settings.series import SHEETS
 
@@ -21,7 +20,7 @@ def sheets_beside(rock: Rock, number: int) -> list[int]:
     name = rock.surfaces[number].series
     for series in rock.series:
         if series.kind == SHEETS and series.name == name:
-            return members(rock, series)
+            return rock.members(series)
     return []
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.units import number_text
-from ..notebook import data_frame, polygon_mesh, with_data
+from ...base.units import number_text
+from ...notebook import data_frame, polygon_mesh, with_data
 from .section_faults import FaultTrace
 from .section_holes import HoleLine
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..base.algebra import dot
-from ..cells.model_data import ModelData
+from ...base.algebra import dot
+from ...cells.model_data import ModelData
 
 _FAULT = 1  # of `surface_kind`
 
@@ -24,7 +25,7 @@ class FaultTrace:
     panel: np.ndarray
 
 
-def traces_on_plane(model: ModelData, point, normal) -> list[FaultTrace]:
+def traces_on_plane(model: ModelData, point: ArrayLike, normal: ArrayLike) -> list[FaultTrace]:
     """The faults of a model on a plane."""
     return _joined(model, [_segments(model, np.asarray(point, float), np.asarray(normal, float))])
 

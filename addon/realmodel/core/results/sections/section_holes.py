@@ -10,11 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.algebra import begins_run, norm
-from ..base.errors import InputRefused, UsageError, number_list
-from ..cells.model_data import ModelData
-from ..project.project import Project, Rock
-from ..readers.tables.observations import Observations
+from ...base.algebra import begins_run, norm
+from ...base.errors import InputRefused, UsageError, number_list
+from ...cells.model_data import ModelData
+from ...project.project import Project, Rock
+from ...readers.tables.observations import Observations
 
 UNKNOWN = -1  # block of a part of a hole that nothing is known of
 _BEYOND = 0.05  # of its length: how far a line goes on at both ends, where nothing is given
@@ -80,7 +80,9 @@ def _joined(places: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, np.ndar
     return places[kept], blocks[kept[1:]].astype(np.int32)
 
 
-def near_plane(begin, end, plane, width: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def near_plane(
+    begin: np.ndarray, end: np.ndarray, plane: tuple[np.ndarray, np.ndarray], width: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The parts of lines from begin to end, (N, 3) each, that lie within a width of a plane on each side of
     it: the numbers (K,) of the lines, and both ends (K, 3) of the parts, moved onto the plane. plane: its
     point and normal."""
@@ -105,7 +107,10 @@ def near_plane(begin, end, plane, width: float) -> tuple[np.ndarray, np.ndarray,
 
 
 def parts_near(
-    holes: Iterable[HoleLine], plane, width: float, span: tuple[np.ndarray, np.ndarray] | None = None
+    holes: Iterable[HoleLine],
+    plane: tuple[np.ndarray, np.ndarray],
+    width: float,
+    span: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> list[HoleLine]:
     """What of holes lies within a width of a plane, moved onto it. span: both ends (2,) in plan of the panel
     that the plane is cut to; None: the whole plane."""
@@ -145,7 +150,9 @@ def hole_places(project: Project) -> dict[str, np.ndarray]:
     return found
 
 
-def line_through(places: Mapping[str, np.ndarray], holes: Sequence[str], extend: float | None = None):
+def line_through(
+    places: Mapping[str, np.ndarray], holes: Sequence[str], extend: float | None = None
+) -> np.ndarray:
     """(N, 2) float64: a line in plan through holes, in their order, that goes on by `extend` at both ends;
     None: by a twentieth of its length. places: where the holes are. Raises InputRefused for a hole that is
     not there, or holes at fewer than two places, UsageError."""

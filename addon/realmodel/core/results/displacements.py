@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Throw and heave: the displacement of surfaces along each fault."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.work import Work, run
+from ..cells.model_data import ModelData
+from ..structures.sheets.displacement import Measured
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Of one surface along one fault, at places (N, 3) on the cutoff line of its sheet below the fault: throw
+    and heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault,
+    negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
+    measured across the fault: in the vertical plane through the place and the direction in which the fault
+    dips there. length: (N,) of the part of the cutoff line that each place is the middle of."""
+
+    fault: str
+    rock: str
+    surface: str
+    places: np.ndarray
+    throw: np.ndarray
+    heave: np.ndarray
+    length: np.ndarray
+
+    @property
+    def mean_throw(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.throw, self.length)
+
+    @property
+    def mean_heave(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.heave, self.length)
+
+
+def _mean(values: np.ndarray, length: np.ndarray) -> float:
+    return float((values * length).sum() / length.sum())
+
+
+def displacements(model: ModelData) -> list[Displacement]:
+    """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
+    return run(lambda work: _displacements(work, model), threads=model.threads)
+
+
+def _displacements(work: Work, model: ModelData) -> list[Displacement]:
+    found = []
+    for number, fault in enumerate(model.structures.faults):
+        for entry in model.rock_inputs:
+            structure = entry.structure
+            if structure is None or number not in structure.faults.numbers:
+                continue
+            at = structure.faults.numbers.index(number)
+            for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
+                measured = Measured(work, structure, at, k).everywhere()
+                if len(measured[0]):
+                    name = entry.rock.surfaces[k].name
+                    found.append(Displacement(fault.name, entry.rock.name, name, *measured))
+    return found
