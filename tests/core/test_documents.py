@@ -4,6 +4,7 @@ run, their links lead somewhere, labels and messages that they name exist, drawi
 
 import ast
 import functools
+import itertools
 import os
 import re
 import runpy
@@ -121,6 +122,37 @@ def test_labels_in_the_guide_exist(document):
     labels = LABEL.findall(document.read_text(encoding="utf-8"))
     missing = {part for label in labels for part in label.split(" > ") if not is_label(part)}
     assert not missing, f"{document.name}: no such label: {sorted(missing)}"
+
+
+@functools.cache
+def panels():
+    """{label: the labels of its parents} of the panels of the tab."""
+    found = {}
+    for path in (ROOT / "addon" / "realmodel" / "ui").glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and "_PT_" in node.name:
+                given = {
+                    part.targets[0].id: part.value.value
+                    for part in node.body
+                    if isinstance(part, ast.Assign) and isinstance(part.value, ast.Constant)
+                }
+                found[node.name] = given.get("bl_label"), given.get("bl_parent_id")
+    parents = {}
+    for label, parent in found.values():
+        parents.setdefault(label, set()).add(found[parent][0] if parent in found else None)
+    return parents
+
+
+def test_paths_in_the_guide_lead_from_panel_to_panel():
+    paths = 0
+    for document in (ROOT / "docs" / "guide").glob("*.md"):
+        for label in LABEL.findall(document.read_text(encoding="utf-8")):
+            parts = label.split(" > ")
+            for outer, inner in itertools.pairwise(parts):
+                if {outer, inner} <= set(panels()):
+                    paths += 1
+                    assert outer in panels()[inner], f"{document.name}: {inner} is not in {outer}"
+    assert paths > 10
 
 
 def test_messages_in_the_guide_exist():

@@ -10,13 +10,6 @@
 
 namespace realmodel::arrangement {
 
-EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
-                   std::span<const HalfPlane> items) {
-    EdgeFan fan;
-    find_fan(points, a, b, items, fan);
-    return fan;
-}
-
 void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
               std::span<const HalfPlane> items, EdgeFan& fan) {
     assert(!items.empty());

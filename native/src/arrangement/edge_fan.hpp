@@ -103,10 +103,7 @@ struct EdgeFan {
     }
 };
 
-/// The fan around the edge from a to b.
-EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
-                   std::span<const HalfPlane> items);
-/// The same in a fan that was another before, whose memory it takes.
+/// The fan around the edge from a to b, in one that was another before, whose memory it takes.
 void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
               std::span<const HalfPlane> items, EdgeFan& fan);
 

@@ -43,7 +43,7 @@ private:
     }
 
     void join_around_edges();
-    arrangement::EdgeFan fan_of(std::size_t edge) const;
+    void find_fan_of(std::size_t edge, arrangement::EdgeFan& fan) const;
     void join_along_rays();
     bool cast(std::int32_t facet, int attempt, arrangement::RayBoxes& boxes);
     FacetCells number_cells();
@@ -64,8 +64,9 @@ private:
 void CellFinder::join_around_edges() {
     parallel_ranges(mesh_.edges.size(), 1 << 10, execution_,
                     [&](std::size_t begin, std::size_t end) {
+                        arrangement::EdgeFan fan;  // one for all: most have but two uses
                         for (std::size_t e = begin; e < end; ++e) {
-                            const auto fan = fan_of(e);
+                            find_fan_of(e, fan);
                             for (std::size_t blade = 0; blade < fan.blades(); ++blade)
                                 cells_.join_sector(mesh_.edges[e], fan, blade, side_of);
                         }
@@ -73,13 +74,15 @@ void CellFinder::join_around_edges() {
 }
 
 /// The facets around an edge. Of two there is but one order.
-arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
+void CellFinder::find_fan_of(std::size_t edge, arrangement::EdgeFan& fan) const {
     const auto uses = mesh_.edges[edge];
     const auto& [a, b] = mesh_.edges.ends(edge);
     if (uses.size() < 3) {
-        arrangement::EdgeFan fan{{0}, {0, 1}};
-        if (uses.size() == 2) fan = {{0, 1}, {0, 1, 2}};
-        return fan;
+        fan.order.resize(uses.size());
+        fan.blade_begins.resize(uses.size() + 1);
+        std::iota(fan.order.begin(), fan.order.end(), std::size_t{0});
+        std::iota(fan.blade_begins.begin(), fan.blade_begins.end(), std::size_t{0});
+        return;
     }
     SpacePoints points;
     const auto point = [&](std::int32_t v) { return points.add(vertices_[index(v)]); };
@@ -89,9 +92,8 @@ arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
         // the corner that is no end of the edge
         items.push_back({point(c[0] ^ c[1] ^ c[2] ^ a ^ b), -1, use.direction});
     }
-    auto fan = fan_around(points, point(a), point(b), items);
+    find_fan(points, point(a), point(b), items, fan);
     assert(fan.blades() == uses.size());  // facets that coincide are one
-    return fan;
 }
 
 /// Of the facets that a ray crosses, each sees the next one: so parts of the surfaces that do not

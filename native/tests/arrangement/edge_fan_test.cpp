@@ -11,7 +11,8 @@ protected:
     exact::SpacePointId at(double x, double y, double z) { return points.add(Position{x, y, z}); }
     HalfPlane towards(double x, double y) { return {at(x, y, 0.5), -1, 1}; }
     std::vector<std::vector<std::size_t>> blades(const std::vector<HalfPlane>& items) {
-        const EdgeFan fan = fan_around(points, a, b, items);
+        EdgeFan fan;
+        find_fan(points, a, b, items, fan);
         std::vector<std::vector<std::size_t>> found;
         for (std::size_t i = 0; i < fan.blades(); ++i)
             found.emplace_back(fan.blade(i).begin(), fan.blade(i).end());
