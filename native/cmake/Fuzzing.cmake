@@ -44,7 +44,7 @@ set(stacks "${PROJECT_SOURCE_DIR}/tests/data/stacks")
 file(GLOB stack_files CONFIGURE_DEPENDS "${stacks}/*.json")
 set(fuzz_cases 500)
 if(REALMODEL_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
-    set(fuzz_cases 120) # several times slower
+    set(fuzz_cases 60) # ten times slower
 endif()
 set(fuzz_findings "${CMAKE_CURRENT_BINARY_DIR}/fuzz_findings")
 add_test(NAME StackFuzzer.Corpus COMMAND stack_fuzzer --into ${fuzz_findings} ${stack_files})

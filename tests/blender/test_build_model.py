@@ -11,6 +11,7 @@ import bpy
 import realmodel
 from blender_state import empty_file, open_edges, pixels
 from realmodel.bl.objects import model_tree
+from realmodel.bl.pictures import batch
 from realmodel.bl.project import compartments
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -58,7 +59,7 @@ class BuildModel(unittest.TestCase):
         self.assertEqual([open_edges(block.data) for block in blocks], [0, 0])
 
     def test_faults_and_bodies(self):
-        """Rendered and written as any other; the .blend builds again what it has."""
+        """Written, and rendered, as any other; the .blend builds again what it has."""
         square = "0 0 {z}\n10 0 {z}\n10 10 {z}\n0 10 {z}\n"
         for name, z in (("low", 0), ("high", 4)):
             text = "OFF\n4 2 0\n" + square.format(z=z) + "3 0 1 2\n3 0 2 3\n"
@@ -73,10 +74,9 @@ class BuildModel(unittest.TestCase):
             '[[rock.surface]]\nname = "high"\nmesh = "high.off"\n[[fault]]\nname = "F"\nmesh = "wall.off"\n'
             '[[body]]\nname = "ore"\nmesh = "ore.off"\n'
         )
-        blend, picture = self.folder / "m.blend", self.folder / "m.png"
-        done = build_model(project, "--blend", blend, "--render", picture)
+        blend = self.folder / "m.blend"
+        done = build_model(project, "--blend", blend)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual(pixels(picture).shape, (1000, 1600, 3))
         empty_file()
         realmodel.register()
         self.addCleanup(realmodel.unregister)
@@ -89,6 +89,8 @@ class BuildModel(unittest.TestCase):
         volumes = {row.name: float(row.volume_exact) for row in current.realmodel.results}
         self.assertAlmostEqual(volumes["ore"], 8 / 6, places=9)
         self.assertAlmostEqual(sum(volumes.values()), 400.0, places=9)
+        batch.render(self.folder / "m.png", (48, 30), samples=1)
+        self.assertEqual(pixels(self.folder / "m.png").shape, (30, 48, 3))
         for path in self.folder.glob("*.off"):
             path.unlink()
         bpy.ops.realmodel.build()

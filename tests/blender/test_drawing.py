@@ -88,6 +88,8 @@ class States(PanelCase):
                 empty_file()
                 ops.open_sample(sample=sample)
                 self.draw()
+                if sample == "canyon":  # built, and drawn then, by test_recipes.ForArtists.test_a_canyon
+                    continue
                 if not len(self.model.results):
                     ops.build()
                 self.assertIn("realmodel.export", self.draw().operators)

@@ -14,6 +14,7 @@ from realmodel.bl.host import notices
 from realmodel.bl.project import compartments, project_settings
 from realmodel.bl.scene import quality
 from realmodel.bl.shading import looks, weathering
+from recording_layout import draw_tab
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 import gallery_picture
@@ -61,6 +62,7 @@ class ForArtists(Recipe):
         ops.rock_looks(look="AUTO")
         self.no_warnings()
         self.assertEqual(len(self.model.results), 43)
+        self.assertIn("realmodel.export", draw_tab(bpy.context).operators)
         for row in self.model.results:
             self.assertIn(looks.KEY, row.object.data.materials[0])
         ops.set_up_picture(sun_elevation=math.radians(30.0))

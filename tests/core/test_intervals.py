@@ -335,7 +335,7 @@ def test_a_model_of_logs_alone(project, tmp_path):
     assert "12 observations" in found.summary()
     report = model.report()
     assert report["observations"][0]["block"] == "basement"
-    assert len(report["contacts"]) == 11
+    assert len(report["contacts"]) == 6  # the collars are none
     with open(tmp_path / "report.json", "wb") as file:
         write_report(report, file)
     assert json.loads((tmp_path / "report.json").read_text())["left_out"] == []
@@ -447,6 +447,21 @@ def test_contacts_and_bounds_among_faults():
     assert not found.violated and not found.left_out
 
 
+def test_a_sheet_without_points_keeps_the_bounds_of_its_compartment():
+    """East of the fault holes end in the middle block, above where its base goes on from the west."""
+    places = [(1, 1), (1, 9), (3, 5), (7, 5), (9, 1), (9, 9)]
+    seen = level_logs(places, [0, 0, 0, 2, 2, 2])
+    east = seen.places[:, 0] > 5
+    seen = seen.some(~(east & (seen.blocks == "S0")))
+    deep = seen.places[:, 2] == 2.0  # the lower top, less the throw: the holes go on to 1 in the same block
+    seen.places[deep, 2] = 1.0
+    model = faulted(seen, Fault("F", *plane_fault(), youngest="S1"))
+    assert len(model.project.rocks[0].surfaces[0].contact_array()) == 3
+    found = model.observed()
+    assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
+    assert not found.violated
+
+
 def test_where_a_hole_passes_a_fault_no_surface_is_known_to_be():
     """Hole B6 passes an inclined normal fault at z = 5, and the younger block again below it."""
     places = [(1, 1), (1, 9), (2, 5), (8, 5), (9, 1), (9, 9)]
@@ -532,5 +547,26 @@ def test_a_surface_that_no_hole_meets_does_not_follow_inclined_holes_down():
     rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-5.0, observations=seen)
     model = build(Project("p", [rock]))
     ground = model.project.rocks[0].surfaces[1]
-    assert ground.point_array().tolist() == [[1.0, 0.0, 9.0], [2.0, 4.0, 9.0], [9.0, 2.0, 9.0]]
+    expected = [[1.0, 0.0, 9.0], [2.0, 4.0, 9.0], [9.0, 2.0, 9.0]]
+    np.testing.assert_allclose(ground.point_array(), expected, atol=1e-5)  # just above the collars
     assert [(each.block, each.share) for each in model.observed().blocks] == [("sand", 1.0)]
+
+
+def test_places_on_bounds_part_blocks_and_yield_to_other_bounds():
+    """Outcrops of the youngest block are on no surface, and an older surface below has no contacts either."""
+    x, y = np.mgrid[1:10:4, 1:10:4].reshape(2, -1)
+    places = np.column_stack([x + 0.1, y + 0.2, 5.0 + 0.1 * x])
+    hole = [[5.0, 5.0, 9.0], [5.3, 5.1, 7.5], [5.6, 5.25, 6.0]]
+    seen = Observations(
+        np.concatenate([places, hole]),
+        ["sand"] * 12,
+        [""] * 9 + ["B1"] * 3,
+        [np.nan] * 9 + [0.0, 1.5, 3.0],
+    )
+    low = Surface("S0", points=[[0, 0, 0.0], [10, 0, 0], [0, 10, 0]], method="plane")
+    surfaces = [low, Surface("S1", method="tin", block="clay"), Surface("S2", method="idw", block="sand")]
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=2.0, base_elevation=-5.0, observations=seen)
+    model = build(Project("p", [rock]))
+    found = model.observed()
+    assert [(each.block, each.share) for each in found.blocks] == [("sand", 1.0)]
+    assert not found.contacts and not found.violated and not model.misfits()

@@ -124,10 +124,10 @@ def prepared(
             ]
         if numbers:
             own |= {
-                (r, k): surface.point_array()
+                (r, k): surface.known_points()
                 for k, surface in enumerate(entry.rock.surfaces)
                 if surface.interpolated
-                and len(surface.point_array())
+                and len(surface.known_points())
                 and (k > 0 or 1 in kept_off(entry.rock))
             }
     frame = Frame(

@@ -6,9 +6,9 @@
 namespace realmodel::arrangement {
 namespace {
 
-using Loop = std::vector<std::int32_t>;
+using Nodes = std::vector<std::int32_t>;
 
-std::int8_t facing(const Loop& one, const Loop& other) {
+std::int8_t facing(const Nodes& one, const Nodes& other) {
     return facing_of(std::span(one), std::span(other));
 }
 
@@ -22,15 +22,15 @@ TEST(FacingOf, LoopsOfTheSameNodesMayBeginAnywhere) {
 }
 
 TEST(LoopHash, IsTheSameWhereverALoopBegins) {
-    const Loop one{1, 2, 3, 4}, same{3, 4, 1, 2}, other{1, 2, 3, 5};
+    const Nodes one{1, 2, 3, 4}, same{3, 4, 1, 2}, other{1, 2, 3, 5};
     EXPECT_EQ(loop_hash(std::span(one)), loop_hash(std::span(same)));
     EXPECT_NE(loop_hash(std::span(one)), loop_hash(std::span(other)));
 }
 
 TEST(LoopTable, HasLoopsOfRegions) {
     LoopTable<std::int32_t> table;
-    table.add_loop(Loop{1, 2, 3});
-    table.add_loop(Loop{7, 8});
+    table.add_loop(Nodes{1, 2, 3});
+    table.add_loop(Nodes{7, 8});
     table.end_region();
     table.nodes.push_back(4);
     table.end_loop();

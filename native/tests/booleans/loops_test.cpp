@@ -9,8 +9,8 @@
 namespace realmodel::booleans {
 namespace {
 
-struct Found {
-    Found(const Mesh& p, const Mesh& q)
+struct FoundLoops {
+    FoundLoops(const Mesh& p, const Mesh& q)
         : parts(refine({p.view(), q.view()}, {1})),
           mesh(facets_of(parts, {1})),
           loops(find_loops(mesh, parts.vertices.size(), nullptr)) {}
@@ -20,7 +20,7 @@ struct Found {
 };
 
 TEST(Loops, TwoSquaresThatCrossMeetAlongAPath) {
-    const Found found(square({0, 0, 0}, 2), upright({1, 0, -1}, 2));
+    const FoundLoops found(square({0, 0, 0}, 2), upright({1, 0, -1}, 2));
     ASSERT_EQ(found.loops.loops.size(), 1U);
     const IntersectionLoop& loop = found.loops.loops[0];
     EXPECT_EQ(loop.kind, LoopKind::kOpen);
@@ -33,7 +33,7 @@ TEST(Loops, TwoSquaresThatCrossMeetAlongAPath) {
 }
 
 TEST(Loops, ACubeThroughASquareMakesOneThatCloses) {
-    const Found found(square({0, 0, 0}, 9), cube({1, 1, -1}, 2));
+    const FoundLoops found(square({0, 0, 0}, 9), cube({1, 1, -1}, 2));
     ASSERT_EQ(found.loops.loops.size(), 1U);
     EXPECT_EQ(found.loops.loops[0].kind, LoopKind::kHardClosed);
     EXPECT_EQ(std::ranges::count_if(found.loops.of_edge, [](auto l) { return l == 0; }),
@@ -41,12 +41,12 @@ TEST(Loops, ACubeThroughASquareMakesOneThatCloses) {
 }
 
 TEST(Loops, WithinAPartThatBothShareThereAreNone) {
-    const Found found(square({0, 0, 0}, 2), square({0, 0, 0}, 2));
+    const FoundLoops found(square({0, 0, 0}, 2), square({0, 0, 0}, 2));
     EXPECT_TRUE(found.loops.loops.empty());
 }
 
 TEST(Loops, SurfacesApartHaveNone) {
-    EXPECT_TRUE(Found(square({0, 0, 0}, 2), square({0, 0, 1}, 2)).loops.loops.empty());
+    EXPECT_TRUE(FoundLoops(square({0, 0, 0}, 2), square({0, 0, 1}, 2)).loops.loops.empty());
 }
 
 }  // namespace

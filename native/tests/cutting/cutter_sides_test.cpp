@@ -84,12 +84,12 @@ TEST(CutterSides, OfAClosedSurfaceWhatItTurnsItsBackToIsBelow) {
         EXPECT_EQ(cut.sides.below(r), kBelow);  // all triangles turn outward
 }
 
-struct Refusal {
+struct RefusalAt {
     std::string kind;
     std::optional<std::array<double, 3>> place;
 };
 
-Refusal refusal(const CutterSurface& surface) {
+RefusalAt refusal(const CutterSurface& surface) {
     try {
         const Sided cut(surface);
     } catch (const InputError& error) {
@@ -102,7 +102,7 @@ TEST(CutterSides, ASurfaceMayNotEndInsideOfTheModel) {
     CutterSurface half = level_cutter(0.5);
     for (Position& p : half.vertices)
         p[0] = (p[0] + 8) / 2 + 0.5;  // from x = 0.5 on
-    const Refusal found = refusal(half);
+    const RefusalAt found = refusal(half);
     EXPECT_EQ(found.kind, "ends_inside");
     ASSERT_TRUE(found.place);
     EXPECT_EQ((*found.place)[0], 0.5);

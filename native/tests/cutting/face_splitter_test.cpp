@@ -35,19 +35,19 @@ Parts parts_of_front(validation::OwnedComplex prism, const Plane& plane) {
     return found;
 }
 
-const Outline kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+const Outline kUnitOutline{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
 TEST(FaceSplitting, TwoCutEdgesMakeTwoPartsThatTurnAsTheFace) {
     // nodes 8 and 9 on edges 0-3 and 1-2
-    EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0.5}, {0, 0, 1}}),
+    EXPECT_EQ(parts_of_front(prism(kUnitOutline), {{0, 0, 0.5}, {0, 0, 1}}),
               (Parts{{node_loop({0, 1, 9, 8}), kBelow}, {node_loop({9, 2, 3, 8}), kAbove}}));
 }
 
 TEST(FaceSplitting, ThroughCornersNoNodeIsNew) {
-    EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0}, {-1, 0, 1}}),
+    EXPECT_EQ(parts_of_front(prism(kUnitOutline), {{0, 0, 0}, {-1, 0, 1}}),
               (Parts{{node_loop({0, 1, 2}), kBelow}, {node_loop({0, 2, 3}), kAbove}}));
     // through a corner and an edge
-    EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0}, {-1, 0, 2}}),
+    EXPECT_EQ(parts_of_front(prism(kUnitOutline), {{0, 0, 0}, {-1, 0, 2}}),
               (Parts{{node_loop({0, 1, 8}), kBelow}, {node_loop({0, 8, 2, 3}), kAbove}}));
 }
 

@@ -22,14 +22,14 @@ TriangleView view(const OwnedSurface& s) {
     return {s.vertices, s.triangles};
 }
 
-CellComplex level_layers(const std::vector<double>& heights, double size = 2, int n = 2) {
+CellComplex sized_layers(const std::vector<double>& heights, double size = 2, int n = 2) {
     std::vector<OwnedSurface> surfaces;
     for (const double z : heights)
         surfaces.push_back(grid(n, n, 0, 0, size, size, [z](double, double) { return z; }));
     return strata::build(surfaces);
 }
 
-double sum(const std::vector<double>& values) {
+double total(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
@@ -57,23 +57,23 @@ std::string refusal(const CellComplex& c, const OwnedSurface& s) {
 }
 
 TEST(SurfaceCut, ALevelSurfaceHalvesALayer) {
-    const CellComplex c = level_layers({0, 1});
+    const CellComplex c = sized_layers({0, 1});
     const Cut cut = checked_cut(c, grid(3, 1, -1, -1, 4, 5, [](double, double) { return 0.25; }));
-    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 1.0);
-    EXPECT_DOUBLE_EQ(sum(cut.above.volumes), 3.0);
+    EXPECT_DOUBLE_EQ(total(cut.below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(total(cut.above.volumes), 3.0);
 }
 
 TEST(SurfaceCut, WhichWayTrianglesTurnDoesNotMatter) {
-    const CellComplex c = level_layers({0, 1});
+    const CellComplex c = sized_layers({0, 1});
     OwnedSurface s = grid(2, 2, -1, -1, 4, 5, [](double x, double) { return 0.5 + x / 16; });
     for (std::size_t t = 0; t < s.triangles.size(); t += 9)
         std::swap(s.triangles[t], s.triangles[t + 1]);
     const Cut cut = checked_cut(c, s);
-    EXPECT_NEAR(sum(cut.below.volumes), 4 * (0.5 + 1.0 / 16), 1e-14);
+    EXPECT_NEAR(total(cut.below.volumes), 4 * (0.5 + 1.0 / 16), 1e-14);
 }
 
 TEST(SurfaceCut, AFoldedSurfaceCutsWhereItPasses) {
-    const CellComplex c = level_layers({0, 1, 2}, 3, 3);
+    const CellComplex c = sized_layers({0, 1, 2}, 3, 3);
     // a roof with its ridge at x = 1, height 1.75; eaves at x = -1 and 4
     OwnedSurface roof;
     for (const double y : {-1.0, 4.0}) {
@@ -87,11 +87,11 @@ TEST(SurfaceCut, AFoldedSurfaceCutsWhereItPasses) {
     }
     const Cut cut = checked_cut(c, roof);
     const double below = 3 * ((0.75 + 1.75) / 2 + 2 * (1.75 + 0.75) / 2);
-    EXPECT_NEAR(sum(cut.below.volumes), below, 1e-13);
+    EXPECT_NEAR(total(cut.below.volumes), below, 1e-13);
 }
 
 TEST(SurfaceCut, AVerticalFaultPartsTheModel) {
-    const CellComplex c = level_layers({0, 1, 3});
+    const CellComplex c = sized_layers({0, 1, 3});
     OwnedSurface fault;
     fault.vertex(0.5, -1, -1);
     fault.vertex(0.5, 3, -1);
@@ -100,37 +100,37 @@ TEST(SurfaceCut, AVerticalFaultPartsTheModel) {
     fault.triangle(0, 1, 2);
     fault.triangle(0, 2, 3);
     const Cut cut = checked_cut(c, fault);
-    const double smaller = std::min(sum(cut.above.volumes), sum(cut.below.volumes));
+    const double smaller = std::min(total(cut.above.volumes), total(cut.below.volumes));
     EXPECT_DOUBLE_EQ(smaller, 0.5 * 2 * 3);
 }
 
 TEST(SurfaceCut, AlongASurfaceOfTheModelNoCellIsCut) {
-    const CellComplex c = level_layers({0, 1, 3}, 2, 4);
+    const CellComplex c = sized_layers({0, 1, 3}, 2, 4);
     const Cut cut = checked_cut(c, grid(
                                        3, 3, 0, 0, 2, 2, [](double, double) { return 1.0; }, true));
     EXPECT_EQ(cut.below.cell_block.size() + cut.above.cell_block.size(), c.cell_block.size());
-    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 4.0);
+    EXPECT_DOUBLE_EQ(total(cut.below.volumes), 4.0);
     for (const auto& cells : cut.section.cells)
         EXPECT_NE(cells[0], cells[1]);
 }
 
 TEST(SurfaceCut, AClosedSurfaceWithinACellLeavesAHollow) {
-    const CellComplex c = strata::merge_columns(level_layers({0, 3}, 3, 1));
+    const CellComplex c = strata::merge_columns(sized_layers({0, 3}, 3, 1));
     const OwnedSurface s = box({1, 1, 1}, {2, 2, 2});
     const Cut cut = checked(c, cut_by_surface(c, view(s), {1, nullptr}));
     EXPECT_EQ(cut.below.cell_block.size(), 1u);
     EXPECT_EQ(cut.above.cell_block.size(), 1u);
-    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 1.0);
-    EXPECT_DOUBLE_EQ(sum(cut.above.volumes), 26.0);
+    EXPECT_DOUBLE_EQ(total(cut.below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(total(cut.above.volumes), 26.0);
 }
 
 TEST(SurfaceCut, ABoxAcrossCornersAndFaces) {
-    const CellComplex c = level_layers({0, 1, 2}, 2, 2);
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({1, 1, 1}, {2, 2, 2})).below.volumes), 1.0);
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({0.5, 0.5, 0.5}, {3, 3, 3})).below.volumes),
+    const CellComplex c = sized_layers({0, 1, 2}, 2, 2);
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, box({1, 1, 1}, {2, 2, 2})).below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, box({0.5, 0.5, 0.5}, {3, 3, 3})).below.volumes),
                      1.5 * 1.5 * 1.5);
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({-1, -1, -1}, {3, 3, 3})).below.volumes), 8.0);
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({5, 5, 5}, {6, 6, 6})).below.volumes), 0.0);
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, box({-1, -1, -1}, {3, 3, 3})).below.volumes), 8.0);
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, box({5, 5, 5}, {6, 6, 6})).below.volumes), 0.0);
 }
 
 OwnedSurface joined(const OwnedSurface& one, const OwnedSurface& other) {
@@ -143,27 +143,27 @@ OwnedSurface joined(const OwnedSurface& one, const OwnedSurface& other) {
 }
 
 TEST(SurfaceCut, OfClosedShellsInsideIsWhatAnOddNumberIsRound) {
-    const CellComplex c = level_layers({0, 1, 4}, 4, 3);
+    const CellComplex c = sized_layers({0, 1, 4}, 4, 3);
     const OwnedSurface outer = box({0.5, 0.5, 0.5}, {3.5, 3.5, 3.5});
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, joined(outer, box({1, 1, 1}, {2, 2, 2}))).below.volumes),
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, joined(outer, box({1, 1, 1}, {2, 2, 2}))).below.volumes),
                      26.0);  // a hollow
     EXPECT_DOUBLE_EQ(
-        sum(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 1, 1}, {3, 2, 2})))
-                .below.volumes),
+        total(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 1, 1}, {3, 2, 2})))
+                  .below.volumes),
         2.0);  // a wall in common
     EXPECT_DOUBLE_EQ(
-        sum(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 2, 1}, {3, 3, 2})))
-                .below.volumes),
+        total(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 2, 1}, {3, 3, 2})))
+                  .below.volumes),
         2.0);  // an edge in common
     EXPECT_DOUBLE_EQ(
-        sum(checked_cut(c, joined(box({1, 1, 1}, {3, 3, 3}), box({2, 2, 2}, {4, 4, 4})))
-                .below.volumes),
+        total(checked_cut(c, joined(box({1, 1, 1}, {3, 3, 3}), box({2, 2, 2}, {4, 4, 4})))
+                  .below.volumes),
         14.0);  // they cross
 }
 
 TEST(SurfaceCut, BordersThatRunAlongOneAnotherAreJoined) {
     // one long edge against two short ones, whose common corner is off the line by rounding
-    const CellComplex c = level_layers({0, 1}, 3, 3);
+    const CellComplex c = sized_layers({0, 1}, 3, 3);
     OwnedSurface bricks;
     bricks.vertex(-1, -1, 0.1);
     bricks.vertex(4, -1, 0.2);
@@ -181,20 +181,20 @@ TEST(SurfaceCut, BordersThatRunAlongOneAnotherAreJoined) {
     bricks.triangle(4, 2, 5);
     bricks.triangle(2, 6, 5);
     const Cut cut = checked_cut(c, bricks);
-    EXPECT_GT(sum(cut.below.volumes), 2.0);
-    EXPECT_LT(sum(cut.below.volumes), 7.0);
+    EXPECT_GT(total(cut.below.volumes), 2.0);
+    EXPECT_LT(total(cut.below.volumes), 7.0);
 }
 
 TEST(SurfaceCut, ASurfaceThatIsThereTwiceCutsOnce) {
-    const CellComplex c = level_layers({0, 1});
+    const CellComplex c = sized_layers({0, 1});
     const OwnedSurface s = grid(2, 2, -1, -1, 3, 3, [](double x, double) { return 0.5 + x / 8; });
-    EXPECT_DOUBLE_EQ(sum(checked_cut(c, joined(s, s)).below.volumes),
-                     sum(checked_cut(c, s).below.volumes));
+    EXPECT_DOUBLE_EQ(total(checked_cut(c, joined(s, s)).below.volumes),
+                     total(checked_cut(c, s).below.volumes));
 }
 
 TEST(SurfaceCut, AModelWhoseFacesCrossByRoundingIsCut) {
     // the middle layer is two units in the last place thick, and its top crosses its bottom
-    CellComplex c = level_layers({0, 0.5, 1}, 2, 2);
+    CellComplex c = sized_layers({0, 0.5, 1}, 2, 2);
     for (auto& p : c.vertices) {
         if (p[2] != 0.5) continue;
         p[2] = p[0] < 1.5 ? 0.5 : 1.0 + 0x1p-52;
@@ -231,26 +231,26 @@ TEST(SurfaceCut, TheSameForAnyNumberOfThreads) {
 }
 
 TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
-    const CellComplex c = level_layers({0, 1});
+    const CellComplex c = sized_layers({0, 1});
     for (const double z : {-1.0, 2.0}) {
         const Cut cut = checked_cut(c, grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; }));
-        EXPECT_DOUBLE_EQ(sum(z < 0 ? cut.above.volumes : cut.below.volumes), 4.0);
+        EXPECT_DOUBLE_EQ(total(z < 0 ? cut.above.volumes : cut.below.volumes), 4.0);
     }
 }
 
 TEST(SurfaceCut, BlocksOfItsOwnAndOfAnotherModel) {
-    const CellComplex c = level_layers({0, 1, 3}, 2, 3);
+    const CellComplex c = sized_layers({0, 1, 3}, 2, 3);
     const Cut own = checked(c, cut_by_block(c, c, 1, {1, nullptr}));
     EXPECT_EQ(own.below.volumes, (std::vector<double>{0, 4, 0}));
     EXPECT_EQ(own.below.cell_block.size() + own.above.cell_block.size(), c.cell_block.size());
-    const CellComplex other = level_layers({0.5, 2}, 1, 2);
+    const CellComplex other = sized_layers({0.5, 2}, 1, 2);
     const Cut cut = checked(c, cut_by_block(c, other, 1, {1, nullptr}));
     EXPECT_DOUBLE_EQ(cut.below.volumes[1], 0.5);
     EXPECT_DOUBLE_EQ(cut.below.volumes[2], 1.0);
 }
 
 TEST(SurfaceCut, RefusesWhatDoesNotPartTheModel) {
-    const CellComplex c = level_layers({0, 1});
+    const CellComplex c = sized_layers({0, 1});
     EXPECT_EQ(refusal(c, grid(1, 1, -1, -1, 1, 3, [](double, double) { return 0.5; })),
               "ends_inside");
     OwnedSurface strip;  // a Moebius strip
@@ -279,7 +279,7 @@ TEST(SurfaceCut, RefusesWhatDoesNotPartTheModel) {
 }
 
 TEST(SurfaceCut, ALargeModelGivesTheSameHalvesOnAnyNumberOfThreads) {
-    const CellComplex c = level_layers({0, 1, 2}, 10, 60);  // more faces than one thread takes
+    const CellComplex c = sized_layers({0, 1, 2}, 10, 60);  // more faces than one thread takes
     ASSERT_GT(c.face_cells.size(), 40000U);
     const OwnedSurface sheet = grid(7, 7, -1, -1, 11, 11, [](double x, double y) {
         return 0.7 + 0.04 * x + 0.3 * std::sin(x + 2 * y);

@@ -14,8 +14,8 @@ namespace realmodel::cutting {
 namespace {
 
 /// The parts of a model that a surface cuts.
-struct Parted {
-    Parted(validation::OwnedComplex of, CutterSurface by)
+struct PartedCells {
+    PartedCells(validation::OwnedComplex of, CutterSurface by)
         : complex(std::move(of)), surface(std::move(by)) {}
     std::ptrdiff_t count(std::int32_t cell, std::int8_t side) const {
         return std::ranges::count_if(parts.half_cells, [&](const HalfCell& part) {
@@ -46,7 +46,7 @@ struct Parted {
 };
 
 TEST(SurfaceParts, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
-    const Parted cut(validation::two_cubes(), level_cutter(0.5));
+    const PartedCells cut(validation::two_cubes(), level_cutter(0.5));
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 1);
@@ -57,7 +57,7 @@ TEST(SurfaceParts, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
 }
 
 TEST(SurfaceParts, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
-    const Parted cut(validation::two_cubes(), level_cutter(0.5));
+    const PartedCells cut(validation::two_cubes(), level_cutter(0.5));
     const auto caps = cut.caps();
     ASSERT_EQ(caps.size(), 1U);
     const CutPiece& cap = cut.parts.pieces[caps[0]];
@@ -69,7 +69,7 @@ TEST(SurfaceParts, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
 
 TEST(SurfaceParts, EachPartIsClosed) {
     for (const double height : {0.5, 1.0, 1.5}) {
-        const Parted cut(validation::two_cubes(), level_cutter(height));
+        const PartedCells cut(validation::two_cubes(), level_cutter(height));
         std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> uses;
         for (std::size_t p = 0; p < cut.parts.pieces.size(); ++p) {
             const auto nodes = cut.parts.pieces.polygons[p];
@@ -87,7 +87,7 @@ TEST(SurfaceParts, EachPartIsClosed) {
 }
 
 TEST(SurfaceParts, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
-    const Parted cut(validation::two_cubes(), level_cutter(1));
+    const PartedCells cut(validation::two_cubes(), level_cutter(1));
     EXPECT_EQ(cut.parts.half_cells.size(), 2U);
     for (const std::size_t cap : cut.caps())
         EXPECT_EQ(cut.parts.pieces[cap].cells, (std::array<std::int32_t, 2>{0, 1}));
@@ -95,14 +95,14 @@ TEST(SurfaceParts, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
 }
 
 TEST(SurfaceParts, TheTowersOfAUBecomeTwoParts) {
-    const Parted cut(u_shape(), level_cutter(1.5));
+    const PartedCells cut(u_shape(), level_cutter(1.5));
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 2);
     EXPECT_EQ(cut.caps().size(), 2U);
 }
 
 TEST(SurfaceParts, AHollowThatIsCutOutBelongsToThePartAroundIt) {
-    const Parted cut(validation::two_cubes(), closed_cutter());
+    const PartedCells cut(validation::two_cubes(), closed_cutter());
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 1);

@@ -16,7 +16,7 @@
 namespace realmodel::exact {
 namespace {
 
-using Position = std::array<mpq_class, 2>;
+using ExactPosition = std::array<mpq_class, 2>;
 
 mpq_class q(double v) {
     return mpq_class(v);
@@ -27,7 +27,7 @@ class Reference {
 public:
     explicit Reference(const PlanArrangement& g) : g_(g) {}
 
-    mpq_class height(PlaneId plane, const Position& p) const {
+    mpq_class height(PlaneId plane, const ExactPosition& p) const {
         std::array<std::array<mpq_class, 3>, 3> c;
         for (std::size_t i = 0; i < 3; ++i) {
             const SpaceVertex& s = g_.space(g_.plane(plane).corner[i]);
@@ -41,7 +41,7 @@ public:
         return c[0][2] + s * (c[1][2] - c[0][2]) + t * (c[2][2] - c[0][2]);
     }
 
-    mpq_class value(const Line& line, const Position& p) const {
+    mpq_class value(const Line& line, const ExactPosition& p) const {
         if (!line.is_edge()) return height(line.planes()[0], p) - height(line.planes()[1], p);
         const Point &a = g_.point(line.ends()[0]), &b = g_.point(line.ends()[1]);
         return (q(b.x) - q(a.x)) * (p[1] - q(a.y)) - (q(b.y) - q(a.y)) * (p[0] - q(a.x));
@@ -54,7 +54,7 @@ public:
     }
 
     /// Where two lines cross, found from their values at three places; nothing if parallel.
-    std::optional<Position> crossing(const Line& l, const Line& m) const {
+    std::optional<ExactPosition> crossing(const Line& l, const Line& m) const {
         const auto coefficients = [&](const Line& line) {
             const mpq_class c = value(line, {0, 0});
             return std::array<mpq_class, 3>{value(line, {1, 0}) - c, value(line, {0, 1}) - c, c};
@@ -62,7 +62,7 @@ public:
         const auto a = coefficients(l), b = coefficients(m);
         const mpq_class w = a[0] * b[1] - a[1] * b[0];
         if (w == 0) return std::nullopt;
-        return Position{(a[1] * b[2] - b[1] * a[2]) / w, (a[2] * b[0] - b[2] * a[0]) / w};
+        return ExactPosition{(a[1] * b[2] - b[1] * a[2]) / w, (a[2] * b[0] - b[2] * a[0]) / w};
     }
 
 private:
@@ -130,7 +130,7 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
                     if (reference.is_proper(scope.line(trace))) lines.push_back(trace);
                 }
             }
-            std::vector<std::pair<PointId, Position>> points;
+            std::vector<std::pair<PointId, ExactPosition>> points;
             for (const VertexId v : trial.vertices) {
                 points.push_back({v, {q(trial.geometry.point(v).x), q(trial.geometry.point(v).y)}});
             }

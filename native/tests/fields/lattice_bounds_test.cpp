@@ -8,7 +8,7 @@
 namespace realmodel::fields {
 namespace {
 
-const Lattice kLattice{{0, 0, 0}, {1, 1, 1}, {4, 4, 4}};
+const Lattice kSmallLattice{{0, 0, 0}, {1, 1, 1}, {4, 4, 4}};
 
 /// z at all nodes, and bounds of the level 1.5.
 class LatticeBounds : public testing::Test {
@@ -30,12 +30,12 @@ protected:
         data.bounds = places;
         data.bound_below = below;
         data.bound_above = above;
-        keep_bounds(kLattice, data, kept, levels, values);
+        keep_bounds(kSmallLattice, data, kept, levels, values);
     }
 
     double at(const Vec3& p) const {
         double sum = 0;
-        for (const auto& [node, weight] : corners_at(kLattice, p))
+        for (const auto& [node, weight] : corners_at(kSmallLattice, p))
             sum += weight * values[node];
         return sum;
     }

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <string>
 
+#include "dense_kriging.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
 namespace {
-
-using Points = std::vector<std::array<double, 3>>;
 
 std::string refusal(std::span<const std::array<double, 3>> points) {
     try {

@@ -10,21 +10,21 @@
 namespace realmodel::meshing {
 namespace {
 
-constexpr std::int32_t width = 16;
+constexpr std::int32_t kWidth = 16;
 
 std::int32_t node(std::int32_t i, std::int32_t j) {
-    return i + width * j;
+    return i + kWidth * j;
 }
 
 /// A rhombus of equilateral triangles, each square of nodes divided from its lower right corner to
 /// its upper left one; its border is fixed.
 FlatMesh lattice() {
     FlatMesh mesh;
-    for (std::int32_t j = 0; j < width; ++j)
-        for (std::int32_t i = 0; i < width; ++i)
+    for (std::int32_t j = 0; j < kWidth; ++j)
+        for (std::int32_t i = 0; i < kWidth; ++i)
             mesh.points.push_back({i + 0.5 * j, std::numbers::sqrt3 / 2 * j});
-    for (std::int32_t j = 0; j + 1 < width; ++j) {
-        for (std::int32_t i = 0; i + 1 < width; ++i) {
+    for (std::int32_t j = 0; j + 1 < kWidth; ++j) {
+        for (std::int32_t i = 0; i + 1 < kWidth; ++i) {
             mesh.add_triangle({node(i, j), node(i + 1, j), node(i, j + 1)});
             mesh.add_triangle({node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
         }
@@ -50,7 +50,7 @@ FlatMesh lattice() {
 struct TornLattice {
     explicit TornLattice(int flips)
         : mesh(lattice()), size(1), valences(mesh, size), moves(valences) {
-        for (std::int32_t v = 0; v < width * width; ++v)
+        for (std::int32_t v = 0; v < kWidth * kWidth; ++v)
             if (!valences.is_fixed(v)) moves.free(v);
         for (int k = 0; k < flips; ++k)
             valences.flip(edge(node(begin + k + 1, row), node(begin + k, row + 1)));
@@ -66,7 +66,7 @@ struct TornLattice {
 
     int irregular() const {
         int count = 0;
-        for (std::int32_t v = 0; v < width * width; ++v)
+        for (std::int32_t v = 0; v < kWidth * kWidth; ++v)
             count += !valences.is_fixed(v) && !valences.is_regular(v);
         return count;
     }
@@ -87,7 +87,7 @@ TEST(JudgedFlips, DislocationsAreGoneWhereTheyMeet) {
     EXPECT_TRUE(flips.glide(node(4, 7), 6));
     EXPECT_EQ(torn.irregular(), 0);
     EXPECT_FALSE(flips.glide(node(4, 7), 6)) << "nothing is left to gain";
-    for (std::int32_t v = 0; v < width * width; ++v) {
+    for (std::int32_t v = 0; v < kWidth * kWidth; ++v) {
         EXPECT_NEAR(torn.mesh.points[v][0], whole.points[v][0], 1e-9);
         EXPECT_NEAR(torn.mesh.points[v][1], whole.points[v][1], 1e-9);
     }
@@ -109,7 +109,7 @@ TEST(JudgedFlips, DislocationsStayWhereNoWayIsShortEnough) {
 TEST(JudgedFlips, DislocationsDoNotPassVerticesThatStay) {
     TornLattice torn(6);
     StarMoves moves(torn.valences);
-    for (std::int32_t v = 0; v < width * width; ++v)
+    for (std::int32_t v = 0; v < kWidth * kWidth; ++v)
         if (!torn.valences.is_fixed(v) && v != node(7, 7)) moves.free(v);
     EXPECT_FALSE(JudgedFlips(torn.valences, moves).glide(node(4, 7), 6));
     EXPECT_EQ(torn.irregular(), 4);
@@ -126,7 +126,7 @@ TEST(JudgedFlips, MendWhatIsBad) {
     EXPECT_TRUE(flips.mend(node(4, 7)));
     EXPECT_EQ(torn.irregular(), 0);
     const auto corners = torn.mesh.corners;
-    for (std::int32_t v = 0; v < width * width; ++v)
+    for (std::int32_t v = 0; v < kWidth * kWidth; ++v)
         EXPECT_FALSE(!torn.valences.is_fixed(v) && flips.mend(v));
     EXPECT_EQ(torn.mesh.corners, corners);
 }

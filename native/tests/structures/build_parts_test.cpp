@@ -120,20 +120,6 @@ TEST(BuildParts, AreTheStacksJoined) {
     }
 }
 
-/// The boundary of a box.
-OwnedSurface box(const std::array<double, 3>& low, const std::array<double, 3>& high) {
-    OwnedSurface s;
-    for (std::size_t v = 0; v < 8; ++v)
-        s.vertex((v & 1) != 0 ? high[0] : low[0], (v & 2) != 0 ? high[1] : low[1],
-                 (v & 4) != 0 ? high[2] : low[2]);
-    for (const auto& [a, b, c, d] : std::vector<std::array<std::int32_t, 4>>{
-             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-        s.triangle(a, b, c);
-        s.triangle(a, c, d);
-    }
-    return s;
-}
-
 /// One part of space with two solids, one in the other: a plunging edge of two level sets. In the
 /// inner one is block 1, in the outer one block 2, and outside of both block 3; above z = 2 there
 /// is block 4 everywhere.
@@ -158,8 +144,8 @@ struct Folded {
         }
         input.parts.push_back(std::move(part));
     }
-    std::vector<OwnedSurface> solids{box({1.5, -2, -2}, {2.5, 9, 1}),
-                                     box({0.5, -3, -3}, {3, 10, 4})};
+    std::vector<OwnedSurface> solids{strata::box({1.5, -2, -2}, {2.5, 9, 1}),
+                                     strata::box({0.5, -3, -3}, {3, 10, 4})};
     std::vector<OwnedSurface> sheets;
     StructuredInput input;
 };

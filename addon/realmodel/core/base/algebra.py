@@ -18,11 +18,13 @@ _SWEEPS = 60  # over all pairs of columns; six are enough for nearly all points
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(...) the products of vectors (..., D)."""
     product = np.multiply(a, b)
-    if product.shape[-1] not in (2, 3):
+    if product.shape[-1] not in (2, 3, 4):
         return product.sum(axis=-1)
     # NumPy adds so few numbers in this order, too, but takes several times as long for many of them
     total = product[..., 0] + product[..., 1]
-    return total if product.shape[-1] == 2 else total + product[..., 2]
+    for k in range(2, product.shape[-1]):
+        total += product[..., k]
+    return total
 
 
 def norm(vector: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base.algebra import are_among, norm
+from ..base.algebra import are_among, dot, norm
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
@@ -203,7 +203,7 @@ def _through(
         return np.bincount(at.ravel(), (weights * y[:, None]).ravel(), len(used))
 
     values = given.copy()
-    missed = levels - (given[corners] * weights).sum(axis=1)
+    missed = levels - dot(given[corners], weights)
     least = _MET**2 * (missed * missed).sum()
     for _ in range(rounds):
         y, way, rest = np.zeros(len(missed)), missed, missed
@@ -211,14 +211,14 @@ def _through(
         for _ in range(_STEPS):
             if square <= least:
                 break
-            ahead = (spread(way)[at] * weights).sum(axis=1) + _LOOSE * way
+            ahead = dot(spread(way)[at], weights) + _LOOSE * way
             step = square / (way * ahead).sum()
             y = y + step * way
             rest = rest - step * ahead
             square, before = (rest * rest).sum(), square
             way = rest + square / before * way
         values[used] += spread(y)
-        missed = levels - (values[corners] * weights).sum(axis=1)
+        missed = levels - dot(values[corners], weights)
     return values, missed
 
 

@@ -11,16 +11,13 @@ import numpy as np
 
 from ..base.errors import place_text
 from ..base.work import Work, native_module
-from ..readers.tables.observations import Bounds
+from ..readers.tables.observations import BESIDE_BOUND, Bounds
 from .bounded import consistent
 from .mis_ties import contradictions, first_at_each_place, without_mis_ties
 
 _TOLERANCE = 1e-10  # of the height range of the data: nearer is right
 _DIGITS = 4  # of the last digits of heights, if that is more
 _MISSED = 10  # tolerances: what is farther off is listed
-# of the height range: so far within its bounds a surface is kept, where there is room. A bound says that the
-# rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
-_MARGIN = 1e-6
 
 
 class Terms(NamedTuple):
@@ -60,7 +57,9 @@ def tie_data(points: np.ndarray, bounds: Bounds | None) -> TieData:
         given = consistent(kept, bounds)
         places = np.concatenate([places, given.positions])
         heights.append(bounds.places[:, 2])
-        margin = np.minimum(_MARGIN * float(np.ptp(np.concatenate(heights))), (given.upper - given.lower) / 3)
+        margin = np.minimum(
+            BESIDE_BOUND * float(np.ptp(np.concatenate(heights))), (given.upper - given.lower) / 3
+        )
         lower = np.concatenate([lower, given.lower + margin])
         upper = np.concatenate([upper, given.upper - margin])
         margins = np.concatenate([margins, margin])

@@ -15,7 +15,7 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import MODEL_UNIT
 from ..readers.point_input import companions
-from ..readers.tables.observations import Bounds, Observations
+from ..readers.tables.observations import Bounds, Observations, along_bounds
 from ..settings.boreholes import Boreholes
 from ..settings.dips import DipFile, Dips, dip_file_of
 from ..settings.map_file import MapFile
@@ -133,6 +133,14 @@ class Surface(Shaped):
         return points[:0]
 
     @builtins.property  # a field of this class is called property
+    def is_along_bounds(self) -> bool:
+        """Whether no contact is known of a sheet, and its points are places on its bounds."""
+        if self.is_level_set or not self.has_bounds or self.contacts is None or not len(self.contacts):
+            return False
+        assert self.bounds is not None
+        return self.own_points() is None and np.array_equal(self.contacts, along_bounds(self.bounds))
+
+    @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
         """The name of the block deposited beneath it."""
         return self.block or f"{self.name} block"
@@ -146,6 +154,11 @@ class Surface(Shaped):
     def dip_file(self) -> DipFile | None:
         """The file of its dips and how it is read; None where they are arrays, or there are none."""
         return dip_file_of(self.dips)
+
+    def known_points(self) -> np.ndarray:
+        """(P, 3) the points that are known to be on a surface that is read: not places on its bounds."""
+        points = self.point_array()
+        return points[:0] if self.is_along_bounds else points
 
     def own_dips(self) -> Dips | None:
         """The dips of a surface that is read, without those of its rock mass."""

@@ -106,7 +106,7 @@ def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: 
     """which: the number of a surface in the model, in its rock mass, and that of the rock mass."""
     rock = model.rock_inputs[which[2]].rock
     surface = rock.surfaces[which[1]]
-    points = surface.point_array()
+    points = surface.known_points()
     heights = heights_of_points(model, *which, points) if len(points) else np.empty(0)
     for row in np.flatnonzero(np.abs(points[:, 2] - heights) > near).tolist():
         place, z = tuple(points[row].tolist()), float(heights[row])

@@ -112,7 +112,7 @@ def _observed(work: Work, model: ModelData) -> Observed:
             blocks += _blocks(work, model, number, form)
             sources = sources_of(given)
             for at, surface in enumerate(rock.surfaces):
-                places = surface.contact_array()
+                places = surface.contact_array()[: 0 if surface.is_along_bounds else None]
                 z = heights_of_points(model, first + at, at, number, places)
                 near = NEAR * float(np.ptp(given.places[:, 2]))
                 for place, height in zip(places.tolist(), z.tolist(), strict=True):

@@ -50,7 +50,7 @@ def doubtful_heights(
     for number in numbers:
         points = entry.rock.surfaces[number].points
         points = np.empty((0, 3)) if points is None else np.ascontiguousarray(points, np.float64)
-        if len(points):
+        if len(points) and not entry.rock.surfaces[number].is_along_bounds:
             found.append(_missed(work, entry, number, points, compartment is None))
         if len(points := points if compartment is None else compartment.points):
             found.append(reach.beyond(number, points, compartment))

@@ -21,7 +21,7 @@ from ..settings.dips import Dips
 from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
-from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
+from .observed.derived import Derived, Situation, contacts_for, derive, with_contacts
 from .observed.edge_crossings import with_crossings
 from .rock_input import RockInput
 from .wrong_sides import heights_at
@@ -222,13 +222,10 @@ def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
     of them is on."""
     found = []
     for surface in entry.rock.surfaces:
-        contacts, bounds = surface.contact_array(), surface.bounds
-        if surface.is_level_set:  # it always has contacts
-            continue
-        if len(contacts) and bounds is not None and np.array_equal(contacts, along_bounds(bounds)):
+        if surface.is_along_bounds:
             text = (
-                f"it has no points, and no observation is on it: it goes through the {len(contacts)} places "
-                "nearest to which observations allow it"
+                "it has no points, and no observation is on it: it goes through the "
+                f"{len(surface.contact_array())} places nearest to which observations allow it"
             )
             found.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
     texts = left_out_texts(entry.left_out)

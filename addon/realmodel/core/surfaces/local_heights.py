@@ -222,6 +222,8 @@ def is_local(surface: Surface) -> bool:
         return False  # how dips and bounds count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
+    if surface.ties and surface.is_along_bounds:
+        return False  # where bounds do not hold, its points yield
     is_tied = surface.ties and (surface.has_bounds or len(surface.tied_points) > 0)
     if surface.minimum_thickness is not None and is_tied:
         return False  # raised, it honors data that may share triangles

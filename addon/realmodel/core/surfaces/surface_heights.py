@@ -132,9 +132,12 @@ def _tied(task: Task, result: Interpolation, surface: Surface) -> tuple[Interpol
     it had, the same array where it keeps them."""
     if not surface.ties or task.triangles is None or not len(task.triangles):
         return result, result.z
-    data = tie_data(surface.tied_points, task.bounds)
-    z, warnings = corrected(task.work, task.nodes, task.triangles, result.z, data)
     free = result.z
+    data = tie_data(surface.tied_points, task.bounds)
+    z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
+    if warnings and surface.is_along_bounds:  # the places that it was put through yield to its bounds
+        data = tie_data(np.empty((0, 3)), task.bounds)
+        z, warnings = corrected(task.work, task.nodes, task.triangles, free, data)
     if z is not free:
         z = within_bounds(task, z, free)
     return replace(result, z=z, warnings=(*result.warnings, *warnings)), free

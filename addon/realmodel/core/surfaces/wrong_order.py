@@ -31,7 +31,7 @@ def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarn
     """
     surfaces = rock.surfaces
     picks = _Picks(rock)
-    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].point_array())]
+    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].known_points())]
     points = {n: surfaces[n].point_array() for n in known}
     places = dict(zip(known, places_of(list(points.values())), strict=True)) if known else {}
     found: dict[int, WrongPoints] = {}

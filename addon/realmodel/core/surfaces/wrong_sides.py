@@ -37,9 +37,8 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list
     one is no contradiction: there the younger one ends, or has cut.
     """
     surfaces = entry.rock.surfaces
-    points = {
-        number: surfaces[number].point_array() for number in numbers if len(surfaces[number].point_array())
-    }
+    points = {number: surfaces[number].known_points() for number in numbers}
+    points = {number: own for number, own in points.items() if len(own)}
     warnings = []
     found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock))
     for number, (beyond, others) in found.items():

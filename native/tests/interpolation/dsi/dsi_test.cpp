@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/dsi/vectors.hpp"
@@ -174,7 +175,7 @@ TEST(Dsi, BoundsHoldWithinTriangles) {
 }
 
 TEST(Dsi, SameBytesForAnyNumberOfThreads) {
-    const Lattice mesh = lattice(300, 260);
+    const Lattice mesh = kSanitized ? lattice(150, 130) : lattice(300, 260);
     const Points points =
         on(mesh, 400, [](double x, double y) { return std::sin(x / 30) * std::cos(y / 20); });
     const DsiHeights one = dsi(points, mesh.nodes, mesh.triangles, {}, 1, {1});

@@ -212,6 +212,7 @@ TEST(Kriging, SameBytesForAnyNumberOfThreads) {
     for (const int neighbors : {0, 16}) {
         const Kriged one = krige(points, nodes, spherical(40, 4), {{neighbors}}, {1});
         for (const int threads : {2, 3, 5}) {
+            if (kSanitized && threads != 3) continue;
             const Kriged more = krige(points, nodes, spherical(40, 4), {{neighbors}}, {threads});
             EXPECT_EQ(std::memcmp(one.z.data(), more.z.data(), 8 * nodes.size()), 0);
             EXPECT_EQ(std::memcmp(one.variance.data(), more.variance.data(), 8 * nodes.size()), 0);

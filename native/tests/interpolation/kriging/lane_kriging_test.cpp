@@ -122,6 +122,7 @@ TEST(LaneKriging, NestedVariogramsAndAllSizes) {
         expect_same_bytes(some_points("scattered", 200), some_nodes(9), v, neighbors, false);
     }
     for (const int neighbors : {65, 129, 256}) {
+        if (kSanitized && neighbors == 256) continue;
         SCOPED_TRACE(neighbors);
         expect_same_bytes(some_points("scattered", 400), some_nodes(5), v, neighbors, false);
         expect_same_bytes(some_points("lines", 300), {}, v, neighbors, true);

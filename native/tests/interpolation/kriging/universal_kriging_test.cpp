@@ -15,7 +15,7 @@
 namespace realmodel::interpolation {
 namespace {
 
-const Variogram spherical{VariogramModel::kSpherical, 40, 4, 0.5, {}, {}};
+const Variogram kVariogram{VariogramModel::kSpherical, 40, 4, 0.5, {}, {}};
 
 KrigingOptions with(Drift drift, int neighbors) {
     return {{neighbors}, drift};
@@ -39,7 +39,7 @@ TEST(UniversalKriging, TheDriftItselfComesOutWhateverTheVariogram) {
         const Points points = on_polynomial(80, quadratic);
         const Drift drift = quadratic ? Drift::kQuadratic : Drift::kLinear;
         for (const int neighbors : {0, 16}) {
-            const Kriged kriged = krige(points, nodes, spherical, with(drift, neighbors));
+            const Kriged kriged = krige(points, nodes, kVariogram, with(drift, neighbors));
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 ASSERT_NEAR(kriged.z[i], polynomial(nodes[i], quadratic), 1e-9);
                 ASSERT_GT(kriged.variance[i], 0);
@@ -52,7 +52,7 @@ TEST(UniversalKriging, WithFewPoints) {
     // One point is a constant; two are a line along theirs, and constant across it; three a plane.
     const Nodes nodes{{5, 5}, {10, 0}, {0, 10}};
     const auto z = [&](const Points& points, Drift drift) {
-        return krige(points, nodes, spherical, with(drift, 16)).z;
+        return krige(points, nodes, kVariogram, with(drift, 16)).z;
     };
     for (const Drift drift : {Drift::kLinear, Drift::kQuadratic}) {
         EXPECT_EQ(z({{0, 0, 3}}, drift), (std::vector<double>{3, 3, 3}));
@@ -73,7 +73,7 @@ TEST(UniversalKriging, PointsInOneLineHaveNoSlopeAcrossIt) {
         line.push_back({1e5 + 3.0 * i, 5e6 + 1.0 * i, 2.0 * i});
     for (const int neighbors : {0, 10}) {
         const Kriged kriged = krige(line, Nodes{{1e5 + 60, 5e6 + 20}, {1e5 + 50, 5e6 + 50}},
-                                    spherical, with(Drift::kLinear, neighbors));
+                                    kVariogram, with(Drift::kLinear, neighbors));
         EXPECT_NEAR(kriged.z[0], 40, 1e-6);
         EXPECT_NEAR(kriged.z[1], 40, 1e-6);
     }
@@ -83,9 +83,10 @@ TEST(UniversalKriging, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(500, 100);
     const Nodes nodes = scattered_nodes(kSanitized ? 300 : 1000, 100);
     for (const int neighbors : {0, 20}) {
-        const Kriged one = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors), {1});
+        const Kriged one =
+            krige(points, nodes, kVariogram, with(Drift::kQuadratic, neighbors), {1});
         const Kriged three =
-            krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors), {3});
+            krige(points, nodes, kVariogram, with(Drift::kQuadratic, neighbors), {3});
         EXPECT_EQ(std::memcmp(one.z.data(), three.z.data(), 8 * nodes.size()), 0);
         EXPECT_EQ(std::memcmp(one.variance.data(), three.variance.data(), 8 * nodes.size()), 0);
     }
@@ -132,10 +133,10 @@ TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {
         VariogramModel::kSpherical, 40, 4, 0.5, {}, {{VariogramModel::kSpherical, 40, 1.25, {}}}};
     check_variogram(nested);
     EXPECT_DOUBLE_EQ(nested.first_sill(), 2.25);
-    EXPECT_DOUBLE_EQ(nested.gamma(13), spherical.gamma(13));
+    EXPECT_DOUBLE_EQ(nested.gamma(13), kVariogram.gamma(13));
     for (const int neighbors : {0, 16}) {
         const Kriged a = krige(points, nodes, nested, {{neighbors}});
-        const Kriged b = krige(points, nodes, spherical, {{neighbors}});
+        const Kriged b = krige(points, nodes, kVariogram, {{neighbors}});
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             EXPECT_NEAR(a.z[i], b.z[i], 1e-11);
             EXPECT_NEAR(a.variance[i], b.variance[i], 1e-11);
@@ -165,7 +166,7 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
     for (const Drift drift : {Drift::kConstant, Drift::kLinear, Drift::kQuadratic}) {
         for (const int neighbors : {0, 12}) {
             const KrigingOptions options = with(drift, neighbors);
-            const Kriged found = krige_left_out(points, spherical, options);
+            const Kriged found = krige_left_out(points, kVariogram, options);
             ASSERT_EQ(found.z.size(), points.size());
             EXPECT_EQ(found.z[5], found.z.back());
             for (std::size_t i = 0; i < 90; i += 7) {
@@ -173,7 +174,7 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
                 others.pop_back();
                 others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
                 const Kriged alone =
-                    krige(others, Nodes{{points[i][0], points[i][1]}}, spherical, options);
+                    krige(others, Nodes{{points[i][0], points[i][1]}}, kVariogram, options);
                 EXPECT_NEAR(found.z[i], alone.z[0], 1e-8);
                 EXPECT_NEAR(found.variance[i], alone.variance[0], 1e-9);
             }
@@ -182,11 +183,11 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
 }
 
 TEST(LeftOut, WhatOthersTellWhollyOrNotAtAll) {
-    const Kriged alone = krige_left_out(Points{{1, 2, 3}}, spherical, {});
+    const Kriged alone = krige_left_out(Points{{1, 2, 3}}, kVariogram, {});
     EXPECT_EQ(alone.z[0], 3);
     EXPECT_TRUE(std::isinf(alone.variance[0]));
     // Three points make a plane; two of them a line only.
-    const Kriged three = krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, spherical,
+    const Kriged three = krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, kVariogram,
                                         with(Drift::kLinear, 0));
     for (const double z : three.z)
         EXPECT_TRUE(std::isfinite(z));

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "../dense_kriging.hpp"
+
 namespace realmodel::interpolation {
 namespace {
-
-using Points = std::vector<std::array<double, 3>>;
 
 TEST(ExperimentalVariogram, OfThreePointsByHand) {
     // Distances 3, 4 and 5. The spacing, the median of the nearest distances, is 3, so that pairs

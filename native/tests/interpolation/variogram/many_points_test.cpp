@@ -18,12 +18,13 @@ namespace {
 /// Scattered points, points on a lattice, whose distances are equal, a dense cluster and one far
 /// away.
 Points varied() {
-    Points points = hills(3000, 1000, {4e5, 5e6});
-    for (int i = 0; i < 40; ++i) {
-        for (int j = 0; j < 40; ++j)
+    constexpr int kSide = kSanitized ? 14 : 40;
+    Points points = hills(kSanitized ? 600 : 3000, 1000, {4e5, 5e6});
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j)
             points.push_back({4e5 + 2000 + 10 * i, 5e6 + 10 * j, 0.1 * i * j});
     }
-    for (int i = 0; i < 1000; ++i)
+    for (int i = 0; i < (kSanitized ? 200 : 1000); ++i)
         points.push_back({4e5 + 0.01 * (i % 31), 5e6 + 3000 + 0.01 * i, 0.01 * i});
     points.push_back({0, 0, 100});
     return points;

@@ -13,6 +13,9 @@ from ...base.algebra import norm, ranks_in_runs
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
+# Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
+# rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
+BESIDE_BOUND = 1e-6
 _ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used")
 
 
@@ -249,3 +252,35 @@ class Bounds(ShortRepr):
         """(N,) how far a surface with heights z (N,) at the places violates each; 0 where it does not."""
         off = np.where(self.is_lower, self.places[:, 2] - z, z - self.places[:, 2])
         return np.where(off > 0, off, 0.0)  # NaN where the surface has no height: not violated
+
+
+def along_bounds(bounds: Bounds) -> np.ndarray:
+    """(P, 3) points for a surface that no observation is on: one for each hole with bounds, or each position
+    in plan of those without a hole, just beside the nearest bound, or halfway between the two. Along an
+    inclined hole the other bounds do not ask the surface to follow it down."""
+    if not len(bounds):
+        return np.empty((0, 3))
+    _, column = np.unique(bounds.places[:, :2] + 0.0, axis=0, return_inverse=True)
+    _, hole = np.unique(bounds.holes, return_inverse=True)
+    group = np.where(bounds.holes == "", -1 - column.ravel(), hole.ravel())
+    margin = BESIDE_BOUND * float(np.ptp(bounds.places[:, 2]))
+    low, high = _nearest(bounds, group, True), _nearest(bounds, group, False)
+    for side, sign in ((low.keys() - high.keys(), 1.0), (high.keys() - low.keys(), -1.0)):
+        nearest = low if sign > 0 else high
+        for key in side:
+            nearest[key] = nearest[key] + np.array([0.0, 0.0, sign * margin])
+    found = []
+    for key in sorted(low.keys() | high.keys()):
+        lower, upper = low.get(key, high.get(key)), high.get(key, low.get(key))
+        assert lower is not None and upper is not None
+        is_between = lower[2] <= upper[2] or bool((lower[:2] == upper[:2]).all())
+        found += [0.5 * (lower + upper)] if is_between else [lower, upper]
+    return np.unique(found, axis=0)
+
+
+def _nearest(bounds: Bounds, group: np.ndarray, is_lower: bool) -> dict[int, np.ndarray]:
+    """The highest lower, or the lowest upper bound of each group: its place (3,)."""
+    rows = np.flatnonzero(bounds.is_lower == is_lower)
+    sign = 1.0 if is_lower else -1.0
+    rows = rows[np.argsort(sign * bounds.places[rows, 2], kind="stable")]  # of several the last one counts
+    return {int(group[row]): bounds.places[row] for row in rows.tolist()}

@@ -279,10 +279,11 @@ class InterpolatedSurface:
         """Sheets without points, within the bounds of the surface."""
         settings = self.surface.method_options()[1]
         is_bounded = any(settings.get(option) is not None for option in BOUNDS)
-        if self.surface.minimum_thickness is None and not is_bounded:
+        surface = self._constrained(self.surface, family)
+        if surface.minimum_thickness is None and not is_bounded and not surface.has_bounds:
             return trends
         none = np.zeros(len(self.points), bool)
-        return shared({s: self._interpolated(family, s, none, trend=trend) for s, trend in trends.items()})
+        return shared({s: self._interpolated(family, s, none, surface, trend) for s, trend in trends.items()})
 
     def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""

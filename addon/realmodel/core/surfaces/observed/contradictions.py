@@ -12,7 +12,6 @@ from ...heights.bounded import consistent
 from ...heights.mis_ties import without_mis_ties
 from ...project.project import Rock, Surface
 from ...readers.tables.observations import Bounds, LeftOut, Observations, source_text
-from .derived import along_bounds
 
 _LISTED = 4  # others that a text names; all are in `contradicts`
 
@@ -25,7 +24,7 @@ def without_contradictions(rock: Rock, observations: Observations) -> tuple[Rock
         bounds = surface.bounds
         if not surface.interpolated or bounds is None or not len(bounds) or not len(surface.point_array()):
             continue
-        if np.array_equal(surface.contact_array(), along_bounds(bounds)):
+        if surface.is_along_bounds:
             continue
         points, _ = without_mis_ties(surface.point_array())
         wrong = consistent(np.ascontiguousarray(points), bounds).left_out

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...project.project import Rock
-from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations
+from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, along_bounds
 from .columns import in_wrong_order
 from .level_sets import FieldStatements
 from .succession import Succession
@@ -281,33 +281,6 @@ def _tightest(
     new[1:] = np.diff(column[every[order]]) != 0
     best = order[new]
     return np.sort(every[best[is_bound[best]]])
-
-
-def along_bounds(bounds: Bounds) -> np.ndarray:
-    """(P, 3) points for a surface that no observation is on: one for each hole with bounds, or each position
-    in plan of those without a hole, on the nearest bound or halfway between the two. Along an inclined hole
-    the other bounds do not ask the surface to follow it down."""
-    if not len(bounds):
-        return np.empty((0, 3))
-    _, column = np.unique(bounds.places[:, :2] + 0.0, axis=0, return_inverse=True)
-    _, hole = np.unique(bounds.holes, return_inverse=True)
-    group = np.where(bounds.holes == "", -1 - column.ravel(), hole.ravel())
-    low, high = _nearest(bounds, group, True), _nearest(bounds, group, False)
-    found = []
-    for key in sorted(low.keys() | high.keys()):
-        lower, upper = low.get(key, high.get(key)), high.get(key, low.get(key))
-        assert lower is not None and upper is not None
-        is_between = lower[2] <= upper[2] or bool((lower[:2] == upper[:2]).all())
-        found += [0.5 * (lower + upper)] if is_between else [lower, upper]
-    return np.unique(found, axis=0)
-
-
-def _nearest(bounds: Bounds, group: np.ndarray, is_lower: bool) -> dict[int, np.ndarray]:
-    """The highest lower, or the lowest upper bound of each group: its place (3,)."""
-    rows = np.flatnonzero(bounds.is_lower == is_lower)
-    sign = 1.0 if is_lower else -1.0
-    rows = rows[np.argsort(sign * bounds.places[rows, 2], kind="stable")]  # of several the last one counts
-    return {int(group[row]): bounds.places[row] for row in rows.tolist()}
 
 
 def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:
