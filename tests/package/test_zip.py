@@ -35,7 +35,7 @@ def test_one_folder_on_top(package):
 
 
 def test_small(package):
-    assert package.stat().st_size < 16e6
+    assert package.stat().st_size < 18e6
 
 
 def test_every_program_that_opens_zips_opens_it(package):
