@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.packages import extra
+from ..cells.blocks import Block
 from ..cells.model_data import ModelData
 from ..notebook import data_frame
-from .model_boreholes import borehole
+from ..project.project import Project
+from .model_boreholes import Interval
 from .regular_cells import plan_grids
 
 if TYPE_CHECKING:
@@ -23,7 +25,26 @@ _BLOCK = ("name", "rock", "surface", "property", "property_name", "volume", "sha
 _INTERVAL = ("block", "name", "property", "top", "bottom", "length")
 
 
-def block_entry(model: ModelData, number: int, total: float) -> dict:
+class WithBlocks(Protocol):
+    """A Model, or a TiledModel, as tables take it."""
+
+    @property
+    def blocks(self) -> Sequence[Block]: ...
+    @property
+    def project(self) -> Project: ...
+    @property
+    def surface_names(self) -> Sequence[str]: ...
+    @property
+    def volume(self) -> float: ...
+
+
+class WithBoreholes(WithBlocks, Protocol):
+    """The same, where it is asked along vertical lines, too."""
+
+    def borehole(self, x: float, y: float) -> list[Interval]: ...
+
+
+def block_entry(model: WithBlocks, number: int, total: float) -> dict:
     """What is known of a block, by the names of the report. total: the volume of all blocks."""
     block, library = model.blocks[number], model.project.library
     entry = library.get(block.property) if library else None
@@ -40,7 +61,7 @@ def block_entry(model: ModelData, number: int, total: float) -> dict:
     }
 
 
-def block_table(model: ModelData) -> pandas.DataFrame:
+def block_table(model: WithBlocks) -> pandas.DataFrame:
     """The blocks, a row for each, from the oldest of each rock mass: `name`, `rock`, `surface` (that it was
     deposited beneath), `property` (library id, 0: none), `property_name`, `volume` (model units cubed),
     `share` of the volume of all blocks (from 0 to 1), `cells`, `components` (connected parts). The index
@@ -60,7 +81,7 @@ def block_table(model: ModelData) -> pandas.DataFrame:
     return data_frame(rows, _BLOCK).rename_axis("block")
 
 
-def borehole_table(model: ModelData, x: float, y: float) -> pandas.DataFrame:
+def borehole_table(model: WithBoreholes, x: float, y: float) -> pandas.DataFrame:
     """The intervals of `borehole` at the position (x, y), a row for each, from above downward: `block` (its
     number), `name`, `property` (library id, 0: none), and `top`, `bottom` and `length`, model units.
 
@@ -81,7 +102,7 @@ def borehole_table(model: ModelData, x: float, y: float) -> pandas.DataFrame:
             "bottom": each.bottom,
             "length": each.length,
         }
-        for each in borehole(model, x, y)
+        for each in model.borehole(x, y)
     ]
     return data_frame(rows, _INTERVAL)
 
