@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/ulp.hpp"
@@ -149,8 +150,10 @@ std::vector<double> volume_allowance(const StackCase& stack, const std::vector<d
         extent[axis] = high[axis] - low[axis];
         step[axis] = ulp(std::max(std::abs(low[axis]), std::abs(high[axis])));
     }
+    // products of the least numbers are 0
     const double rounding = 64 * (step[2] * extent[0] * extent[1] +
-                                  (step[0] * extent[1] + step[1] * extent[0]) * extent[2]);
+                                  (step[0] * extent[1] + step[1] * extent[0]) * extent[2] +
+                                  std::numeric_limits<double>::denorm_min());
     std::vector<double> allowed;
     for (const double volume : volumes)
         allowed.push_back(1e-9 * std::abs(volume) + rounding);
