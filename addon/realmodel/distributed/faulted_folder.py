@@ -15,7 +15,7 @@ from ..core import BuildFailed, BuildWarning, Project
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import MappedArrays
-from ..core.base.work import Cancel, Report, Work, native_module, run
+from ..core.base.work import Cancel, Reporter, Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
 from ..core.structures.parts.parts import box_around, divide
@@ -54,7 +54,7 @@ def build_faulted(
     size: tuple[float, float],
     cells: str,
     workers: Workers,
-    report: Report,
+    report: Reporter,
     cancel: Cancel | None,
 ) -> TiledModel:
     """tile_folder.build for a project with faults, bodies or fields. size: of tiles."""
@@ -70,7 +70,7 @@ def _built(
     cells: str,
     arrays: MappedArrays,
     workers: Workers,
-    report: Report,
+    report: Reporter,
     cancel: Cancel | None,
 ) -> TiledModel | tuple[Store, Catalog]:
     """The files of the run and the table of the whole; or the model, where the folder is finished. arrays:
@@ -163,7 +163,7 @@ def _build_tiles(
     waiting: list[Name],
     count: int,
     workers: Workers,
-    report: Report,
+    report: Reporter,
     cancel: Cancel | None,
 ) -> None:
     done = count - len(waiting)

@@ -15,7 +15,7 @@ from ..core import BuildFailed, BuildWarning
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import read_mapped, write_mapped
-from ..core.base.work import Cancel, Progress, Report, progress_bar, report_nothing, run
+from ..core.base.work import Cancel, Progress, Reporter, progress_bar, report_nothing, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
 from ..core.surfaces.local_heights import PartHeights
@@ -127,7 +127,7 @@ def _build_all(
     frame: Frame,
     names: list[Name],
     workers: Workers,
-    report: Report,
+    report: Reporter,
     cancel: Cancel | None,
 ) -> None:
     """Builds all tiles, and joins each as soon as those around it are built."""

@@ -19,7 +19,7 @@ from ..core import BuildWarning, Rock, SurfaceSet, build_surfaces
 from ..core.base.errors import naming
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
-from ..core.base.work import Cancel, Report, Work, native_module, run
+from ..core.base.work import Cancel, Reporter, Work, native_module, run
 from ..core.heights.ties import tie_data
 from ..core.project.project import Project, Surface, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
@@ -70,7 +70,7 @@ def prepared(
     cells: str,
     arrays: MappedArrays,
     workers: Workers,
-    report: Report,
+    report: Reporter,
     cancel: Cancel | None,
 ) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""

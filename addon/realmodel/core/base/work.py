@@ -24,8 +24,8 @@ from .packages import extra
 if TYPE_CHECKING:
     from ..._native import Native
 
-Report = Callable[[float, str], None]  # of the share that is done, and what is being done
-Progress = Report | Literal[True]  # True: a bar
+Reporter = Callable[[float, str], None]  # of the share that is done, and what is being done
+Progress = Reporter | Literal[True]  # True: a bar
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
 Arguments = ParamSpec("Arguments")
@@ -284,11 +284,11 @@ def start(task: Callable[[Work], Result], threads: int = 0) -> Job:
 
 
 def report_nothing(_share: float, _text: str) -> None:
-    """A Report for a caller that wants none."""
+    """A Reporter for a caller that wants none."""
 
 
 @contextmanager
-def progress_bar() -> Iterator[Report]:
+def progress_bar() -> Iterator[Reporter]:
     """progress(fraction, text) as a bar of tqdm: a widget in a notebook that has ipywidgets, else text.
 
     Raises UsageError where tqdm is missing.

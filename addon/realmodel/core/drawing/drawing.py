@@ -54,7 +54,7 @@ class Text:
     layer: str
 
 
-Item = Polygon | Line | Dots | Text
+DrawingItem = Polygon | Line | Dots | Text
 
 
 @dataclass(eq=False)
@@ -71,7 +71,7 @@ class Drawing:
     height: float
     scale: float = 1.0
     origin: tuple[float, float] = (0.0, 0.0)
-    items: list[Item] = field(default_factory=list)
+    items: list[DrawingItem] = field(default_factory=list)
 
     def polygon(
         self,

@@ -15,7 +15,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .drawing import ANCHORS, BLACK, Color, Drawing, Item, Line, Polygon, Text
+from .drawing import ANCHORS, BLACK, Color, Drawing, DrawingItem, Line, Polygon, Text
 
 _LONGEST_NAME = 31
 _ZERO_LAYER = "0"
@@ -63,7 +63,7 @@ class _Pairs:
     def place(self, at: Sequence[float]) -> list[tuple[int, float]]:
         return [(10, float(at[0])), (20, float(at[1])), (30, 0.0)]
 
-    def item(self, item: Item, layer: str) -> None:
+    def item(self, item: DrawingItem, layer: str) -> None:
         if isinstance(item, Polygon):
             for ring in item.rings:
                 self.polyline(ring, layer, item.fill or item.stroke or BLACK, closed=True)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.algebra import ranks_in_runs
-from .drawing import ANCHORS, WHITE, Color, Dots, Drawing, Item, Line, Polygon, Text
+from .drawing import ANCHORS, WHITE, Color, Dots, Drawing, DrawingItem, Line, Polygon, Text
 from .glyphs import text_rings, text_width
 
 _SUBROWS = 5  # of a row of pixels, in which the covered part is exact
@@ -46,7 +46,7 @@ def _rgba(color: Color) -> np.ndarray:
     return np.array([*color, 1.0][:4], np.float32)
 
 
-def item_shapes(item: Item) -> Iterator[tuple[list[np.ndarray], Color]]:
+def item_shapes(item: DrawingItem) -> Iterator[tuple[list[np.ndarray], Color]]:
     """The shapes of an item, as (rings, color): rings (N, 2) in points."""
     if isinstance(item, Polygon):
         if item.fill is not None:

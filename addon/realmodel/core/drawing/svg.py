@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from .drawing import Color, Drawing, Item, Line, Polygon, Text
+from .drawing import Color, Drawing, DrawingItem, Line, Polygon, Text
 
 
 def write_svg(drawing: Drawing, file: BinaryIO) -> None:
@@ -28,7 +28,7 @@ def write_svg(drawing: Drawing, file: BinaryIO) -> None:
     file.write("\n".join([*lines, "</svg>", ""]).encode())
 
 
-def _elements(item: Item, height: float) -> list[str]:
+def _elements(item: DrawingItem, height: float) -> list[str]:
     if isinstance(item, Polygon):
         path = " ".join(f"M{_places(ring, height)}Z" for ring in item.rings)
         stroke = f' stroke-width="{item.width:g}"' if item.stroke else ""

@@ -28,7 +28,7 @@ from ..settings.crs import epsg_code
 AREAS, CONTOURS = "geology", "contours"
 _TOP = "top of the model"
 _POLYGONS, _LINE = 6, 2  # well-known binary: several polygons, a line
-Shape = list | np.ndarray  # polygons, each a list of closed rings (N, 2), or a line (N, 2)
+_Shape = list | np.ndarray  # polygons, each a list of closed rings (N, 2), or a line (N, 2)
 _UNDEFINED = -1  # the plane system that is not known, of GeoPackages
 
 
@@ -39,7 +39,7 @@ class _Layer:
 
     name: str
     columns: dict[str, str]
-    rows: list[tuple[list, Shape]]
+    rows: list[tuple[list, _Shape]]
 
 
 def write_geojson(
@@ -67,7 +67,7 @@ def write_geojson(
     step(1.0)
 
 
-def _geometry(shape: Shape) -> dict:
+def _geometry(shape: _Shape) -> dict:
     if isinstance(shape, np.ndarray):
         return {"type": "LineString", "coordinates": shape.tolist()}
     return {"type": "MultiPolygon", "coordinates": [[ring.tolist() for ring in rings] for rings in shape]}
@@ -201,12 +201,12 @@ def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
     )
 
 
-def _box(shape: Shape) -> list[float]:
+def _box(shape: _Shape) -> list[float]:
     places = shape if isinstance(shape, np.ndarray) else np.concatenate([rings[0] for rings in shape])
     return [*places.min(axis=0).tolist(), *places.max(axis=0).tolist()]
 
 
-def _blob(shape: Shape, box: list[float], srs: int) -> bytes:
+def _blob(shape: _Shape, box: list[float], srs: int) -> bytes:
     """A header with the bounding box, then well-known binary, little-endian."""
     head = b"GP\0\3" + struct.pack("<i4d", srs, box[0], box[2], box[1], box[3])
     if isinstance(shape, np.ndarray):

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..base.atomic import Outputs
+from ..base.work import Reporter
 from ..cells.model_data import ModelData
 from ..simulation.cleaned_cells import CleanedCells
 from ..simulation.simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh
@@ -35,9 +35,7 @@ class MeshRequest:
         """The path of the output. Raises UsageError, OutputFailed."""
         return mesh_target(self.path)
 
-    def make(
-        self, model: ModelData, threads: int, progress: Callable[[float, str], None] | None = None
-    ) -> SimulationMesh:
+    def make(self, model: ModelData, threads: int, progress: Reporter | None = None) -> SimulationMesh:
         """The mesh. Raises as Model.simulation_mesh. Without progress it is a part of the present job."""
         extent = np.ptp(model.vertices[:, :2], axis=0) if len(model.vertices) else np.zeros(2)
         edge = float(extent.max()) / EDGES_ACROSS if self.edge is None else self.edge
@@ -52,9 +50,7 @@ class MeshRequest:
             progress=progress and (lambda _share, text: progress(1.0, text)),
         )
 
-    def write(
-        self, mesh: SimulationMesh, outputs: Outputs, unit: str, progress: Callable[[float, str], None]
-    ) -> None:
+    def write(self, mesh: SimulationMesh, outputs: Outputs, unit: str, progress: Reporter) -> None:
         """Writes the mesh in the format of its file's ending."""
         write_mesh(mesh, self.path, outputs, lambda _: progress(1.0, f"writing {self.path.name}"), unit)
 

@@ -90,8 +90,8 @@ struct RaisedSheet {
 /// Of how far the sheet is above the least heights at the corners of a triangle, each datum asks
 /// that it lies between two planes. What is there is projected onto these, one after another, until
 /// all hold (Kaczmarz 1937; Agmon 1954, "The relaxation method for linear inequalities", Canadian
-/// Journal of Mathematics 6). What would lift a node by a fifth of the range of the data is left
-/// out.
+/// Journal of Mathematics 6). What would lift a node by more than the range of the heights and
+/// the data is left out.
 /// @param margins    by how much bounds of the data are narrowed, for which there may be no room
 /// @param tolerance  heights nearer than this to what is asked for are right
 /// @throws InputError kind "not_finite" (items: the node), "bad_index" (items: the triangle)

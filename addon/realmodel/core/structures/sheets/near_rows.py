@@ -17,7 +17,7 @@ from ...surfaces.sides import FaultShape, fault_sides
 _RINGS = 2  # of triangles around those in which a compartment is
 
 
-Row = tuple[int, ...]  # the side of each of some faults: -1, 1, or 0 where it is not
+SideRow = tuple[int, ...]  # the side of each of some faults: -1, 1, or 0 where it is not
 
 
 def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
@@ -41,9 +41,9 @@ def near_rows(
     mesh: Sheet,
     common: np.ndarray,
     faults: Sequence[FaultShape],
-    rows: Sequence[Row],
-    values_of: Callable[[Row, np.ndarray], np.ndarray],
-) -> dict[Row, np.ndarray]:
+    rows: Sequence[SideRow],
+    values_of: Callable[[SideRow, np.ndarray], np.ndarray],
+) -> dict[SideRow, np.ndarray]:
     """Values (N, C) at the nodes of a planar mesh, first of all heights, of each row of sides.
 
     They are the row's own where its compartment may be at some height that the row has there, and those in

@@ -27,7 +27,7 @@ from ...base.triangles import (
 from ...base.work import Work, native_module, on_threads
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import places_between
-from .near_rows import Row, triangles_met, with_neighbors
+from .near_rows import SideRow, triangles_met, with_neighbors
 from .within import Within, box_of, middles_of_parts, parts_of_lines
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
@@ -145,9 +145,9 @@ def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndar
 
 
 def blended(
-    heights: dict[Row, np.ndarray],
-    near: dict[Row, np.ndarray],
-    on_side: dict[Row, list[np.ndarray]],
+    heights: dict[SideRow, np.ndarray],
+    near: dict[SideRow, np.ndarray],
+    on_side: dict[SideRow, list[np.ndarray]],
     weights: list,
 ) -> dict:
     """(N,) heights by the sides (+1 or -1 of each fault, 0 where it is not), different as the weights say.
@@ -194,10 +194,10 @@ def with_equal_ends(
     work: Work,
     plan: np.ndarray,
     triangles: np.ndarray,
-    heights: dict[Row, np.ndarray],
+    heights: dict[SideRow, np.ndarray],
     ramps: Sequence[tuple[FaultShape, float]],
     within: Within,
-) -> dict[Row, np.ndarray]:
+) -> dict[SideRow, np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
     triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
     its ramp, they are drawn together. ramps: each fault with it."""
@@ -328,7 +328,7 @@ def _places_of(plan: np.ndarray, heights: list[np.ndarray]) -> _Places:
 
 def _sides_of_nodes(
     work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape]
-) -> dict[Row, np.ndarray]:
+) -> dict[SideRow, np.ndarray]:
     """By the sides of each sheet: (F, N) int8, on which side of each fault its nodes are."""
     places = _places_of(plan, [np.nan_to_num(z) for z in heights.values()])
     side = np.array([fault_sides(work, places.points, fault) for fault in faults])
@@ -370,7 +370,7 @@ class _Drawn:
         return settled
 
 
-def _draw_between(met_by: _Meeting, found: dict, near: dict[Row, np.ndarray], drawn: _Drawn) -> bool:
+def _draw_between(met_by: _Meeting, found: dict, near: dict[SideRow, np.ndarray], drawn: _Drawn) -> bool:
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
     with_equal_ends has them, changed."""
@@ -440,7 +440,7 @@ def _between(met_by: _Meeting, found: dict, number: int) -> _Between:
 
 def _corners_with_sides(
     work: Work, plan: np.ndarray, triangles: np.ndarray, sheets: dict, fault: FaultShape
-) -> tuple[dict[Row, np.ndarray], dict[Row, np.ndarray]]:
+) -> tuple[dict[SideRow, np.ndarray], dict[SideRow, np.ndarray]]:
     """By the sides of each sheet, of the corners of some triangles (T, 3): on which side of a fault they are,
     and their heights."""
     heights = {sides: z[triangles] for sides, z in sheets.items()}
@@ -449,7 +449,7 @@ def _corners_with_sides(
     return dict(zip(sheets, side.reshape(len(sheets), -1, 3), strict=True)), heights
 
 
-def _pairs(sheets: dict, number: int) -> Iterator[tuple[Row, Row]]:
+def _pairs(sheets: dict, number: int) -> Iterator[tuple[SideRow, SideRow]]:
     """The sides of sheets below and above one fault, which are otherwise alike."""
     for one, other in itertools.product(sheets, repeat=2):
         if one[number] == -1 and other[number] == 1:
@@ -477,7 +477,7 @@ def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.
     return np.column_stack([plan, low]), np.column_stack([plan, high])
 
 
-def shared(sheets: dict[Row, Sheet]) -> dict[Row, Sheet]:
+def shared(sheets: dict[SideRow, Sheet]) -> dict[SideRow, Sheet]:
     """The same, with one object for all sheets that are bitwise equal."""
     known: dict[bytes, Sheet] = {}
     return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
