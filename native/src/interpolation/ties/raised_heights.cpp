@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "interpolation/ties/data_range.hpp"
 #include "realmodel/interpolation/ties.hpp"
 #include "spatial/mesh_locator.hpp"
 
@@ -115,15 +116,10 @@ Thickness met(const RaisedSheet& sheet, std::span<const AskedThickness> every, d
 
 /// The range of the finite heights of a sheet and its data.
 double range_of(const RaisedSheet& sheet, const TieData& data) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const auto& heights : {sheet.heights, data.lower, data.upper}) {
-        for (const double z : heights) {
-            if (!std::isfinite(z)) continue;
-            low = std::min(low, z);
-            high = std::max(high, z);
-        }
-    }
-    return high - low;
+    DataRange range;
+    for (const auto& heights : {sheet.heights, data.lower, data.upper})
+        std::ranges::for_each(heights, [&](double z) { range.add(z); });
+    return range.size();
 }
 
 /// Leaves out what lifts a node by more than `most`: others hold the nodes beside it down.

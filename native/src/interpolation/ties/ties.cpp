@@ -13,6 +13,7 @@
 
 #include "base/keep_single.hpp"
 #include "interpolation/node_loop.hpp"
+#include "interpolation/ties/data_range.hpp"
 #include "interpolation/ties/tie_rows.hpp"
 #include "interpolation/ties/tie_system.hpp"
 #include "spatial/nearest_points.hpp"
@@ -37,20 +38,6 @@ constexpr double kSteep = 1;
 constexpr int kMostReleases = 2;       // of one inequality: so the rounds end
 constexpr double kSignRidge = 1e-9;    // of the diagonal, where only signs of terms are wanted
 constexpr std::size_t kLookedAt = 32;  // data around an inequality
-
-/// The range of finite bounds.
-struct BoundRange {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-
-    void add(double lower, double upper) {
-        for (const double z : {lower, upper}) {
-            if (std::isinf(z)) continue;
-            low = std::min(low, z);
-            high = std::max(high, z);
-        }
-    }
-    double size() const { return high - low; }
-};
 
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
 class Thinning {
@@ -182,9 +169,11 @@ private:
     }
 
     double range_of_data() const {
-        BoundRange range;
+        DataRange range;
         for (const TieRow& row : rows_.rows) {
-            if (row.is_known) range.add(row.lower, row.upper);
+            if (!row.is_known) continue;
+            range.add(row.lower);
+            range.add(row.upper);
         }
         return range.size();
     }
@@ -455,9 +444,11 @@ bool is_steep(const TieData& data, std::size_t i, std::span<const spatial::Neigh
 std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> nodes) {
     std::vector<bool> found(data.places.size(), false);
     if (data.places.empty()) return found;
-    BoundRange range;
-    for (std::size_t i = 0; i < found.size(); ++i)
-        range.add(data.lower[i], data.upper[i]);
+    DataRange range;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        range.add(data.lower[i]);
+        range.add(data.upper[i]);
+    }
     const spatial::PlanBox box = spatial::box_around(nodes);
     const double slope = kSteep * range.size() / std::max(box.width(), box.height());
     const spatial::NearestPoints tree(data.places);
