@@ -61,7 +61,8 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
             at = np.cumsum(is_kept) - 1
             is_own, across = is_kept & is_own[at], is_kept & across[at]
         situation = Situation(
-            *((None,) + sides(given.places)),
+            None,
+            *sides(given.places),
             after=[after for _, after in bodies],
             bodies=[body.name for body, _ in bodies],
             voids=[body.void for body, _ in bodies],
@@ -125,7 +126,7 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
 
 def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
     """(N,) bool: places without a hole where blocks meet, as on a map, and a fault or the border of a body
-    passes nearer in plan than `reach`: it may be this that divides them. """
+    passes nearer in plan than `reach`: it may be this that divides them."""
     alone = np.flatnonzero(observations.holes == "")
     places, place = np.unique(observations.places[alone], axis=0, return_inverse=True)
     place, blocks = place.ravel(), observations.blocks[alone]
@@ -192,6 +193,4 @@ def _dividing(entry: RockInput, situation: Situation) -> np.ndarray:
     count, displaced = len(entry.rock.surfaces), _displaced(entry)
     succession = Succession([surface.rule for surface in entry.rock.surfaces], situation.after)
     blocks = range(count + len(situation.after))
-    return np.array(
-        [[displaced[succession.contacts((a, b))].all(axis=0) for b in blocks] for a in blocks]
-    )
+    return np.array([[displaced[succession.contacts((a, b))].all(axis=0) for b in blocks] for a in blocks])

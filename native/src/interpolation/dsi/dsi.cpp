@@ -31,7 +31,10 @@ constexpr double kExactRiseStrength = 32;
 // contradict each other on the mesh. With dips, which are met more slowly, it has to leave more.
 constexpr double kStalled = 0.5, kStalledWithDips = 0.9;
 constexpr double kMet = 1e-8;  // of the range of heights
-constexpr int kMostRounds = 30, kMostCarefulRounds = 100, kMostSettling = 8;
+constexpr int kMostRounds = 30;
+// The same where the bounds that count are settled first; rounds for that before each; and how many
+// rounds in turn may bring little: bounds contradict each other on the mesh.
+constexpr int kMostCarefulRounds = 100, kMostSettling = 20, kMostStalled = 6;
 constexpr double kFirstTolerance = 1e-4, kLastTolerance = 1e-9, kWeightedTolerance = 1e-9;
 // Of the mesh's stiffness against a tilt: what holds a tilt that the points leave open.
 constexpr double kTiltStrength = 1e-6;
@@ -321,8 +324,9 @@ private:
         }
     }
 
-    /// The heights of the smoothest mesh. The set of bounds that count may run in circles, with ever
-    /// larger multipliers, where bounds hold a tilt that points leave open: then once more, carefully.
+    /// The heights of the smoothest mesh. The set of bounds that count may run in circles, with
+    /// ever larger multipliers, where bounds hold a tilt that points leave open: then once more,
+    /// carefully.
     void solve(Vector& z) {
         if (rounds(z, false)) return;
         std::fill(z.begin(), z.end(), 0.0);
@@ -350,7 +354,7 @@ private:
         double before = std::numeric_limits<double>::infinity();
         double tolerance = exact ? kFirstTolerance : kWeightedTolerance;
         bool changed = true;
-        int settling = 0;
+        int settling = 0, stalls = 0;
         for (int round = 0; round < (careful ? kMostCarefulRounds : kMostRounds); ++round) {
             if (changed) system_->set_constraints(constraints_);
             iterations_ += system_->solve(z, right_side(), tolerance, [&](double share) {
@@ -370,6 +374,8 @@ private:
             if (missing <= kMet * range_ && !changed) return true;
             // Points that contradict each other on this mesh are met as well as possible.
             if (!changed && !bounded && round > 2 && missing > stalled * before) return true;
+            stalls = missing > kStalledWithDips * before ? stalls + 1 : 0;
+            if (careful && stalls >= kMostStalled) return true;
             before = missing;
             tolerance = std::max(kLastTolerance, std::min(0.1 * tolerance, missing / range_));
         }

@@ -62,8 +62,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
     reach, away[:, active] = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
-    contacts = set(map(tuple, entry.rock.surfaces[number].contact_array().tolist()))
-    near &= np.array([tuple(point) not in contacts for point in points.tolist()], bool)[:, None]
+    near &= ~are_contacts(points, entry.rock.surfaces[number])[:, None]
     agreement = _Agreement(
         work=work,
         points=points,
@@ -77,6 +76,12 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
     return PointSides(placed, placed != sides, reach)
+
+
+def are_contacts(points: np.ndarray, surface: Surface) -> np.ndarray:
+    """(P,) bool: which of points (P, 3) of a surface follow from observations."""
+    contacts = set(map(tuple, surface.contact_array().tolist()))
+    return np.array([tuple(point) in contacts for point in points.tolist()], bool)
 
 
 class _Choice(NamedTuple):

@@ -17,13 +17,15 @@ from .succession import Succession
 
 @dataclass(frozen=True)
 class Situation:
-    """Where the places of observations (N) lie, as far as it is known. covered: (N, S) bool, over or under
-    which surfaces of the rock mass. sides: (N, F) int8, of the faults that act in it. inside: (N, B) bool, in
-    which bodies; after: of each body, the surface after which it came; bodies: their names; voids: which of
-    them are voids. parted: (N,) bool, where blocks meet that a fault or a body may divide, which says nothing;
-    disputed: (N,) bool, the same where that leaves out a part of an interval. across: (N,) bool, those that
-    stand for the other side of a fault beside the one before; displaced: (S, F) bool, which surfaces each fault
-    displaces: for others the two are one. None and empty: everywhere covered, without faults and bodies."""
+    """Where the places of observations (N) lie, as far as it is known.
+
+    covered: (N, S) bool, over or under which surfaces of the rock mass. sides: (N, F) int8, of the faults
+    that act in it; displaced: (S, F) bool, which surfaces each of these displaces. across: (N,) bool, places
+    on the other side of a fault beside the one before: for surfaces that it does not displace they are one.
+    inside: (N, B) bool, in which bodies; after: of each body, the surface after which it came; bodies: their
+    names; voids: which of them are voids. parted: (N,) bool, where blocks meet that a fault or a body may
+    divide, which says nothing; disputed: (N,) bool, the same, where parts of intervals are left out for that.
+    None and empty: everywhere covered, without faults and bodies."""
 
     covered: np.ndarray | None = None
     sides: np.ndarray | None = None
