@@ -7,6 +7,7 @@ from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.field import map_settings
 from realmodel.bl.project import observed_blocks, project_settings
+from realmodel.bl.scene import data_objects
 from realmodel.operators import boreholes
 
 VALLEY = SAMPLES / "mapped_valley"
@@ -35,6 +36,11 @@ class MapImport(PanelCase):
         self.assertEqual(set(seen.blocks), set(ORDER))
         self.assertTrue((seen.holes == "").all())
         self.assertTrue(self.rock.surfaces[-1].filepath.endswith("ground.asc"))
+        self.assertEqual(self.rock.surfaces[-1].method, "grid")
+        self.assertEqual(data_objects.objects(self.scene), [], "no dots that would hide the map")
+        ops.region_around()
+        x = [point.co[0] for point in self.rock.region.data.splines[0].points]
+        self.assertAlmostEqual(max(x) - min(x), 3100.0, delta=1.0, msg="as wide as the ground, and no wider")
         item = self.draped()
         names = [m.name for m in item.data.materials]
         self.assertTrue(all(any(block in name for name in names) for block in ORDER), names)
