@@ -91,9 +91,10 @@ class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
         if not len(group.misfits):
             hint(layout, "All data fit.")
             return
-        count = group.view.misfit_count
-        said = "1 datum does not fit" if count == 1 else f"{count:,} data do not fit"
-        layout.label(text=said + (", the largest:" if count > len(group.misfits) else ""))
+        more = group.view.misfit_count - len(group.misfits)
+        layout.label(
+            text=f"Data that do not fit: {group.view.misfit_count:,}" + (", the largest:" if more else "")
+        )
         layout.template_list("REALMODEL_UL_misfits", "", group, "misfits", group, "active_misfit", rows=5)
         if 0 <= group.active_misfit < len(group.misfits):
             _draw_misfit(layout, group.misfits[group.active_misfit])
