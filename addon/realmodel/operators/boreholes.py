@@ -295,7 +295,7 @@ def _summary(found, of):
     if len(found.observations):
         said.append(f"{counted(len(found.observations), 'observation')} of blocks")
     if found.maps:
-        said.append(f"{sum(len(draped.triangles) for draped in found.maps)} triangles of a map")
+        said.append(f"{counted(sum(len(draped.triangles) for draped in found.maps), 'triangle')} of a map")
     if found.dips is not None:
         said.append(f"{counted(len(found.dips), 'dip')} of '{of}'")
     if found.series_dips is not None:

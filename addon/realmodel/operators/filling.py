@@ -14,6 +14,7 @@ from ..bl.objects.boolean_job import VOLUME
 from ..bl.shading import strata_presets
 from ..bl.shading.strata_presets import PRESETS
 from ..core import RealModelError, Strata
+from ..core.base.errors import counted
 from ..core.filling import PALETTES
 from ..core.filling.strata import MOST_BEDS, MOST_FAULTS, MOST_PEGS, RECUMBENT, STEEPEST, UPRIGHT
 from .background import InBackground
@@ -240,7 +241,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
             self.report({"WARNING"}, warning)
         has_picture = by_hand(self) and set_up_first(bpy.context.scene)
         renders = "; F12 renders them" if has_picture else ""
-        self.report({"INFO"}, f"{beds} beds: see {result.name}{renders}")
+        self.report({"INFO"}, f"{counted(beds, 'bed')}: see {result.name}{renders}")
 
     def _show(self):
         """Shows the strata, or says why they cannot be made."""

@@ -10,6 +10,7 @@ from ..bl.objects import exaggeration
 from ..bl.project import project_settings, settings
 from ..bl.scene import planned_holes
 from ..core import InputRefused
+from ..core.base.errors import counted
 from .background import InBackground
 from .files import Exporting, format_filter, format_menu
 from .reporting import Reporting, a_model, not_building
@@ -95,7 +96,7 @@ class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):
         return planned_job.PlannedJob(context.scene)
 
     def tell_done(self, hole):
-        self.report({"INFO"}, f"Asked the ensemble about {len(hole.contacts)} contacts")
+        self.report({"INFO"}, f"Asked the ensemble about {counted(len(hole.contacts), 'contact')}")
 
 
 class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):

@@ -18,6 +18,7 @@ from ..bl.objects.origin import KEY as ORIGIN_KEY
 from ..bl.project import library_rows, project_settings, region_size, samples, settings
 from ..bl.scene import built_scene, data_objects, live
 from ..core import BuildFailed, Model, load_project
+from ..core.base.errors import counted
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
 from ..registration import drop_handler
@@ -218,7 +219,7 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
         project = project_settings.read_project(project_settings.compose(context.scene, depsgraph))
         written = save_project(project, path)
         context.scene.realmodel.project_file = str(path)
-        self.report({"INFO"}, f"Saved {path.name} and {len(written) - 1} files beside it")
+        self.report({"INFO"}, f"Saved {path.name} and {counted(len(written) - 1, 'file')} beside it")
 
     def invoke(self, context, event):
         if not self.filepath:
@@ -264,7 +265,10 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
             settings.set_number(rock, "base_elevation", _base_below(heights))
             rock.use_base = self.add_base
         live.touch(scene)
-        self.report({"INFO"}, f"{len(ordered)} surfaces, oldest first: {', '.join(i.name for i in ordered)}")
+        self.report(
+            {"INFO"},
+            f"{counted(len(ordered), 'surface')}, oldest first: {', '.join(i.name for i in ordered)}",
+        )
 
     def comes(self, _context):
         return "make one from the selected meshes"

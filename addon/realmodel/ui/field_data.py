@@ -92,7 +92,9 @@ class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
             hint(layout, "All data fit.")
             return
         more = group.view.misfit_count - len(group.misfits)
-        layout.label(text=f"{group.view.misfit_count:,} data do not fit" + (", the largest:" if more else ""))
+        layout.label(
+            text=f"Data that do not fit: {group.view.misfit_count:,}" + (", the largest:" if more else "")
+        )
         layout.template_list("REALMODEL_UL_misfits", "", group, "misfits", group, "active_misfit", rows=5)
         if 0 <= group.active_misfit < len(group.misfits):
             _draw_misfit(layout, group.misfits[group.active_misfit])

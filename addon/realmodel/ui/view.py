@@ -6,6 +6,7 @@ import bpy
 from .. import props_stage
 from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals, viewpoints
 from ..bl.project import compartments, library_rows, project_settings, settings, units
+from ..core.base.errors import counted
 from .lists import draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
 
@@ -49,7 +50,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         layout.prop(group.view, "show_residuals")
         for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
             column = layout.column(align=True)
-            column.label(text=f"{name}: {count} points")
+            column.label(text=f"{name}: {counted(count, 'point')}")
             values = [units.length_text(context.scene, value) for value in (spread, largest)]
             column.label(text=f"RMS {values[0]}")
             column.label(text=f"Largest {values[1]}")
