@@ -11,7 +11,7 @@ from realmodel.bl import display, overlay
 from realmodel.bl.display import cuts, ensembles
 from realmodel.bl.field import data, edits, handle
 from realmodel.bl.jobs.estimate_job import EstimateJob
-from realmodel.bl.objects import built_models
+from realmodel.bl.objects import built_models, meshes
 from realmodel.bl.project import series_settings
 from realmodel.bl.scene import live
 from realmodel.core import Cancelled, InputRefused, SpaceDips, build, estimate, load_project
@@ -81,6 +81,21 @@ class Series(PanelCase):
         np.testing.assert_allclose(
             [block.volume for block in again.blocks], list(expected.values()), rtol=1e-9
         )
+
+    def test_walls_have_corners_within_for_their_bedding(self):
+        """So that laminae follow the fold there: the corners of cells alone are hundreds of meters apart."""
+        ops.open_project(filepath=str(self.coarse()))
+        ops.build()
+        for name in ("Marl", "Limestone", "Sandstone", "Shale"):
+            mesh = bpy.data.objects[name].data
+            self.assertFalse(mesh.validate())
+            self.assertEqual(len(mesh.attributes[meshes.PREFIX + "height"].data), len(mesh.loops))
+            surfaces = [each.value for each in mesh.attributes[meshes.FACE_SURFACE].data]
+            at = meshes.mesh_coordinates(mesh)
+            walls = [polygon for polygon, surface in zip(mesh.polygons, surfaces, strict=True) if surface < 0]
+            sides = np.array([key for polygon in walls for key in polygon.edge_keys])
+            self.assertLess(np.linalg.norm(at[sides[:, 0]] - at[sides[:, 1]], axis=1).max(), 2.001 * 80)
+            self.assertGreater(len(walls), 100)
 
     def test_an_ensemble_draws_fields(self):
         ops.open_project(filepath=str(self.coarse()))

@@ -95,7 +95,7 @@ def _draw_warnings(box, group, activity):
     """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
     given = notices.read(group.warnings)
     row = box.row(align=True)
-    count = "1 Warning" if len(given) == 1 else f"{len(given)} Warnings"
+    count = "1 Message" if len(given) == 1 else f"{len(given)} Messages"
     icon = "DISCLOSURE_TRI_DOWN" if activity.unfolded else "DISCLOSURE_TRI_RIGHT"
     row.use_property_split = False
     row.alignment = "LEFT"
