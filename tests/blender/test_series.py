@@ -10,10 +10,11 @@ from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import display, overlay
 from realmodel.bl.display import cuts, ensembles
 from realmodel.bl.field import data, edits, handle
+from realmodel.bl.jobs.estimate_job import EstimateJob
 from realmodel.bl.objects import built_models, meshes
 from realmodel.bl.project import series_settings
 from realmodel.bl.scene import live
-from realmodel.core import InputRefused, SpaceDips, build, load_project
+from realmodel.core import Cancelled, InputRefused, SpaceDips, build, estimate, load_project
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -40,6 +41,23 @@ class Series(PanelCase):
             text = text.replace(given, used)
         project.write_text(text, encoding="utf-8")
         return project
+
+    def test_an_estimate_knows_the_lattice_of_a_field(self):
+        project = self.coarse()
+        ops.open_project(filepath=str(project))
+        self.assertNotIn("nodes of lattices", draw_tab(bpy.context).labels)
+        ops.estimate()
+        labels = draw_tab(bpy.context).labels
+        expected = estimate(load_project(project))
+        self.assertIn(f"{expected.lattice_nodes:,}", labels)
+        self.assertIn("memory while building columns", labels)
+        self.assertEqual(len(self.model.results), 0)
+        self.model.rocks[0].series[0].resolution = 100.0
+        self.assertNotIn("nodes of lattices", draw_tab(bpy.context).labels)
+        job = EstimateJob(self.scene, bpy.context.evaluated_depsgraph_get())
+        job.start()
+        job.cancel()
+        self.assertRaises(Cancelled, job.finish)
 
     def test_a_fold_is_built_kept_and_saved(self):
         project = self.coarse()

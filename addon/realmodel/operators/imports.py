@@ -11,6 +11,7 @@ import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..bl.display import bodies
 from ..bl.objects import shapes, viewports
 from ..bl.project import library_rows, plan_mesh, project_settings, reading_text, settings
 from ..bl.scene import data_objects, live
@@ -312,6 +313,7 @@ def arrived(context, rock, places, read=None):
     if places and not len(scene.realmodel.results):
         context.view_layer.update()
         shown = data_objects.objects(scene) + project_settings.user_objects(scene)
+        shown += bodies.listed(scene, "map")
         viewports.frame_items(shown, viewports.spaces(context))
     live.touch(scene)
 

@@ -45,12 +45,13 @@ class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
         rows = scene.realmodel.planned_holes
         with settings.filling():
             row = rows.add()
-            row.name = settings.free_name(rows, "Planned hole", own=row)
+            row.name = settings.free_name(rows, f"P{len(rows)}", own=row)
             origin = project_settings.model_origin(scene)
             planned_holes.set_collar(row, np.array([at[0], at[1], high[2]]) + origin)
             settings.set_number(row, "length", float(_LONGER * (high[2] - low[2])))
             scene.realmodel.active_planned_hole = len(rows) - 1
         planned_holes.update(scene, row)
+        planned_holes.begin_on_ground(scene, row)
 
 
 def _cursor(scene):

@@ -144,16 +144,17 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             row.prop(view, "section_holes")
             row.operator("realmodel.pick_holes", text="", icon="EYEDROPPER")
             layout.prop(view, "section_beyond")
-            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...")
+            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...", "Through Holes")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
 
 
-def _section_buttons(layout, operator, along, saving):
+def _section_buttons(layout, operator, along, saving, making=""):
     """Buttons for the results of a cut: an object in its place, one beside the model, a file."""
     column = layout.column(align=True)
     row = column.split(factor=0.7, align=True)
-    row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
+    named = {"text": making} if making else {}
+    row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN", **named).flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
