@@ -173,6 +173,7 @@ def fold(folder):
     model, picture = sample("recumbent_fold", folder, finer=1.7)
     half = model.cut_by_plane((0.0, 330.0, 0.0), (0.0, 1.0, 0.0)).above
     picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
+    apply_looks(model, 0.6)
     picture.sun = math.radians(140.0), math.radians(42.0)
     picture.draw(
         "fold",

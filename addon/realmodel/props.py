@@ -371,7 +371,8 @@ class RealModelActivity(bpy.types.PropertyGroup):
         items=quality.CHARTS,
         options={"SKIP_SAVE"},
     )
-    unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
+    unfolded: BoolProperty(name="Messages", description="Show all messages in full", options={"SKIP_SAVE"})
+    estimate: StringProperty(options={"SKIP_SAVE"})  # of bl.jobs.estimate_job
     problem: StringProperty(options={"SKIP_SAVE"})
     problem_item: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})

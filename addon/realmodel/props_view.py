@@ -124,8 +124,8 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     hole_width: FloatProperty(
         name="Holes Within",
-        description="Distance from the section plane within which boreholes are shown on the cut, and drawn "
-        "on sections; 0: on the cut all, in their places, and none in drawings",
+        description="Distance from the section plane within which boreholes, contacts and dips are shown on "
+        "the cut, and boreholes drawn on sections; 0: on the cut all, in their places, and none in drawings",
         min=0.0,
         subtype="DISTANCE",
         options=set(),

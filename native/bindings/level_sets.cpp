@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between.
+// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between, values_through.
 #include "realmodel/fields/level_sets.hpp"
 
 #include <pybind11/numpy.h>
@@ -8,6 +8,8 @@
 #include "arrays.hpp"
 #include "execution.hpp"
 #include "lattice.hpp"
+#include "realmodel/fields/values_through.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -84,6 +86,19 @@ Array<std::uint8_t> points_between(const LatticeTuple& lattice, const Array<doub
     return to_array(std::move(found));
 }
 
+py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& corners,
+                         const Array<double>& weights, const Array<double>& levels, int rounds,
+                         WatchedExecution* execution) {
+    const fields::LevelsAtContacts at{rows<4>(corners, "corners"), rows<4>(weights, "weights"),
+                                      view(levels)};
+    fields::ValuesThrough found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = fields::values_through(view(given), at, rounds, run(execution));
+    }
+    return py::make_tuple(to_array(std::move(found.values)), to_array(std::move(found.missed)));
+}
+
 }  // namespace
 
 void bind_level_sets(py::module_& m) {
@@ -109,6 +124,12 @@ nodes; (P, 4) float64, their weights, which sum to 1. points: as of level_sets.)
           py::arg("points"), py::arg("execution") = py::none(), R"doc(
 (P,) uint8: of each point of a field whether it has corners with lesser and with greater values beside it. Where
 not, the level set of its value does not pass through it. points: as of level_sets.)doc");
+    m.def("values_through", &values_through, py::arg("given"), py::arg("corners"),
+          py::arg("weights"), py::arg("levels"), py::arg("rounds"),
+          py::arg("execution") = py::none(), R"doc(
+(N,) float64: values near those given with which a field has levels (C,) at contacts, as far as these do not pull
+at the same corners; (C,) float64: what it still misses them by, less in each round. corners: (C, 4) int64, of
+the tetrahedra of contacts, by their places among the values; weights: (C, 4) float64, of these.)doc");
 }
 
 }  // namespace realmodel::bindings

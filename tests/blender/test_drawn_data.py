@@ -84,7 +84,7 @@ class DrawnData(PanelCase):
         )
         item.location.z = 5.0
         bpy.context.view_layer.update()
-        self.assertIn("Contacts from Active Object", draw_tab(bpy.context).labels)
+        self.assertIn("From Active Object", draw_tab(bpy.context).labels)
         ops.draw_contacts(use_object=True)
         points = data_objects.read_points(self.scene, row)[4:]
         np.testing.assert_allclose(points[:3], [(30, 50, 35), (40, 50, 36), (50, 50, 37)], atol=1e-4)

@@ -7,8 +7,9 @@ from blender_state import coordinates
 from panel_case import PanelCase, ops
 from realmodel.bl.objects import materials
 from realmodel.bl.pictures import batch
-from realmodel.bl.project import library_rows, project_settings
+from realmodel.bl.project import project_settings
 from realmodel.core import build, load_project
+from realmodel.core.project.colors import hex_color
 from realmodel.core.results.automatic_library import PALETTE
 
 PROJECT = """
@@ -69,7 +70,7 @@ class FarCoordinates(PanelCase):
     def test_without_a_library_layers_are_colored_as_imported_points_are(self):
         imported = list(PALETTE[:2])
         self.assertEqual([row.name for row in self.model.library], ["S0", "S1"])
-        self.assertEqual([library_rows.hex_color(row.color) for row in self.model.library], imported)
+        self.assertEqual([hex_color(row.color) for row in self.model.library], imported)
         block = self.model.results[0]
         self.assertEqual((block.property_id, block.object["realmodel_property"]), (2, 2))
         color = block.object.data.materials[0].diffuse_color[:3]

@@ -207,6 +207,7 @@ class FieldData(PanelCase):
         self.assertIn(("point", "B2", "12", "8"), found)
         self.assertTrue(self.body("misfits"))
         self.assertEqual(self.body("misfits")[0].data.materials[0].name, "Misfit")
+        self.assertTrue(self.body("misfits")[0].show_in_front, "seen within the blocks")
         number = next(n for n, row in enumerate(rows) if (row.kind, row.source) == ("point", "B2"))
         self.model.active_misfit = number
         datum = handle.active(self.scene)

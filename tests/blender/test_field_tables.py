@@ -64,8 +64,9 @@ class FieldTables(PanelCase):
         self.assertEqual(sorted(set(seen.blocks)), ["Clay", "Gravel", "Sandstone"])
         self.assertEqual(sorted(set(seen.depths[seen.holes == "B1"])), [0, 9, 20, 21, 31])
         self.assertEqual(set(self.clouds()), {"rock mass boreholes"})
+        self.assertTrue(any(item.get("realmodel_view") == "boreholes" for item in self.scene.objects))
         ops.region_around()
-        self.rock.base_elevation = 0.0
+        self.assertEqual(self.rock.base_elevation, 21.0, "below the holes, for the sandstone")
         for surface in self.rock.surfaces:
             surface.method = "natural_neighbour"
         ops.build()
@@ -115,13 +116,15 @@ class FieldTables(PanelCase):
 
     def test_the_dialog_says_what_the_chosen_files_are(self):
         given = {**TABLES, "outcrops.csv": OUTCROPS, "dips.csv": DIPS, "other.csv": "a,b\n1,2\n"}
-        shown = {}
+        shown, contained = {}, {}
         for name, text in given.items():
             (self.folder / name).write_text(text)
-            shown[name] = boreholes.shown_kind(self.folder / name, "")
+            *shown[name], contained[name] = boreholes.shown_kind(self.folder / name, "")
         self.assertIn("columns do not say", shown.pop("other.csv")[0])
+        self.assertIn("block\u00a0=\u00a0lith", contained["logs.csv"][0])
+        self.assertEqual(contained["logs.csv"][1], "codes Clay, Gravel, Sandstone, lost core")
         kinds = ["collars", "survey", "intervals", "observations", "dips"]
-        self.assertEqual(shown, {name: (kind, "CHECKMARK") for name, kind in zip(shown, kinds, strict=True)})
+        self.assertEqual(shown, {name: [kind, "CHECKMARK"] for name, kind in zip(shown, kinds, strict=True)})
         named = "hole = a; depth = b; azimuth = b"
         self.assertEqual(boreholes.shown_kind(self.folder / "other.csv", named)[0], "survey")
 

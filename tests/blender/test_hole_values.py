@@ -100,10 +100,15 @@ class HoleValues(PanelCase):
         self.assertEqual(len(middles), 4)
         self.assertTrue(np.allclose(middles[:, 1], 50.5, atol=1e-4), "on the plane")
         self.assertEqual([name for name, _ in boreholes.labels(self.scene)], ["B0", "B1"])
+        view.show_contacts = True
+        (contacts,) = [o for o in self.scene.objects if o.get("realmodel_view") == "contacts"]
+        plan = coordinates(contacts.data).astype(float) + project_settings.model_origin(self.scene)
+        self.assertTrue((np.abs(plan[:, 1] - 50.5) < 0.5 * np.ptp(plan[:, 1]) + 1e-3).all(), "on it, too")
         view.plane.location.y += 30.0
         bpy.context.view_layer.update()
         ops.section_update()
-        self.assertFalse([o for o in self.scene.objects if o.get("realmodel_view") == "boreholes"])
+        gone = ("boreholes", "contacts")
+        self.assertFalse([o for o in self.scene.objects if o.get("realmodel_view") in gone])
         view.plane.location.y -= 28.5
         bpy.context.view_layer.update()
         ops.section_update()

@@ -11,6 +11,7 @@ from realmodel.bl.objects import origin
 from realmodel.bl.project import library_rows, project_settings
 from realmodel.bl.scene import data_objects
 from realmodel.core.base.build_warning import BuildWarning
+from realmodel.core.project.colors import hex_color
 from realmodel.core.results.automatic_library import PALETTE, palette
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
@@ -57,7 +58,7 @@ class Files(Imported):
         self.assertEqual([s.name for s in rock.surfaces], ["low", "middle", "high"])
         self.assertEqual([e.name for e in self.model.library], ["low", "middle", "high"])
         self.assertEqual([s.property_id for s in rock.surfaces], [1, 2, 3])
-        self.assertEqual([library_rows.hex_color(e.color) for e in self.model.library], list(PALETTE[:3]))
+        self.assertEqual([hex_color(e.color) for e in self.model.library], list(PALETTE[:3]))
         self.assertEqual(set(self.clouds()), {"low points", "middle points", "high points"})
 
     def wells(self):
@@ -521,6 +522,6 @@ class Palette(PanelCase):
     def test_more_surfaces_than_the_palette_has_colors_get_others(self):
         for number in range(len(PALETTE) + 3):
             library_rows.for_surface(self.scene, f"S{number}")
-        colors = [library_rows.hex_color(row.color) for row in self.model.library]
+        colors = [hex_color(row.color) for row in self.model.library]
         self.assertEqual(len(set(colors)), len(colors))
         self.assertEqual(len(set(palette())), 3 * len(PALETTE))

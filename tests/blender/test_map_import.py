@@ -7,6 +7,7 @@ from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.field import map_settings
 from realmodel.bl.project import observed_blocks, project_settings
+from realmodel.bl.scene import data_objects
 from realmodel.operators import boreholes
 
 VALLEY = SAMPLES / "mapped_valley"
@@ -35,6 +36,11 @@ class MapImport(PanelCase):
         self.assertEqual(set(seen.blocks), set(ORDER))
         self.assertTrue((seen.holes == "").all())
         self.assertTrue(self.rock.surfaces[-1].filepath.endswith("ground.asc"))
+        self.assertEqual(self.rock.surfaces[-1].method, "grid")
+        self.assertEqual(data_objects.objects(self.scene), [], "no dots that would hide the map")
+        ops.region_around()
+        x = [point.co[0] for point in self.rock.region.data.splines[0].points]
+        self.assertAlmostEqual(max(x) - min(x), 3100.0, delta=1.0, msg="as wide as the ground, and no wider")
         item = self.draped()
         names = [m.name for m in item.data.materials]
         self.assertTrue(all(any(block in name for name in names) for block in ORDER), names)
@@ -68,13 +74,23 @@ class MapImport(PanelCase):
             "hole,x,y,z,from,to,block\nB1,1500,1000,400,0,50,Limestone\nB1,1500,1000,400,50,80,Shale\n"
         )
         files = [{"name": "map.geojson"}, {"name": "logs.csv"}]
-        given = {"map_block": "FORMATION", "map_ground": str(VALLEY / "ground.asc"), "names": NAMES}
+        given = {"map_ground": str(VALLEY / "ground.asc"), "names": NAMES}  # its only attribute
         first = str(self.folder / "map.geojson")
         ops.boreholes_read(filepath=first, directory=str(self.folder), files=files, **given)
         seen = observed_blocks.of_rock(self.rock)
         self.assertEqual(int((seen.holes == "B1").sum()), 4)
         self.assertGreater(int((seen.holes == "").sum()), 500)
-        self.assertEqual(boreholes.shown_kind(self.folder / "map.geojson", ""), ("map", "CHECKMARK"))
+        kind, icon, contained = boreholes.shown_kind(self.folder / "map.geojson", "")
+        self.assertEqual((kind, icon), ("map", "CHECKMARK"))
+        self.assertEqual(contained, ["block\u00a0=\u00a0FORMATION", "codes Bas, Ls, Ml, Sh, Ss"])
+
+    def test_a_base_lies_below_the_map(self):
+        self.read()
+        self.assertTrue(self.rock.use_base)
+        self.assertLess(self.rock.base_elevation, 300 - 0.1 * 3600, "a tenth of the extent below the ground")
+        self.rock.base_elevation = 12.0
+        self.read()
+        self.assertEqual(self.rock.base_elevation, 12.0, "what is given stays")
 
     def test_the_ground_may_be_a_surface_of_the_list(self):
         ops.surface_add(filepath=str(VALLEY / "ground.asc"), name="hills")
@@ -88,7 +104,10 @@ class MapImport(PanelCase):
         self.assertEqual(set(seen.blocks), {"hills"})
 
     def test_what_is_lacking_is_said(self):
-        self.refused(self.read, "which attribute names the blocks.*FORMATION", map_block="")
+        two = (VALLEY / "map.geojson").read_text().replace("FORMATION", 'A": "1", "B')
+        (self.folder / "two.geojson").write_text(two)
+        path = str(self.folder / "two.geojson")
+        self.refused(ops.boreholes_read, "which attribute names the blocks.*A, B", filepath=path)
         self.refused(self.read, "no attribute 'ROCK'", map_block="ROCK")
         self.refused(self.read, "the ground of the map is not known", map_ground="")
         self.refused(self.read, "file not found", map_ground="none.asc")

@@ -21,6 +21,7 @@ CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a vi
     *(
         "export",
         "export_mesh",
+        "estimate",
         "report",
         "save_section",
         "save_chart",

@@ -13,10 +13,10 @@ import numpy as np
 from blender_state import inventory
 from panel_case import PanelCase, ops, select, stack
 from realmodel.bl.objects.materials import linear_color
-from realmodel.bl.project.library_rows import hex_color
 from realmodel.bl.scene import scene_export
 from realmodel.bl.shading import looks
 from realmodel.core import InputRefused
+from realmodel.core.project.colors import hex_color
 
 FOLDER = Path(__file__).resolve().parent
 READER = FOLDER.parents[1] / "build" / "venv" / "bin" / "python"

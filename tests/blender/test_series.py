@@ -10,10 +10,11 @@ from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import display, overlay
 from realmodel.bl.display import cuts, ensembles
 from realmodel.bl.field import data, edits, handle
-from realmodel.bl.objects import built_models
+from realmodel.bl.jobs.estimate_job import EstimateJob
+from realmodel.bl.objects import built_models, meshes
 from realmodel.bl.project import series_settings
 from realmodel.bl.scene import live
-from realmodel.core import InputRefused, SpaceDips, build, load_project
+from realmodel.core import Cancelled, InputRefused, SpaceDips, build, estimate, load_project
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -41,6 +42,23 @@ class Series(PanelCase):
         project.write_text(text, encoding="utf-8")
         return project
 
+    def test_an_estimate_knows_the_lattice_of_a_field(self):
+        project = self.coarse()
+        ops.open_project(filepath=str(project))
+        self.assertNotIn("nodes of lattices", draw_tab(bpy.context).labels)
+        ops.estimate()
+        labels = draw_tab(bpy.context).labels
+        expected = estimate(load_project(project))
+        self.assertIn(f"{expected.lattice_nodes:,}", labels)
+        self.assertIn("memory while building columns", labels)
+        self.assertEqual(len(self.model.results), 0)
+        self.model.rocks[0].series[0].resolution = 100.0
+        self.assertNotIn("nodes of lattices", draw_tab(bpy.context).labels)
+        job = EstimateJob(self.scene, bpy.context.evaluated_depsgraph_get())
+        job.start()
+        job.cancel()
+        self.assertRaises(Cancelled, job.finish)
+
     def test_a_fold_is_built_kept_and_saved(self):
         project = self.coarse()
         ops.open_project(filepath=str(project))
@@ -63,6 +81,21 @@ class Series(PanelCase):
         np.testing.assert_allclose(
             [block.volume for block in again.blocks], list(expected.values()), rtol=1e-9
         )
+
+    def test_walls_have_corners_within_for_their_bedding(self):
+        """So that laminae follow the fold there: the corners of cells alone are hundreds of meters apart."""
+        ops.open_project(filepath=str(self.coarse()))
+        ops.build()
+        for name in ("Marl", "Limestone", "Sandstone", "Shale"):
+            mesh = bpy.data.objects[name].data
+            self.assertFalse(mesh.validate())
+            self.assertEqual(len(mesh.attributes[meshes.PREFIX + "height"].data), len(mesh.loops))
+            surfaces = [each.value for each in mesh.attributes[meshes.FACE_SURFACE].data]
+            at = meshes.mesh_coordinates(mesh)
+            walls = [polygon for polygon, surface in zip(mesh.polygons, surfaces, strict=True) if surface < 0]
+            sides = np.array([key for polygon in walls for key in polygon.edge_keys])
+            self.assertLess(np.linalg.norm(at[sides[:, 0]] - at[sides[:, 1]], axis=1).max(), 2.001 * 80)
+            self.assertGreater(len(walls), 100)
 
     def test_an_ensemble_draws_fields(self):
         ops.open_project(filepath=str(self.coarse()))

@@ -413,6 +413,8 @@ def test_an_estimate_builds_nothing(layers, out):
     assert done.returncode == 0
     assert "memory while building blocks" in done.stdout
     assert "would be refused" in done.stdout
+    done = run(ROOT / "blend_samples" / "recumbent_fold" / "project.toml", "--estimate")
+    assert "nodes of lattices" in done.stdout
 
 
 def test_an_estimate_goes_without_outputs(layers, out):

@@ -63,7 +63,7 @@ def test_a_planned_hole_is_written(layers, out):  # noqa: F811
         *("--borehole", f"0.5,0.5,-1,0,-90,2.5={out / 'up.csv'}"),
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines()[-2] == "borehole inclined.csv: 1 intervals, 0.72 of rock"
+    assert done.stdout.splitlines()[-2] == "borehole inclined.csv: 1 interval, 0.72 of rock"
     with (out / "inclined.csv").open() as file:
         (row,) = list(csv.DictReader(file))
     assert row["block"] == "1"

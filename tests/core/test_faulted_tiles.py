@@ -10,14 +10,14 @@ import pytest
 import structure_cases
 from faulted.generate import random_case
 from folded_rocks import dome, folded_project, given_field, sheet
-from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, open_tiles
+from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, UsageError, build, open_tiles
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
 from realmodel.core.cells.cell_complex import CellComplex
 from realmodel.core.tiles import faulted_windows as windows_module
 from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
-from realmodel.core.tiles.owned_cells import Seam, face_keys, owners
+from realmodel.core.tiles.owned_cells import Seam, face_keys, inseparable, owners, reach_of
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import faulted_folder
 from tiled_models import sample
@@ -164,8 +164,21 @@ def test_series_have_the_cells_of_the_undivided_model(fault, monkeypatch, tmp_pa
         models = [tile.model() for tile in open_tiles(tmp_path / folder).tiles]
         assert all(model.validate().passed for model in models)
         found.append({key for model in models for key in cell_keys(model)})
+        assert_same_fields(open_tiles(tmp_path / folder), whole)
+        with pytest.raises(UsageError, match="of tiles only the whole has it"):
+            models[0].field("folded")
     assert len(models) == 8
     assert found[0] == found[1]
+
+
+def assert_same_fields(tiled, whole):
+    (rock,) = tiled.rock_fields()
+    places = np.random.default_rng(4).uniform(0.0, 10.0, (50, 3))
+    assert rock.compartments == whole.compartment_names or len(rock.compartments) == 1
+    for name in rock.compartments:
+        fields = [model.field("folded", name) for model in (tiled, whole)]
+        assert fields[0].lattice == fields[1].lattice
+        assert np.array_equal(*(field.at(places) for field in fields))
 
 
 def areas_of(section, blocks):
@@ -428,6 +441,24 @@ def test_paraview_opens_all_of_them_at_once(in_six):
     assert cells.tolist() == [block.cells for block in tiled.blocks]
 
 
+def test_cells_between_faces_in_one_place_are_not_parted():
+    """Between cells 0 and 3 there are 1 and 2, which have no extent where their triangles are one."""
+    shared = CellComplex(
+        vertices=np.array([[1.0, 0, 0], [1, 1, 0], [1, 0, 1], [0, 0, 0], [2, 0, 0], [1, 0.5, 0]]),
+        face_offsets=np.array([0, 3, 6, 9, 12]),
+        face_vertices=np.array([0, 1, 2, 2, 0, 1, 0, 3, 2, 4, 0, 2], np.int32),
+        face_cells=np.array([[0, 1], [2, 3], [0, -1], [3, 1]], np.int32),
+        face_surface=np.full(4, -1, np.int32),
+        cell_block=np.array([0, 1, 0, 1], np.int32),
+        cell_kind="columns",
+    )
+    together = inseparable(shared)
+    assert together.tolist() == [0, 0, 2, 2]
+    grid = TileGrid(np.array([-0.5, 0.5, 2.5]), np.array([-1.0, 2.0]))
+    assert owners(shared, grid, together)[:, 0].tolist() == [0, 0, 1, 1]
+    assert reach_of(shared, np.array([True, False, False, False]), together) == (0.0, 0.0, 2.0, 1.0)
+
+
 def test_owners_and_seams():
     two = CellComplex(  # cubes beside each other
         vertices=np.array([[x, y, z] for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)], float),
@@ -439,7 +470,7 @@ def test_owners_and_seams():
         cell_kind="columns",
     )
     grid = TileGrid(np.array([-0.5, 0.5, 2.5]), np.array([-1.0, 2.0]))
-    assert owners(two, grid).tolist() == [[0, 0], [1, 0]]
+    assert owners(two, grid, inseparable(two)).tolist() == [[0, 0], [1, 0]]
     parts = np.array([[0, 0]])
     given = np.array([0]), np.array([0]), parts, np.array([True])
     one = Seam.of(two, *given)

@@ -111,7 +111,7 @@ def test_layers_of_a_series_have_their_heights_by_its_field(model):
         inner = shape.bedding.height[of_corner < 0]
         assert inner.min() < 0.3 and inner.max() > 0.7
         (thickness,) = set(shape.bedding.thickness.tolist())
-        assert 20.0 < thickness < 400.0
+        assert 20.0 < thickness < 450.0
     assert seen > 1000
 
 

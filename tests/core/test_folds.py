@@ -225,7 +225,7 @@ def test_a_model_without_a_field_says_so(tmp_path):
     with pytest.raises(UsageError, match="the model has none"):
         model.field("folded")
     with pytest.raises(UsageError, match="the model has no field"), open(tmp_path / "f.vtu", "wb") as file:
-        write_fields(model, file)
+        write_fields([entry.fields for entry in model.rock_inputs], file)
 
 
 def test_what_cannot_be_made_of_fields_is_refused(monkeypatch):

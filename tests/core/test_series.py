@@ -133,6 +133,8 @@ def test_dips_that_are_switched_off_say_nothing():
     [
         ("30,90,1", (0.5, 0, math.sqrt(0.75))),
         ("30,90,-1", (-0.5, 0, -math.sqrt(0.75))),
+        ("30,90,Overturned", (-0.5, 0, -math.sqrt(0.75))),
+        ("0,,normal", (0, 0, 1)),
         ("150,270,1", (-0.5, 0, -math.sqrt(0.75))),  # overturned by its angle
         ("150,270,-1", (-0.5, 0, -math.sqrt(0.75))),
         ("90,0,1", (0, 1, 0)),
@@ -153,6 +155,7 @@ def test_normals_point_toward_younger_rock(tmp_path, row, normal):
         ("x,y,dip,dip_direction\n1,2,30,40\n", "column z"),
         ("x,y,z,dip,dip_direction\n1,2,3,190,40\n", "not from 0 to 180"),
         ("x,y,z,dip,dip_direction,polarity\n1,2,3,30,40,0\n", "the polarity is 0"),
+        ("x,y,z,dip,dip_direction,polarity\n1,2,3,30,40,east\n", "not a number.*; write 1 or upright"),
         ("x,y,z,normal_x,normal_y,normal_z\n1,2,3,0,0,0\n", "the normal is 0"),
         ("x,y,z,dip,dip_direction\n1,2,3,30,\n", "has no direction"),
     ],

@@ -3,7 +3,7 @@
 
 import pytest
 from realmodel.core import InputRefused
-from realmodel.core.readers import table_kind
+from realmodel.core.readers import table_contents, table_kind
 
 HEADERS = {
     "hole,x,y,z": "collars",
@@ -37,6 +37,16 @@ def written(folder, header, row=None):
     path = folder / "table.csv"
     path.write_text(f"{header}\n{row or separator.join(entries)}\n")
     return path
+
+
+def test_what_is_read_of_a_table(tmp_path):
+    table = tmp_path / "logs.csv"
+    table.write_text("BHID;From;To;Lith\nB1;0;2;CLY\nB1;2;3;LC\nB2;0;2;CLY\nB2;2;4;\n")
+    columns = {"hole": "bhid", "from": "from", "to": "to", "block": "lith"}
+    assert table_contents(table) == (columns, ["CLY", "LC"])
+    assert table_contents(written(tmp_path, "hole,x,y,z"))[1] == []
+    with pytest.raises(InputRefused, match="do not say"):
+        table_contents(written(tmp_path, "a,b"))
 
 
 @pytest.mark.parametrize("header", HEADERS)

@@ -31,8 +31,8 @@ def empty_file(walk):
     yield from open_the_tab(walk)
 
 
-def boreholes_are_lines(walk):
-    """The holes are seen as lines at once. The clay is known up dip alone, where it lies higher than the mean
+def boreholes_are_tubes(walk):
+    """The holes are seen as tubes at once. The clay is known up dip alone, where it lies higher than the mean
     of the others; still it is the oldest."""
     _write_picks(walk.folder / "picks.csv")
     with in_the_viewport(walk):
@@ -47,9 +47,9 @@ def boreholes_are_lines(walk):
     for edge in item.data.edges:
         first, last = (np.array(walk.pixel_of(places[v])) for v in edge.vertices)
         x, y = ((first + last) / 2).astype(int)
-        around = picture[y - 1 : y + 2, x - 2 : x + 3].max(axis=2)
-        seen += around.min() < picture[y - 20 : y + 20, x - 20 : x + 20].max(axis=2).mean() - 0.05
-    assert seen > 0.8 * len(item.data.edges), f"{seen} of {len(item.data.edges)} lines are seen"
+        tube, beside = (picture[y - 1 : y + 2, x + a : x + a + 3].mean(axis=(0, 1)) for a in (-1, 20))
+        seen += np.abs(tube - beside).max() > 0.08
+    assert seen > 0.8 * len(item.data.edges), f"{seen} of {len(item.data.edges)} tubes are seen"
     assert [s.name for s in model().rocks[0].surfaces] == ["clay", "sand", "silt"]
     (walk.folder / "picks.csv").unlink()
 
@@ -155,7 +155,7 @@ def extended_and_built_again(walk):
 
 STEPS = (
     empty_file,
-    boreholes_are_lines,
+    boreholes_are_tubes,
     a_pit_is_seen,
     sticks_are_lines,
     the_place_of_a_refusal,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.base.errors import InputRefused, UsageError
+from ..core.base.errors import InputRefused, UsageError, counted
 from ..core.base.text import read_text
 from ..core.exporters import ExportOptions, format_for, write_model
 from ..core.exporters.boreholes import borehole_writer, planned_hole_writer
@@ -100,7 +100,7 @@ class BoreholeRequest:
                 found = model.borehole(*self.what)
                 borehole_writer(self.file)(model, found, file)
         length = sum(interval.length for interval in found)
-        return f"borehole {self.file.name}: {len(found)} intervals, {length:.2f} of rock"
+        return f"borehole {self.file.name}: {counted(len(found), 'interval')}, {length:.2f} of rock"
 
 
 @dataclass

@@ -245,7 +245,7 @@ OPTIONS = (
         "build the model in tiles of this width and height by Dask, and write it to the folder --out",
         _tile_size,
         in_blender=False,
-        beside=("out", "scheduler", "cells"),
+        beside=("out", "scheduler", "cells", "export-field"),
     ),
     Option("out", "FOLDER", "the folder of --ensemble or --tiles", Path, needs=_OF_DASK),
     Option("seed", "S", "of the random numbers (default: 0)", _whole, needs=("ensemble",)),

@@ -44,6 +44,8 @@ def run(options: argparse.Namespace) -> None:
     source = Source.of(options.project)
     project = source.project
     _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
+    if options.export_field is not None and not any(rock.has_fields for rock in project.rocks):
+        raise UsageError("--export-field: none of the series of the project is of the kind 'field'")
     by_dask = options.ensemble is not None or options.tiles is not None
     progress = TerminalProgress(sys.stdout, options.quiet, time_left=by_dask)
     if options.estimate:
@@ -71,7 +73,7 @@ def run(options: argparse.Namespace) -> None:
             _export(options, model, outputs, progress, cells)
             if options.export_field is not None:
                 with outputs.file(options.export_field) as file:
-                    write_fields(model, file)
+                    write_fields([entry.fields for entry in model.rock_inputs], file)
             if options.blend is not None or options.render is not None:
                 _write_with_blender(options, project, model, outputs, progress)
             if options.report is not None:
@@ -158,6 +160,9 @@ def _tiles(options: argparse.Namespace, project, progress) -> None:
         found = build_tiles(
             project, options.out, options.tiles, client, cells=options.cells, progress=progress
         )
+    if options.export_field is not None:
+        with Outputs() as outputs, outputs.file(options.export_field) as file:
+            write_fields([rock.fields for rock in found.rock_fields()], file)
     _print(options, found.warnings, [tiles_table(found)])
 
 

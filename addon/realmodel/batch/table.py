@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.base.errors import counted
 from ..core.ensembles import PERCENTILES
 from ..core.results.erosion import Erosion
 
@@ -133,7 +134,9 @@ def tiles_table(model) -> str:
     """A line for each block of a model in tiles, youngest first, and the sum; then the tiles."""
     rows = [_row(model, block) for block in reversed(model.blocks)]
     sums = _sums(model)
-    summary = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
+    summary = (
+        f"{counted(len(model.tiles), 'tile')}, each validated; {model.patches} patches on their borders, "
+    )
     summary += "equal on both sides"
     if model.unequal:
         summary += f" but for {model.unequal}"

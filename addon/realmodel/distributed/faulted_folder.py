@@ -18,6 +18,7 @@ from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.work import Cancel, Reporter, Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
+from ..core.results.model_fields import rock_fields
 from ..core.structures.parts.parts import box_around, divide
 from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..core.tiles import TiledModel
@@ -25,6 +26,7 @@ from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.faulted_tile import Whole, build_faulted_tile
 from ..core.tiles.faulted_windows import Window, Windows
 from ..core.tiles.owned_cells import Seam
+from ..core.tiles.tile_fields import FIELDS, write_rock_fields
 from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
 from .run_folder import (
     Parts,
@@ -96,6 +98,8 @@ def _built(
     if (folder / CATALOG).exists():
         return finished(folder, digest)
     store = Store(folder, digest)
+    if any(entry.fields for entry in inputs):
+        write_rock_fields(rock_fields(inputs), folder / FIELDS)
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
     whole = Whole(
         list_blocks(inputs, np.zeros(len(names) + len(structures)), CellComplex.empty(cells), structures),

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty
 
 from ..bl.objects.boolean_job import DIVIDE, OPERATIONS, BooleanJob
 from ..core import InputRefused
-from ..core.base.errors import number_list
+from ..core.base.errors import counted, number_list
 from .background import InBackground
 from .reporting import not_building
 
@@ -77,6 +77,6 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
                 f"Not taken over, as the first object has others of these names: {number_list(left_out)}",
             )
         if self.operation == DIVIDE:
-            self.report({"INFO"}, f"Divided into {len(made.all_objects)} objects: see {made.name}")
+            self.report({"INFO"}, f"Divided into {counted(len(made.all_objects), 'object')}: see {made.name}")
         else:
-            self.report({"INFO"}, f"{made.name} has {len(made.data.polygons)} faces")
+            self.report({"INFO"}, f"{made.name} has {counted(len(made.data.polygons), 'face')}")

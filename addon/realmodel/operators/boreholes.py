@@ -2,6 +2,7 @@
 """Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ..bl.field import field_tables, interval_values, map_settings
@@ -11,6 +12,7 @@ from ..bl.project import (
     borehole_picks,
     method_settings,
     observed_blocks,
+    plan_mesh,
     project_settings,
     reading_text,
     series_settings,
@@ -20,18 +22,30 @@ from ..bl.project import (
 from ..bl.scene import borehole_points, data_objects, live
 from ..core import InputRefused, RealModelError
 from ..core.base.errors import counted
-from ..core.readers import MAP_ENDINGS, OBJECT_ENDINGS, TABLE_ENDINGS, contents, table_kind
+from ..core.readers import (
+    MAP_ENDINGS,
+    OBJECT_ENDINGS,
+    RASTER_ENDINGS,
+    TABLE_ENDINGS,
+    contents,
+    table_contents,
+    table_kind,
+)
 from ..core.readers.objects.object_file import is_object_file
 from ..core.settings.schema import READING
 from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
+from ..ui.panel import wrapped
 from .imports import FilesImportHelper, arrived
 from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
 from .rocks import add_rock
 
 _SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
 _OF_MAPS = ("map_layer", "map_block", "map_ground")
+_MOST_DETAILED = 8  # chosen files of which columns and codes are shown
+_MOST_CODES = 20
+_ICON = 5  # letters that are as wide as an icon
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
 
 
@@ -56,14 +70,15 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     )
     map_block: StringProperty(
         name="Block Column",
-        description="Attribute of the polygons that names the block, or its code",
+        description="Attribute of the polygons that names the block, or its code; empty: the only one, or "
+        "that with a usual name",
         search=lambda self, _context, _text: self.of_map(contents.column_names, self.map_layer or None),
     )
     map_ground: StringProperty(
         name="Ground",
         description="Surface of the list that is the ground of the map, or a file of it beside the map or "
         "anywhere: a raster, points or a mesh; empty: the youngest surface",
-        search=lambda self, context, _text: self.surfaces(context),
+        search=lambda self, context, _text: [*self.surfaces(context), *self.rasters()],
     )
     layer: StringProperty(
         name="Layer",
@@ -134,6 +149,12 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         row = settings.active_rock(context.scene)
         return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
 
+    def rasters(self):
+        """The names of the rasters beside the first of the chosen maps."""
+        path = next((path for path in self.paths() if field_tables.is_map(path)), None)
+        beside = [] if path is None else sorted(path.parent.iterdir())
+        return [each.name for each in beside if each.suffix.lower() in RASTER_ENDINGS]
+
     def act(self, context):
         scene = context.scene
         tables = self._tables(context)
@@ -171,11 +192,16 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             given.append(draped.vertices)
             if ground := map_settings.take_ground(rock, file):
                 warnings.append(f"'{ground}' is the ground of the map; check the order of the surfaces")
-            with settings.filling():
-                scene.realmodel.view.show_map = True
         for values in found.values:
             interval_values.add(rock, values)
             given.append(values.begins)
+        if found.new and given:
+            plan_mesh.propose_base(rock, np.concatenate(given), is_of_map=bool(found.maps))
+        with settings.filling():
+            view = scene.realmodel.view
+            view.show_boreholes = view.show_boreholes or bool(found.picks.holes)
+            view.show_dips = view.show_dips or bool(tables.dips or tables.rock_dips or tables.series_dips)
+            view.show_map = view.show_map or bool(found.maps)
         arrived(context, rock, given)
         for text in warnings:
             self.report({"WARNING"}, text)
@@ -204,8 +230,9 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     def _of_maps(self, context, paths):
         """The keys of MapFile. Raises InputRefused where the column of blocks is not said."""
         maps = [path for path in paths if field_tables.is_map(path)]
-        if maps and not self.map_block.strip():
-            names = self.of_map(contents.column_names, self.map_layer or None)
+        names = self.of_map(contents.column_names, self.map_layer or None)
+        block = self.map_block.strip() or field_tables.block_attribute(names)
+        if maps and not block:
             advice = f"choose Block Column: it has {', '.join(map(str, names))}" if names else None
             raise InputRefused("it is not said which attribute names the blocks", file=maps[0], advice=advice)
         ground = self.map_ground.strip()
@@ -214,7 +241,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             require_file(path)
             ground = str(path)
         return {
-            "block": self.map_block.strip(),
+            "block": block,
             "layer": self.map_layer.strip() or None,
             "ground": ground or None,
         }
@@ -224,8 +251,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         box = layout.box().column(align=True)
         shown = [path for path in self.paths() if path.is_file()]
         for path in shown:
-            text, icon = shown_kind(path, self.columns)
+            text, icon, contained = shown_kind(path, self.columns, self.map_layer, self.map_block)
             box.label(text=f"{path.name}: {text}", icon=icon)
+            for part in contained if len(shown) <= _MOST_DETAILED else ():
+                for line in wrapped(part, taken=_ICON):
+                    row = box.row()
+                    row.active = False
+                    row.label(text=line, icon="BLANK1")
         if not shown:
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
@@ -244,17 +276,39 @@ def _beside(table, given):
     return table.parent / given.strip() if path is not None and not path.is_file() else path
 
 
-def shown_kind(path, columns):
-    """What a chosen file is taken for, and an icon."""
-    key = stored_arrays.file_stamp(path), columns
+def shown_kind(path, columns, map_layer="", map_block=""):
+    """What a chosen file is taken for, an icon, and sentences of what is read of it."""
+    key = stored_arrays.file_stamp(path), columns, map_layer, map_block
     if key not in _kinds:
         try:
             named = reading_text.named_columns(columns)
             kind = "boreholes" if is_object_file(path) else "map" if field_tables.is_map(path) else None
-            _kinds[key] = kind or table_kind(path, named), "CHECKMARK"
+            if kind == "map":
+                contained = _of_map(path, map_layer.strip() or None, map_block.strip())
+            else:
+                contained = () if kind else _contained(*table_contents(path, named))
+            _kinds[key] = kind or table_kind(path, named), "CHECKMARK", contained
         except RealModelError as error:
-            _kinds[key] = error.what, "ERROR"
+            _kinds[key] = error.what, "ERROR", ()
     return _kinds[key]
+
+
+def _of_map(path, layer, block):
+    names = contents.column_names(path, layer)
+    block = block or field_tables.block_attribute(names)
+    if not block:
+        return [f"choose Block Column: {', '.join(names)}"]
+    return _contained({"block": block}, sorted(contents.column_values(path, block, layer)))
+
+
+def _contained(columns, codes):
+    """Sentences: the columns of a table, as Columns has them, and its codes, for Names."""
+    named = [
+        f"{meaning}\u00a0=\u00a0{name}" for meaning, name in columns.items() if name not in ("", meaning)
+    ]
+    more = len(codes) - _MOST_CODES
+    listed = ", ".join(codes[:_MOST_CODES]) + (f" and {more} more" if more > 0 else "")
+    return [text for text in ("; ".join(named), listed and f"codes {listed}") if text]
 
 
 def _surface_for_dips(scene):
@@ -295,7 +349,7 @@ def _summary(found, of):
     if len(found.observations):
         said.append(f"{counted(len(found.observations), 'observation')} of blocks")
     if found.maps:
-        said.append(f"{sum(len(draped.triangles) for draped in found.maps)} triangles of a map")
+        said.append(f"{counted(sum(len(draped.triangles) for draped in found.maps), 'triangle')} of a map")
     if found.dips is not None:
         said.append(f"{counted(len(found.dips), 'dip')} of '{of}'")
     if found.series_dips is not None:

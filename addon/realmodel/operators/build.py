@@ -4,11 +4,13 @@
 import bpy
 
 from ..bl.host import notices
+from ..bl.jobs.estimate_job import EstimateJob
 from ..bl.objects import viewports
 from ..bl.scene import build_job, built_scene, live, problems
+from ..core.base.errors import counted
 from .background import InBackground, running
 from .pictures import by_hand, set_up_first
-from .reporting import Reporting, a_model, building, not_building
+from .reporting import Reporting, a_model, any_surface, building, not_building
 
 
 class REALMODEL_OT_build(InBackground, bpy.types.Operator):
@@ -43,9 +45,26 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
         for warning in notices.shown(model):
             self.report({"WARNING"}, str(warning))
         seconds = sum(model.timings.values())
-        blocks = "1 block" if present == 1 else f"{present} blocks"
         renders = ": F12 renders it" if has_picture else ""
-        self.report({"INFO"}, f"Built {blocks} in {seconds:.2f} s{renders}")
+        self.report({"INFO"}, f"Built {counted(present, 'block')} in {seconds:.2f} s{renders}")
+
+
+class REALMODEL_OT_estimate(InBackground, bpy.types.Operator):
+    """Estimate what the build takes before anything is built: the triangles of all surfaces, the nodes of
+    fields, memory and time. Esc cancels"""
+
+    bl_label = "Estimate"
+    bl_options = {"REGISTER"}
+    needs = (any_surface, not_building)
+
+    def begin(self, context):
+        return EstimateJob(context.scene, context.evaluated_depsgraph_get())
+
+    def refused(self, context, error):
+        problems.remember(context.scene, error)
+
+    def tell_done(self, found):
+        self.report({"INFO"}, "; ".join(f"{name}: {value}" for name, value in found.rows()))
 
 
 class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):

@@ -14,6 +14,7 @@ from ..bl.field import drawn_data, placed_images
 from ..bl.objects import viewports, visible
 from ..bl.project import project_settings, settings
 from ..core import InputRefused
+from ..core.base.errors import counted
 from .in_viewport import InViewport
 from .reporting import (
     Reporting,
@@ -87,7 +88,7 @@ class REALMODEL_OT_draw_contacts(_Drawing, bpy.types.Operator):
         row = settings.active_surface(context.scene)
         points = np.concatenate(self.drawn(context))
         drawn_data.add_contacts(context.scene, row, points)
-        self.report({"INFO"}, f"Added {len(points)} points to {row.name}")
+        self.report({"INFO"}, f"Added {counted(len(points), 'point')} to {row.name}")
 
 
 class REALMODEL_OT_draw_stick(_Drawing, bpy.types.Operator):

@@ -10,6 +10,7 @@ from ..bl.jobs import ensemble_job
 from ..bl.objects import visible
 from ..bl.scene import live
 from ..core import InputRefused
+from ..core.base.errors import counted
 from ..props_ensemble import MOST
 from .background import InBackground
 from .reporting import Reporting, a_model, an_outline_object, not_building
@@ -59,7 +60,7 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
         item = ensembles.item_of(bpy.context.scene)
         if item is not None:
             visible.select_alone(bpy.context, item)
-        self.report({"INFO"}, f"Made {len(found.volumes)} realizations")
+        self.report({"INFO"}, f"Made {counted(len(found.volumes), 'realization')}")
 
 
 def _an_ensemble(context):

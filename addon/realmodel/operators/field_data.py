@@ -131,7 +131,7 @@ class REALMODEL_OT_data_switch_on(Reporting, bpy.types.Operator):
         if datum is not None:
             context.scene.realmodel.view.datum = datum._replace(used=True).text()
         _changed(context.scene)
-        self.report({"INFO"}, f"{count} data are used again")
+        self.report({"INFO"}, f"Data used again: {count}")
 
 
 class REALMODEL_OT_datum_show(Reporting, bpy.types.Operator):

@@ -11,11 +11,12 @@ import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..bl.display import bodies
 from ..bl.objects import shapes, viewports
 from ..bl.project import library_rows, plan_mesh, project_settings, reading_text, settings
 from ..bl.scene import data_objects, live
 from ..core import InputRefused, MeshFile, PointFile
-from ..core.base.errors import HeightsMissing
+from ..core.base.errors import HeightsMissing, counted
 from ..core.base.triangles import open_edges
 from ..core.readers import (
     MAP_ENDINGS,
@@ -180,7 +181,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             column = layout.column()
             column.enabled = self.split
             column.prop(self, "split_column")
-            column.label(text=f"{len(values)} values: {', '.join(values)}"[:90])
+            column.label(text=f"{counted(len(values), 'value')}: {', '.join(values)}"[:90])
 
     def _looked_at(self):
         for path in self.paths():
@@ -312,6 +313,7 @@ def arrived(context, rock, places, read=None):
     if places and not len(scene.realmodel.results):
         context.view_layer.update()
         shown = data_objects.objects(scene) + project_settings.user_objects(scene)
+        shown += bodies.listed(scene, "map")
         viewports.frame_items(shown, viewports.spaces(context))
     live.touch(scene)
 

@@ -10,6 +10,7 @@ from ..bl.objects import filled_beds
 from ..bl.project import library_rows, project_settings, settings
 from ..bl.shading import look_assets, looks, weathering
 from ..core import InputRefused
+from ..core.base.errors import counted
 from .reporting import Reporting, a_library, a_model_or_beds
 
 
@@ -138,7 +139,9 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         items = _blocks(context)
         given = weathering.Weathering(*values, *covers, self.detail, self.plants, self.wear)
         weathering.put_on(context.scene, items, given)
-        self.report({"INFO"}, f"Weathered {len(items)} blocks; the modifier of each has all settings")
+        self.report(
+            {"INFO"}, f"Weathered {counted(len(items), 'block')}; the modifier of each has all settings"
+        )
 
 
 class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):

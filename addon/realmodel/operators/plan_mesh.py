@@ -98,7 +98,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
         found = read_constraints([path], context.scene.realmodel.units)
         plan_mesh.add_constraints(rock, found)
         live.touch(context.scene)
-        self.report({"INFO"}, f"Read {len(found)} lines and points")
+        self.report({"INFO"}, f"Lines and points read: {len(found)}")
 
     def check(self, _context):
         return False  # a file of any ending

@@ -10,6 +10,7 @@ from ..bl.objects import exaggeration
 from ..bl.project import project_settings, settings
 from ..bl.scene import planned_holes
 from ..core import InputRefused
+from ..core.base.errors import counted
 from .background import InBackground
 from .files import Exporting, format_filter, format_menu
 from .reporting import Reporting, a_model, not_building
@@ -44,12 +45,13 @@ class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
         rows = scene.realmodel.planned_holes
         with settings.filling():
             row = rows.add()
-            row.name = settings.free_name(rows, "Planned hole", own=row)
+            row.name = settings.free_name(rows, f"P{len(rows)}", own=row)
             origin = project_settings.model_origin(scene)
             planned_holes.set_collar(row, np.array([at[0], at[1], high[2]]) + origin)
             settings.set_number(row, "length", float(_LONGER * (high[2] - low[2])))
             scene.realmodel.active_planned_hole = len(rows) - 1
         planned_holes.update(scene, row)
+        planned_holes.begin_on_ground(scene, row)
 
 
 def _cursor(scene):
@@ -95,7 +97,7 @@ class REALMODEL_OT_planned_hole_certainty(InBackground, bpy.types.Operator):
         return planned_job.PlannedJob(context.scene)
 
     def tell_done(self, hole):
-        self.report({"INFO"}, f"Asked the ensemble about {len(hole.contacts)} contacts")
+        self.report({"INFO"}, f"Asked the ensemble about {counted(len(hole.contacts), 'contact')}")
 
 
 class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):

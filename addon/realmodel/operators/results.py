@@ -4,6 +4,7 @@
 import bpy
 
 from ..bl.project import results
+from ..core.base.errors import counted
 from .reporting import Reporting, a_model
 
 
@@ -16,4 +17,4 @@ class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
 
     def act(self, context):
         context.window_manager.clipboard = results.as_text(context.scene, "\t")
-        self.report({"INFO"}, f"Copied {len(context.scene.realmodel.results)} rows")
+        self.report({"INFO"}, f"Copied {counted(len(context.scene.realmodel.results), 'row')}")

@@ -98,7 +98,8 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
     )
     margin: FloatProperty(
         name="Margin",
-        description="Distance of the region from the points, in percent of their extent",
+        description="Distance of the region from the points, in percent of their extent; of a map 0 where "
+        "it is not given",
         subtype="PERCENTAGE",
         default=5.0,
         min=0.0,
@@ -123,7 +124,8 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
         data_objects.begin(scene, points)
         places = points - project_settings.model_origin(scene)
         low, high = places.min(axis=0), places.max(axis=0)
-        margin = self.margin / 100.0 * float(np.hypot(*(high - low)[:2]))
+        is_at_edge = bool(row.map) and not self.properties.is_property_set("margin")  # beyond it is no ground
+        margin = 0.0 if is_at_edge else self.margin / 100.0 * float(np.hypot(*(high - low)[:2]))
         if self.shape == "HULL":
             corners = places[convex_hull_2d(places[:, :2].tolist()), :2]
             middle = corners.mean(axis=0)

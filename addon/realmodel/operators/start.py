@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The start of a model: empty, from a project file or a built model, from meshes; and saving a project."""
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,9 +14,10 @@ from ..bl.field import map_settings
 from ..bl.host.threads import threads
 from ..bl.objects import model_tree, shapes, viewports
 from ..bl.objects.origin import KEY as ORIGIN_KEY
-from ..bl.project import library_rows, project_settings, region_size, samples, settings
+from ..bl.project import library_rows, plan_mesh, project_settings, region_size, samples, settings
 from ..bl.scene import built_scene, data_objects, live
 from ..core import BuildFailed, Model, load_project
+from ..core.base.errors import counted
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
 from ..registration import drop_handler
@@ -218,7 +218,7 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
         project = project_settings.read_project(project_settings.compose(context.scene, depsgraph))
         written = save_project(project, path)
         context.scene.realmodel.project_file = str(path)
-        self.report({"INFO"}, f"Saved {path.name} and {len(written) - 1} files beside it")
+        self.report({"INFO"}, f"Saved {path.name} and {counted(len(written) - 1, 'file')} beside it")
 
     def invoke(self, context, event):
         if not self.filepath:
@@ -247,7 +247,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
         scene = context.scene
         origin = project_settings.model_origin(scene)  # the objects stand where it says
         had_one = ORIGIN_KEY in scene
-        heights = np.concatenate([shapes.points(item, depsgraph)[:, 2] for item in chosen]) + origin[2]
+        points = np.concatenate([shapes.points(item, depsgraph) for item in chosen]) + origin
         _begin(scene, "Model", chosen)
         if had_one:
             scene[ORIGIN_KEY] = [float(value) for value in origin]
@@ -261,10 +261,13 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
                 row.source = "MESH_OBJECT"
                 row.object = item
             rock.active_surface = len(ordered) - 1
-            settings.set_number(rock, "base_elevation", _base_below(heights))
+            settings.set_number(rock, "base_elevation", plan_mesh.base_below(points))
             rock.use_base = self.add_base
         live.touch(scene)
-        self.report({"INFO"}, f"{len(ordered)} surfaces, oldest first: {', '.join(i.name for i in ordered)}")
+        self.report(
+            {"INFO"},
+            f"{counted(len(ordered), 'surface')}, oldest first: {', '.join(i.name for i in ordered)}",
+        )
 
     def comes(self, _context):
         return "make one from the selected meshes"
@@ -276,16 +279,6 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
 def _chosen(context):
     return [item for item in context.selected_objects if is_sheet(item)]
-
-
-def _base_below(heights):
-    """A round elevation about a fifth of the range of some heights below the lowest of them."""
-    if not len(heights):
-        return 0.0
-    low = float(heights.min())
-    below = 0.2 * float(np.ptp(heights)) or 1.0
-    step = 10.0 ** math.floor(math.log10(below))
-    return math.floor((low - below) / step) * step
 
 
 REALMODEL_FH_project = drop_handler(

@@ -4,9 +4,10 @@
 import bpy
 
 from ..bl.host import notices
+from ..bl.jobs import estimate_job
 from ..bl.project import method_settings, settings
 from ..bl.scene import problems
-from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, right_label, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
 _ICON = 5  # letters that are as wide as an icon and the border of a box
@@ -41,8 +42,10 @@ class REALMODEL_PT_build_options(OfAModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Options"
     bl_parent_id = "REALMODEL_PT_build"
 
-    def draw_in(self, layout, _context, group):
+    def draw_in(self, layout, context, group):
         layout.prop(group, "cells")
+        layout.operator("realmodel.estimate", icon="TIME")
+        _draw_estimate(layout, context.scene)
         layout.operator("realmodel.clear", icon="TRASH")
 
 
@@ -51,6 +54,20 @@ def _draw_progress(layout, activity):
     column.prop(activity, "progress", slider=True)
     column.label(text=activity.text)
     column.operator("realmodel.cancel", text="Cancel (Esc)", icon="CANCEL")
+
+
+def _draw_estimate(layout, scene):
+    expected = estimate_job.found(scene)
+    if expected is None:
+        return
+    rows, fits = expected
+    column = layout.column(align=True)
+    for name, value in rows:
+        row = column.row()
+        row.label(text=name)
+        right_label(row, value)
+    if not fits:
+        hint(layout, "This would be refused: a build takes more memory than there is.")
 
 
 def _draw_missing(layout, group):
@@ -78,7 +95,7 @@ def _draw_warnings(box, group, activity):
     """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
     given = notices.read(group.warnings)
     row = box.row(align=True)
-    count = "1 Warning" if len(given) == 1 else f"{len(given)} Warnings"
+    count = "1 Message" if len(given) == 1 else f"{len(given)} Messages"
     icon = "DISCLOSURE_TRI_DOWN" if activity.unfolded else "DISCLOSURE_TRI_RIGHT"
     row.use_property_split = False
     row.alignment = "LEFT"

@@ -7,6 +7,7 @@ import bpy
 
 from ..bl.display import ensembles
 from ..bl.project import units
+from ..core.base.errors import counted
 from ..props_ensemble import slider_of
 from .panel import FoldedPanel, OfABuiltModel, hint, right_label
 
@@ -29,7 +30,7 @@ class REALMODEL_PT_ensemble(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             hint(layout, "Builds the model many times: how certain are its volumes?")
             return
         row = layout.row()
-        row.label(text=f"{found['count']} realizations, seed {found['seed']}")
+        row.label(text=f"{counted(found['count'], 'realization')}, seed {found['seed']}")
         row.operator("realmodel.ensemble_remove", text="", icon="X", emboss=False)
         if ensembles.is_outdated(scene):
             hint(layout, "The model was built again since: make the ensemble again.")

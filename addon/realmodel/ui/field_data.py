@@ -35,11 +35,11 @@ class REALMODEL_PT_field(OfAModel, FoldedPanel, bpy.types.Panel):
         maps = ("show_map",) if any(rock.map for rock in group.rocks) else ()
         for name in (*maps, "show_contacts", "show_dips", "show_boreholes", "show_hole_names"):
             grid.prop(group.view, name, toggle=True)
-        if group.view.show_boreholes:
-            column = layout.column(align=True)
-            if boreholes.columns(context.scene):
-                column.prop(group.view, "boreholes_by")
-            column.prop(group.view, "hole_width")
+        column = layout.column(align=True)
+        if group.view.show_boreholes and boreholes.columns(context.scene):
+            column.prop(group.view, "boreholes_by")
+        if group.view.show_boreholes or group.view.show_contacts or group.view.show_dips:
+            column.prop(group.view, "hole_width", text="Within")
         _draw_datum(layout, context)
 
 
@@ -84,7 +84,7 @@ class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
     def draw_in(self, layout, context, group):
         column = layout.column(align=True)
         column.prop(group.view, "misfit_tolerance")
-        column.prop(group.view, "dip_tolerance")
+        column.prop(group.view, "dip_tolerance", text="Dips")
         if not group.view.show_misfits:
             hint(layout, "Switch it on to see in red, and in a list, the data that the model does not have.")
             return
@@ -92,7 +92,9 @@ class REALMODEL_PT_field_misfits(FoldedPanel, bpy.types.Panel):
             hint(layout, "All data fit.")
             return
         more = group.view.misfit_count - len(group.misfits)
-        layout.label(text=f"{group.view.misfit_count:,} data do not fit" + (", the largest:" if more else ""))
+        layout.label(
+            text=f"Data that do not fit: {group.view.misfit_count:,}" + (", the largest:" if more else "")
+        )
         layout.template_list("REALMODEL_UL_misfits", "", group, "misfits", group, "active_misfit", rows=5)
         if 0 <= group.active_misfit < len(group.misfits):
             _draw_misfit(layout, group.misfits[group.active_misfit])

@@ -63,7 +63,7 @@ def _draw_table(layout, scene, row):
     box = layout.box().column(align=True)
     unit, factor = units.shown_unit(scene, 1)
     has_shares = hole.probability is not None
-    _line(box, f"From ({unit})", "Vertical", "±", "%" if has_shares else "")
+    _line(box, "From", "Depth", "±", "%" if has_shares else "")
     for each in hole.rows():
         deviation = each["from_deviation"]
         line = box.row(align=True)
@@ -86,6 +86,7 @@ def _draw_table(layout, scene, row):
         "" if deviation is None else f"{factor * deviation:.2f}",
         "",
     )
+    hint(layout, f"From: along the hole; Depth: below its collar; in {unit}.")
 
 
 def _line(layout, *texts):

@@ -29,9 +29,9 @@ class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
         line = layout.row(align=True)
         line.operator("realmodel.export", text="Export...", icon="EXPORT")
         line.operator("realmodel.report", text="Report...", icon="TEXT").format = "JSON"
-        line = layout.row(align=True)
-        line.operator("realmodel.export_mesh", text="Simulation Mesh...", icon="MOD_LATTICE")
-        line.operator("realmodel.export_scene", text="3D Scene...", icon="SCENE_DATA")
+        column = layout.column(align=True)
+        column.operator("realmodel.export_mesh", text="Simulation Mesh...", icon="MOD_LATTICE")
+        column.operator("realmodel.export_scene", text="3D Scene...", icon="SCENE_DATA")
 
 
 def _block_lines(scene, row):

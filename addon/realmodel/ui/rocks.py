@@ -4,6 +4,7 @@
 import bpy
 
 from ..bl.project import method_settings, plan_mesh, region_size, settings
+from ..core.base.errors import counted
 from ..core.settings.schema import ROCK, SIZE
 from . import setting_rows
 from .panel import FoldedPanel, OfAModel, file_field, hint
@@ -81,7 +82,7 @@ class REALMODEL_PT_rock_mesh(FoldedPanel, bpy.types.Panel):
         lines, points = plan_mesh.stored_constraints(rock)
         if lines or points:
             row = layout.row(align=True)
-            row.label(text=f"{lines} lines, {points} points from files")
+            row.label(text=f"{counted(lines, 'line')}, {counted(points, 'point')} from files")
             row.operator("realmodel.constraint_remove", text="", icon="X").index = -1
         row = layout.row(align=True)
         row.operator("realmodel.constraint_add", text="Add Object", icon="ADD")

@@ -7,6 +7,7 @@ from ..bl.host import notices
 from ..bl.project import series_settings, settings
 from ..bl.scene import problems
 from ..core import RealModelError
+from ..core.base.errors import counted
 from ..core.settings.schema import ROCK, SERIES
 from ..core.settings.series import FIELD, KINDS
 from . import setting_rows
@@ -71,7 +72,7 @@ def _draw_dips(layout, row):
     line = layout.row(align=True)
     try:
         dips = series_settings.dips_of(row)
-        text = "No dips" if dips is None else f"{len(dips):,} dips"
+        text = "No dips" if dips is None else counted(len(dips), "dip")
     except RealModelError as error:
         text = str(error)
     line.label(text=text)

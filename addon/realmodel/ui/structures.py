@@ -67,7 +67,7 @@ class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
 
 
 def _draw_fault(layout, context, fault):
-    draw_drawing(layout, context, "realmodel.draw_stick", "Sticks from Active Object")
+    draw_drawing(layout, context, "realmodel.draw_stick")
     if fault.source in settings.TRACES:
         for key in ("dip", "dip_direction", "elevation"):
             setting_rows.draw(layout, fault, key, FAULT)

@@ -102,7 +102,7 @@ def _draw_surface(layout, context, surface):
         field.active = surface.use_continuation
         field.prop(surface, "method", text="")
     if surface.source in ("NONE", "POINTS_FILE", "POINTS_OBJECT"):
-        draw_drawing(layout, context, "realmodel.draw_contacts", "Contacts from Active Object")
+        draw_drawing(layout, context, "realmodel.draw_contacts")
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
@@ -118,7 +118,7 @@ def _draw_dips_unused(layout, surface):
             column.label(text=line, icon="NONE" if number else "ERROR")
 
 
-def draw_drawing(layout, context, operator, text):
+def draw_drawing(layout, context, operator):
     """The button that draws in the viewport, and where an object with lines is active one that takes
     these."""
     column = layout.column(align=True)
@@ -126,7 +126,9 @@ def draw_drawing(layout, context, operator, text):
     item = context.active_object
     is_given = item is not None and item.select_get() and model_tree.TAG not in item
     if is_given and settings.is_drawn_object(item):
-        column.operator(operator, text=text, icon="OUTLINER_OB_GREASEPENCIL").use_object = True
+        column.operator(
+            operator, text="From Active Object", icon="OUTLINER_OB_GREASEPENCIL"
+        ).use_object = True
 
 
 def draw_property(layout, context, row, operator):

@@ -6,6 +6,7 @@ import bpy
 from .. import props_stage
 from ..bl.display import coordinates, cuts, fields, modes, preparing, residuals, viewpoints
 from ..bl.project import compartments, library_rows, project_settings, settings, units
+from ..core.base.errors import counted
 from .lists import draw_swatch
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
 
@@ -49,7 +50,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         layout.prop(group.view, "show_residuals")
         for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
             column = layout.column(align=True)
-            column.label(text=f"{name}: {count} points")
+            column.label(text=f"{name}: {counted(count, 'point')}")
             values = [units.length_text(context.scene, value) for value in (spread, largest)]
             column.label(text=f"RMS {values[0]}")
             column.label(text=f"Largest {values[1]}")
@@ -143,16 +144,17 @@ class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             row.prop(view, "section_holes")
             row.operator("realmodel.pick_holes", text="", icon="EYEDROPPER")
             layout.prop(view, "section_beyond")
-            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...")
+            _section_buttons(layout, "fence_holes", "HOLES", "Save Section...", "Through Holes")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
         _section_buttons(layout, "fence", "LINE", "Save Fence...")
 
 
-def _section_buttons(layout, operator, along, saving):
+def _section_buttons(layout, operator, along, saving, making=""):
     """Buttons for the results of a cut: an object in its place, one beside the model, a file."""
     column = layout.column(align=True)
     row = column.split(factor=0.7, align=True)
-    row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
+    named = {"text": making} if making else {}
+    row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN", **named).flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
+from ...core.project.colors import encoded, hex_color, rgb
 from ...core.results import layer_values
 from ..objects import materials, viewports
 from ..project import compartments, library_rows, settings
@@ -89,7 +90,7 @@ def key(scene):
         else:
             _, color = _entry(scene, by, row)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
-            color = library_rows.rgb(color)
+            color = rgb(color)
         entries.setdefault(name, color)
         places[name] = min(places.get(name, number[row.rock]), number[row.rock])
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
@@ -123,7 +124,7 @@ def forget(scene):
 
 def shown_color(item):
     """(red, green, blue) of an object's material from 0 to 1, sRGB, as the screen has it."""
-    return tuple(materials.srgb(channel) for channel in shown_linear(item))
+    return tuple(encoded(channel) for channel in shown_linear(item))
 
 
 def shown_linear(item):
@@ -155,7 +156,7 @@ def _entry(scene, by, row):
     place, last = settings.time_of_block(scene, row), settings.last_stage(scene)
     at = place / last if last else 0.0
     hsv = [old + at * (young - old) for old, young in zip(_OLD, _YOUNG, strict=True)]
-    return f"Age {place}", library_rows.hex_color(colorsys.hsv_to_rgb(*hsv))
+    return f"Age {place}", hex_color(colorsys.hsv_to_rgb(*hsv))
 
 
 def _has_rock(scene, row):
@@ -165,7 +166,7 @@ def _has_rock(scene, row):
 def hue(number):
     """The color "#rrggbb" of the thing of this number, which that of the next ones is unlike."""
     brightness = 0.9 if number % 2 else 0.7
-    return library_rows.hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
+    return hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
 
 
 def plain_material(name, color):

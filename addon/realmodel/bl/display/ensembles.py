@@ -10,6 +10,7 @@ import numpy as np
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
+from ...core.project.colors import hex_color
 from ...core.results import layer_values
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import offsets_from
@@ -133,7 +134,7 @@ def _of_realization(scene, blocks):
 
 def _of_scale(scene, blocks):
     values = _values(scene, blocks)
-    codes = [library_rows.hex_color(color) for color in _colors(_STEPS)[:, :3].tolist()]
+    codes = [hex_color(color) for color in _colors(_STEPS)[:, :3].tolist()]
     materials = [colors.plain_material(f"Scale {code}", code) for code in codes]
     return materials, np.rint(values / _most(scene) * (_STEPS - 1))
 

@@ -12,12 +12,13 @@ from ...core.base import work
 from ...core.display.field_shapes import field_levels, field_range, field_section, field_surfaces
 from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
+from ...core.project.colors import hex_color
 from ...core.results import layer_values
 from ..host.debounce import DebouncedJob
 from ..host.threads import threads
 from ..objects import viewports
 from ..objects.origin import offsets_from
-from ..project import library_rows, project_settings
+from ..project import project_settings
 from . import bodies, colors, cuts, explosion, replacing, shown_models
 
 SECTION, LEVELS = "field section", "field levels"  # kinds of bodies
@@ -140,7 +141,7 @@ def _put(scene, kind, places, bands):
     given = offsets_from(project_settings.model_origin(scene), vertices)
     shape = PolygonMesh(given, offsets, corners.ravel().astype(np.int32))
     item = bodies.add(scene, kind, f"{shown_series(scene)} {kind}", shape)
-    codes = [library_rows.hex_color(color) for color in _colors()[:, :3].tolist()]
+    codes = [hex_color(color) for color in _colors()[:, :3].tolist()]
     for code in codes:
         item.data.materials.append(colors.plain_material(f"Scale {code}", code))
     item.data.polygons.foreach_set("material_index", bands.astype(np.int32))

@@ -6,10 +6,11 @@ import json
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
+from ...core.project.colors import hex_color
 from ...core.results import layer_values
 from ...core.results.residuals import residuals
 from ..objects import exaggeration, marks, meshes
-from ..project import library_rows, project_settings
+from ..project import project_settings
 from . import bodies, colors, explosion, shown_models
 
 _MOST = 20_000  # points shown at most: those farthest from their surfaces
@@ -46,7 +47,7 @@ def show(scene):
     low, high = limits(scene)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
-        code = library_rows.hex_color(color)
+        code = hex_color(color)
         mesh.materials.append(colors.plain_material(f"Residual {code}", code))
     mesh.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
 

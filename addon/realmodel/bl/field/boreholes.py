@@ -8,12 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from ...core.drawing.overlay import ColorKey
+from ...core.project.colors import hex_color, rgb
 from ...core.results import layer_values
 from ...core.results.sections.section_holes import near_plane
 from ..display import bodies, colors, cuts
 from ..host import caches
 from ..objects import marks
-from ..project import borehole_picks, library_rows, observed_blocks, project_settings
+from ..project import borehole_picks, observed_blocks, project_settings
 from . import heights, interval_values
 
 BOREHOLES = "boreholes"
@@ -71,7 +72,7 @@ def key(scene):
         return None
     limits, words = _scale(scene, name)
     if limits is None:
-        return ColorKey(name, [(word, library_rows.rgb(colors.hue(n))) for n, word in enumerate(words)])
+        return ColorKey(name, [(word, rgb(colors.hue(n))) for n, word in enumerate(words)])
     if not limits[1] > limits[0]:
         return None
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))
@@ -144,7 +145,7 @@ def _scale_of(scene, name):
 def _shades(values, limits):
     steps = np.rint((values - limits[0]) / ((limits[1] - limits[0]) or 1.0) * (_STEPS - 1))
     shades = layer_values.colors(np.linspace(0.0, 1.0, _STEPS), (0.0, 1.0))[:, :3].tolist()
-    codes = [library_rows.hex_color(shade) for shade in shades]
+    codes = [hex_color(shade) for shade in shades]
     return [codes[int(step)] for step in steps.tolist()]
 
 

@@ -17,8 +17,9 @@ from ...core.readers import (
     table_kind,
 )
 from ...core.readers.objects.object_file import is_object_file
-from ...core.readers.tables.hole_tables import joined
+from ...core.readers.tables.hole_tables import OBSERVED, joined
 from ...core.readers.tables.interval_values import read_interval_values
+from ...core.readers.tables.table_layout import plain_name
 from ...core.settings.boreholes import COLUMNS as OF_HOLES
 from ...core.settings.boreholes import Boreholes, check_column_names
 from ...core.settings.dips import COLUMNS as OF_DIPS
@@ -118,6 +119,14 @@ def sorted_out(paths, columns, units=None, of_maps=None, **of_holes):
 def is_map(path):
     """Whether a file has shapes in plan."""
     return path.suffix.lower() in MAP_ENDINGS
+
+
+def block_attribute(names):
+    """The attribute of the features of a map that has a usual name for blocks, or the only one; None where it
+    is not clear."""
+    known = {plain_name(str(name)): name for name in names}
+    usual = (known[name] for name in OBSERVED["block"] if name in known)
+    return next(usual, names[0] if len(names) == 1 else None)
 
 
 def _map_file(path, given, units):

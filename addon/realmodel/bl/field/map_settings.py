@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...core import InputRefused, Project, Rock, Surface
-from ...core.readers import UnitNames, is_mesh_file
+from ...core.readers import RASTER_ENDINGS, UnitNames, is_mesh_file
 from ...core.readers.maps.unit_polygons import read_unit_polygons
 from ...core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
 from ..host import caches
@@ -52,6 +52,8 @@ def take_ground(row, given):
     with settings.filling():
         surface.source = "MESH_FILE" if is_mesh_file(path) else "POINTS_FILE"
         surface.filepath = str(path)
+        if path.suffix.lower() in RASTER_ENDINGS:
+            surface.method = "grid"
     return surface.name
 
 

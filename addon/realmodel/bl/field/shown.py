@@ -8,8 +8,9 @@ import numpy as np
 
 from ...core import RealModelError
 from ...core.display.polygon_mesh import PolygonMesh
+from ...core.results.sections.section_holes import near_plane
 from .. import display
-from ..display import bodies, colors
+from ..display import bodies, colors, cuts
 from ..objects import exaggeration, marks
 from ..project import project_settings, settings
 from . import boreholes, data, handle, heights, map_settings, misfits
@@ -40,21 +41,33 @@ def show(scene):
     """Shows what is wanted of the field data of a scene, in place of what is shown."""
     view = scene.realmodel.view
     misfits.fill(scene)
-    for kind, wanted, shown in (
-        (boreholes.BOREHOLES, view.show_boreholes, _boreholes),
-        (MAP, view.show_map, _maps),
-        (CONTACTS, view.show_contacts, _contacts),
-        (DIPS, view.show_dips, _dips),
-        (MISFITS, view.show_misfits, _misfits),
-    ):
+    _show_near_cut(scene)
+    _show(scene, (MAP, view.show_map, _maps), (MISFITS, view.show_misfits, _misfits))
+
+
+def _show(scene, *kinds):
+    """kinds: a kind of bodies, whether it is wanted, and what makes it."""
+    for kind, wanted, shown in kinds:
         bodies.remove(scene, kind)
         if wanted:
             try:
                 shown(scene)
             except RealModelError as error:
-                view.message = str(error)
+                scene.realmodel.view.message = str(error)
         for item in bodies.listed(scene, kind):
             item[_STRETCH] = exaggeration.factor(scene)
+
+
+def _show_near_cut(scene):
+    """Shows what a cut leaves only near the section plane."""
+    view = scene.realmodel.view
+    _show(
+        scene,
+        (boreholes.BOREHOLES, view.show_boreholes, boreholes.show),
+        (CONTACTS, view.show_contacts, _contacts),
+        (DIPS, view.show_dips, _dips),
+    )
+    view.holes_on = _cut(scene)
 
 
 def follow_exaggeration(scene):
@@ -65,20 +78,27 @@ def follow_exaggeration(scene):
 
 
 def follow_cut(scene):
-    """Shows the boreholes on the section plane, where that has moved."""
-    if scene.realmodel.view.show_boreholes and scene.realmodel.view.holes_on != _cut(scene):
-        _boreholes(scene)
+    """Shows holes, contacts and dips on the section plane, where that has moved."""
+    view = scene.realmodel.view
+    is_any = view.show_boreholes or view.show_contacts or view.show_dips
+    if is_any and view.holes_on != _cut(scene):
+        _show_near_cut(scene)
         display.exaggeration_changed(scene)
 
 
 def _cut(scene):
-    """The state of the cut that boreholes lie on; empty where they stand in their places."""
+    """The state of the cut that they lie on; empty where they stand in their places."""
     return scene.realmodel.view.cut if boreholes.is_on_cut(scene) else ""
 
 
-def _boreholes(scene):
-    boreholes.show(scene)
-    scene.realmodel.view.holes_on = _cut(scene)
+def _near_cut(scene, places):
+    """The numbers of places (N, 3) that are shown, and where they are: all of them in their places or, on a
+    cut, those near the section plane, on it."""
+    if not (boreholes.is_on_cut(scene) and len(places)):
+        return np.arange(len(places)), places
+    view = scene.realmodel.view
+    kept, on_plane, _ = near_plane(places, places, cuts.plane_in_model(scene), view.hole_width)
+    return kept, on_plane
 
 
 def _contacts(scene):
@@ -94,7 +114,8 @@ def _contacts(scene):
             material = colors.of_property(scene, of_block.get(name, 0)) if is_used else None
             places.append(group.places[number])
             materials.append(material or colors.plain_material(*_OFF))
-    _add_points(scene, CONTACTS, "Contacts", np.array(places).reshape(-1, 3), materials, _LARGER)
+    kept, places = _near_cut(scene, np.array(places).reshape(-1, 3))
+    _add_points(scene, CONTACTS, "Contacts", places, [materials[n] for n in kept.tolist()], _LARGER)
 
 
 def _property_ids(scene):
@@ -132,14 +153,15 @@ def _dips(scene):
         for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
             own = colors.of_property(scene, of_block.get(name, 0))
             upper = own if used else colors.plain_material(*_OFF)
-            materials += [upper, *[colors.dark()] * (marks.DISC_FACES - 1)]
-    if not places:
+            materials.append([upper, *[colors.dark()] * (marks.DISC_FACES - 1)])
+    kept, places = _near_cut(scene, np.concatenate(places) if places else np.empty((0, 3)))
+    if not len(kept):
         return
-    places = np.concatenate(places) - project_settings.model_origin(scene)
+    places = places - project_settings.model_origin(scene)
     radius = _DISC * heights.extent(scene)
-    shape = marks.discs(places, np.concatenate(normals), radius, exaggeration.factor(scene))
+    shape = marks.discs(places, np.concatenate(normals)[kept], radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
-    bodies.give_materials(item.data, materials, 1)
+    bodies.give_materials(item.data, [each for n in kept.tolist() for each in materials[n]], 1)
 
 
 def _maps(scene):
@@ -166,7 +188,9 @@ def _misfits(scene):
     places = np.array([each.place for each in found if each.place is not None][:_MOST]).reshape(-1, 3)
     places = np.unique(places, axis=0)  # several may speak of one place
     red = colors.plain_material(*_RED)
-    _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
+    item = _add_points(scene, MISFITS, "Misfits", places, [red] * len(places), _RED_LARGER)
+    if item is not None:
+        item.show_in_front = True  # also where blocks are in front of it
     ends = [end for each in found if each.end is not None for end in (each.place, each.end)]
     if not ends:
         return
@@ -174,4 +198,5 @@ def _misfits(scene):
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _TUBE * heights.extent(scene), _SIDES)
     item = bodies.add(scene, MISFITS, "Misfits of Intervals", shape)
+    item.show_in_front = True
     item.data.materials.append(red)

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ...core.project.colors import linear, rgb
 from ..host import versions
 
 KEY = "realmodel_property"
@@ -12,22 +13,12 @@ NEUTRAL_GRAY = "#b3b3b3"
 
 
 def linear_color(color):
-    """Scene-linear (red, green, blue) of an sRGB color "#rrggbb" (IEC 61966-2-1).
+    """Scene-linear (red, green, blue) of an sRGB color "#rrggbb".
 
     Both the Principled base color and the viewport color (`diffuse_color`, subtype COLOR) are
     scene-linear, so both take this value.
     """
-    channels = []
-    for start in (1, 3, 5):
-        value = int(color[start : start + 2], 16) / 255.0
-        channels.append(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4)
-    return tuple(channels)
-
-
-def srgb(value):
-    """The sRGB of a scene-linear channel, both from 0 to 1."""
-    value = min(max(value, 0.0), 1.0)
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+    return tuple(map(linear, rgb(color)))
 
 
 def name_and_color(library, property_id):

@@ -4,6 +4,7 @@
 import bpy
 
 from ...core import Library, Property
+from ...core.project.colors import hex_color
 from ...core.results.automatic_library import palette
 from ..objects import materials, model_tree
 from . import settings
@@ -96,16 +97,6 @@ def find(scene, property_id):
 
 def free_id(scene):
     return max((row.id for row in scene.realmodel.library), default=0) + 1
-
-
-def hex_color(color):
-    """The "#rrggbb" of three sRGB numbers from 0 to 1."""
-    return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
-
-
-def rgb(code):
-    """Three sRGB numbers from 0 to 1 of "#rrggbb"."""
-    return tuple(int(code[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
 
 
 def take_id(row):

@@ -35,6 +35,28 @@ def propose_edge_length(row, points):
         settings.set_number(row, "edge_length", next(n * power for n in (1, 2, 5, 10) if n * power >= least))
 
 
+def propose_base(row, points, is_of_map=False):
+    """A flat base below points (P, 3), where none is given. is_of_map: they lie on the ground alone."""
+    if row.use_base:
+        return
+    with settings.filling():
+        settings.set_number(row, "base_elevation", base_below(points, is_of_map))
+        row.use_base = True
+
+
+def base_below(points, is_of_map=False):
+    """A round elevation below points (P, 3): by a fifth of the range of their heights or, of a map, by a
+    tenth of its extent at least."""
+    if not len(points):
+        return 0.0
+    *extent, height = np.ptp(points, axis=0)
+    below = 0.2 * float(height) or 1.0
+    if is_of_map:
+        below = max(below, 0.1 * math.hypot(*extent))
+    step = 10.0 ** math.floor(math.log10(below))
+    return math.floor((float(points[:, 2].min()) - below) / step) * step
+
+
 def compose(rock, row, depsgraph, origin):
     """Transfers the mesh settings of a rock mass's row to a realmodel.core.Rock. Raises InputRefused."""
     rock.mesher = row.mesher

@@ -138,13 +138,15 @@ def _wanted(scene, read):
                 f"{rock.name} boreholes",
                 lambda rock=rock: _chains(borehole_picks.paths(rock)),
             )
-        if len(outcrops):
+        # A map lies on its ground, and has a color where it was observed: thousands of dots would hide it.
+        ground = rock.surfaces[-1].name if rock.map and len(rock.surfaces) else None
+        if len(outcrops) and not rock.map:
             found[f"observations {rock.name} {_checksum(rock.observations)}"] = (
                 f"{rock.name} observations",
                 lambda outcrops=outcrops: (outcrops, np.empty((0, 2), np.int32)),
             )
         for row in rock.surfaces:
-            if (key := _points_key(row)) is not None:
+            if row.name != ground and (key := _points_key(row)) is not None:
                 found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),

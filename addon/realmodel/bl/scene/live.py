@@ -40,6 +40,7 @@ def _look_at(scene):
     """Reports that a scene's model may be another one than its input makes."""
     names.store(scene)
     settings.follow_youngest(scene)
+    bpy.context.window_manager.realmodel.estimate = ""
     if scene.realmodel.live:
         _to_refine.discard(scene.name)
         _work.touch(scene.name)

@@ -55,6 +55,14 @@ def update_all(scene):
     show(scene)
 
 
+def begin_on_ground(scene, row):
+    """Moves the collar of a hole straight down to where it enters the rock."""
+    hole = kept(row)
+    if hole is not None and hole.intervals:
+        x, y, z = collar(row)
+        move_collar(row, (x, y, z - hole.intervals[0].begin))
+
+
 def _look_up(scene, row):
     if is_current(scene, row):
         return

@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.algebra import norm
 from ..base.work import Work, native_module
 from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
-from ..fields.series_field import SeriesField
 from ..results.model_fields import local_compartments
+from ..settings.rules import RULES
 from ..surfaces.rock_structure import RockStructure
 from ..surfaces.sides import fault_sides
+from .series_layers import SeriesLayer
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
 _INWARDS = 1e-5  # of the distance from a corner to the inner point
 _NO_LAYER = -1
-_SAMPLES = 4096  # corners of a layer by which its mean thickness is measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +57,12 @@ class Bedding:
         return Bedding(*(np.concatenate([part[name] for part in known]) for name in known[0]))
 
 
-def bedding_of(work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray) -> Bedding:
-    """Bedding coordinates of the faces of a model, cell by cell. faces: (N,) numbers; is_second: (N,) bool,
-    of the second cell; then the corners are those of the face in reverse order. Raises Cancelled."""
+def bedding_of(
+    work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray
+) -> tuple[Bedding, dict[int, SeriesLayer]]:
+    """Bedding coordinates of the faces of a model, cell by cell, and the layers of series, by the index of
+    the surface that each lies beneath. faces: (N,) numbers; is_second: (N,) bool, of the second cell; then
+    the corners are those of the face in reverse order. Raises Cancelled."""
     faces = np.ascontiguousarray(faces, np.int32)
     cells = np.where(is_second, model.face_cells[faces, 1], model.face_cells[faces, 0])
     block = model.cell_block[cells]
@@ -105,9 +107,9 @@ def bedding_of(work: Work, model: ModelData, faces: np.ndarray, is_second: np.nd
     is_top[is_top] = ~seen_from_below(model, faces[is_top])
     age = np.array([_age(model, number, layer) for number in range(len(model.blocks))], np.float32)
     found = Bedding(height, thickness, depth, is_top, age[block])
-    found = _with_series(model, found, faces, is_second, cells)
+    found, layers = _with_series(model, found, faces, is_second, cells)
     body = np.where(layer == _NO_LAYER, surface, -1)
-    return _with_bodies(model, found, faces, is_second, body[block])
+    return _with_bodies(model, found, faces, is_second, body[block]), layers
 
 
 def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
@@ -136,45 +138,38 @@ def _with_bodies(
 
 def _with_series(
     model: ModelData, found: Bedding, faces: np.ndarray, is_second: np.ndarray, cells: np.ndarray
-) -> Bedding:
+) -> tuple[Bedding, dict[int, SeriesLayer]]:
     """Heights and thicknesses of the layers of series by their fields, also where these are vertical or
-    overturned. The thickness of a layer is its mean, so that laminae are level sets of the field. The oldest
-    layer of a series begins at the least value of the field in it."""
+    overturned. The thickness of a layer is its mean, so that laminae are level sets of the field."""
+    layers: dict[int, SeriesLayer] = {}
     if not any(entry.fields for entry in model.rock_inputs):
-        return found
+        return found, layers
     offsets, corners = model.face_corners(faces, is_second)
     beneath = np.array([block.surface for block in model.blocks], np.int64)[model.cell_block[cells]]
     height, thickness, first = found.height.copy(), found.thickness.copy(), 0
     for entry in model.rock_inputs:
+        local = local_compartments(model, entry)
+        of_series = {number for own in entry.fields for number in own.numbers}
+        unconformities = {
+            number
+            for number, surface in enumerate(entry.rock.surfaces)
+            if RULES[surface.rule].cuts and number not in of_series
+        }
         for own in entry.fields:
-            compartments = local_compartments(model, entry)[model.cell_compartment[cells]]
-            for number in own.numbers:
+            after = own.first + own.count
+            above = [after] if after in unconformities else []  # what lies on it was folded with it
+            for number in (*own.numbers, *above):
                 polygons = np.flatnonzero(beneath == first + number)
                 rows = _runs(offsets, polygons)
-                where = np.repeat(compartments[polygons], np.diff(offsets)[polygons])
-                share, mean = _in_layer(own, number, model.vertices[corners[rows]], where)
-                known = np.isfinite(share)
-                height[rows[known]], thickness[rows[known]] = share[known], mean
+                where = np.repeat(model.cell_compartment[cells[polygons]], np.diff(offsets)[polygons])
+                points = model.vertices[corners[rows]]
+                layer = SeriesLayer.of(own, number, local, points, where)
+                share, known = layer.shares(points, where)
+                height[rows[known]] = share[known]
+                thickness[rows[known]] = layer.thickness
+                layers[first + number] = layer
         first += len(entry.rock.surfaces)
-    return replace(found, height=height, thickness=thickness)
-
-
-def _in_layer(
-    own: SeriesField, surface: int, points: np.ndarray, where: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """(N,) the shares of the height of the layer beneath a surface of a series at points (N, 3), NaN where
-    the field is not known, and the mean thickness of the layer."""
-    above = -own.excess(surface, points, where)
-    above[~np.isfinite(above)] = np.nan
-    if np.isnan(above).all():
-        return above, 0.0
-    whole = np.full(len(above), np.nanmax(above))
-    if surface > own.first:
-        whole = above + own.excess(surface - 1, points, where)
-    chosen = np.flatnonzero(np.isfinite(above))[:: max(1, len(above) // _SAMPLES)]
-    steep = norm(own.slopes(points[chosen], where[chosen])).mean()
-    share = np.clip(1.0 - above / np.where(whole > 0, whole, np.nan), 0.0, 1.0)
-    return share, float(np.nanmean(whole) / steep) if steep > 0 else 0.0
+    return replace(found, height=height, thickness=thickness), layers
 
 
 def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:

@@ -13,6 +13,8 @@ import numpy as np
 from ..base.work import Cancel, Work, native_module, run
 from ..cells.model_data import ModelData
 from .bedding import Bedding, bedding_of, seen_from_below
+from .fine_polygons import fine_polygons
+from .series_layers import SeriesLayer
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,9 +191,10 @@ def _shells(
     count: int,
     other: dict[str, Any] | None = None,
 ) -> list[tuple[PolygonMesh, np.ndarray] | None]:
-    """The mesh around the cells of each label, and of each polygon the face of the model."""
+    """The mesh around the cells of each label, and of each polygon the face of the model. Around layers of
+    series, polygons are divided, but of cells by themselves."""
 
-    def task(work: Work) -> tuple[list, Bedding | None]:
+    def task(work: Work) -> tuple[list, tuple[Bedding, dict[int, SeriesLayer]] | None]:
         shells = work.native(
             native_module().complex_shells,
             {**model.native(), "cell_block": label, **(other or {})},
@@ -205,18 +208,76 @@ def _shells(
         faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
         return shells, bedding_of(work, model, faces, is_second)
 
-    shells, bedding = run(task, cancel=cancel, threads=threads)
+    shells, known = run(task, cancel=cancel, threads=threads)
+    bedding, layers = known or (None, {})
     found: list[tuple[PolygonMesh, np.ndarray] | None] = []
     corner, polygon = 0, 0
     for arrays in shells:
         if arrays is None:
             found.append(None)
             continue
-        coordinates, offsets, corners, faces, _, edges, corner_edges = arrays
+        coordinates, offsets, corners, faces, is_second, edges, corner_edges = arrays
         ends = corner + len(corners), polygon + len(faces)
         own = bedding and bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
         corner, polygon = ends
         surface = model.face_surface[faces]
         shape = PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges, bedding=own)
+        if layers and shrink is None:
+            shape, faces = _with_fine_bedding(model, shape, faces, is_second, layers)
         found.append((shape, faces))
     return found
+
+
+def _with_fine_bedding(
+    model: ModelData,
+    shape: PolygonMesh,
+    faces: np.ndarray,
+    is_second: np.ndarray,
+    layers: dict[int, SeriesLayer],
+) -> tuple[PolygonMesh, np.ndarray]:
+    """The mesh of a block with more corners where its bedding is not linear between those it has: polygons of
+    a layer of a series are divided, but for those on its top and its base. faces, is_second: (F,) of each
+    polygon. Returns also the face of the model of each polygon."""
+    cells = model.face_cells[faces, is_second.astype(np.int64)]
+    surface = model.blocks[int(model.cell_block[cells[0]])].surface
+    layer = layers.get(surface)
+    if layer is None:
+        return shape, faces
+    assert shape.bedding is not None and shape.face_surface is not None  # there are layers of series
+    positions = np.zeros((len(shape.coordinates), 3))
+    positions[shape.corners] = model.vertices[model.face_corners(faces, is_second)[1]]
+    begins, longest = shape.offsets[:-1], layer.longest
+    extent = [each.reduceat(positions[shape.corners], begins) for each in (np.maximum, np.minimum)]
+    chosen = np.square(extent[0] - extent[1]).sum(axis=1) > longest**2
+    if layer.has_top:
+        chosen &= shape.face_surface != surface
+    if layer.has_base:
+        chosen &= shape.face_surface != surface - 1
+    if not chosen.any():
+        return shape, faces
+    fine = fine_polygons(positions, shape.offsets, shape.corners, chosen, longest)
+    coordinates, polygon = fine.extended(shape.coordinates), fine.polygon
+    edges, corner_edges = native_module().polygon_edges(fine.offsets, fine.corners, len(coordinates))
+    of_corner = np.repeat(polygon, np.diff(fine.offsets))
+    given = shape.bedding
+    height, thickness, depth = np.ascontiguousarray(
+        fine.of_corners(
+            shape.offsets, shape.corners, np.column_stack([given.height, given.thickness, given.depth])
+        ).T
+    )
+    asked = np.flatnonzero((fine.corners >= len(positions)) & chosen[of_corner])
+    share, known = layer.shares(
+        fine.extended(positions)[fine.corners[asked]], model.cell_compartment[cells[of_corner[asked]]]
+    )
+    height[asked[known]] = share[known]
+    bedding = Bedding(height, thickness, depth, given.is_top[polygon], given.age[polygon])
+    made = PolygonMesh(
+        coordinates,
+        fine.offsets,
+        fine.corners,
+        shape.face_surface[polygon],
+        edges,
+        corner_edges,
+        bedding=bedding,
+    )
+    return made, faces[polygon]

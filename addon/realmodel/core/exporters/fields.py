@@ -3,26 +3,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import BinaryIO
 
 import numpy as np
 
 from ..base.errors import UsageError
-from ..cells.model_data import ModelData
 from ..fields import ScalarField
+from ..fields.series_field import SeriesField
 from .encodings.vtk_xml import write_grid
 
 _TETRAHEDRON = 10  # VTK's number
 
 
-def write_fields(model: ModelData, file: BinaryIO) -> None:
-    """Writes the tetrahedra of the lattices of all fields of a model, with the point array `field`, f at the
-    nodes, and the cell arrays `series`, the number of the series in the model, and `compartment`, the number
-    of the first compartment of its rock mass that has this field. Raises UsageError where there is none."""
+def write_fields(fields_of_rocks: Iterable[Sequence[SeriesField]], file: BinaryIO) -> None:
+    """Writes the tetrahedra of the lattices of the fields of all rock masses, with the point array `field`, f
+    at the nodes, and the cell arrays `series`, the number of the series in the model, and `compartment`, the
+    number of the first compartment of its rock mass that has this field. Raises UsageError where there is
+    none."""
     fields: list[tuple[ScalarField, int, int]] = []
     number = 0
-    for entry in model.rock_inputs:
-        for own in entry.fields:
+    for rock in fields_of_rocks:
+        for own in rock:
             fields += [(field, number, compartments[0]) for field, compartments in own.distinct().items()]
             number += 1
     if not fields:

@@ -9,17 +9,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base.algebra import are_among, dot, norm
+from ..base.algebra import are_among, norm
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from .lattice import ScalarField
 
 _Field = TypeVar("_Field", bound=ScalarField)
-_LOOSE = 1e-2  # of the share of a contact in its tetrahedron: where they share corners, none moves far
 _SHARED = 0.1  # of what contacts miss their levels by: where more is left at first they share corners
 _ROUNDS = 10  # in which what is left is made less
-_STEPS = 200  # of each solution
-_MET = 1e-12  # of what contacts miss their levels by at first: nothing
 _REFINEMENTS = 40  # times that tetrahedra are halved
 _LEAST = 2.0**-10  # of the edges of the lattice: shorter ones are not halved
 _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss its level by
@@ -58,19 +55,23 @@ def fields_with_contacts(
     moved onto it. What fields share stays the same in them."""
     levels = fields[0].levels[surfaces]
     made = _Joined(work, fields, np.ascontiguousarray(contacts, np.float64), shared)
+
+    def through(corners: np.ndarray, weights: np.ndarray, rounds: int) -> tuple[np.ndarray, np.ndarray]:
+        solve = native_module().values_through
+        return work.native(solve, made.values, corners, weights, levels, rounds)
+
     for left in reversed(range(_REFINEMENTS)):
         corners, weights = made.tetrahedra()
-        given = made.values
-        missed = [np.abs(_through(given, corners, weights, levels, rounds)[1]) for rounds in (0, 1)]
-        off = (missed[1] > _BESIDE * np.ptp(given[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
+        missed = [np.abs(through(corners, weights, rounds)[1]) for rounds in (0, 1)]
+        off = (missed[1] > _BESIDE * np.ptp(made.values[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
         ends = made.halved(corners[off])
         if not len(ends):
-            found, _ = _through(given, corners, weights, levels, _ROUNDS)
+            found, _ = through(corners, weights, _ROUNDS)
             ends = made.halved(corners[made.missed(made.fields_through(found, levels))])
         if left == 0 or not made.add_middles(ends):
             break
     corners, weights = made.tetrahedra()
-    found, _ = _through(made.values, corners, weights, levels, _ROUNDS)
+    found, _ = through(corners, weights, _ROUNDS)
     return made.fields_through(found, levels)
 
 
@@ -186,40 +187,6 @@ class _Joined:
         is_middle = corners >= self.shared.same.size
         found[is_middle] = self.middles[corners[is_middle] - self.shared.same.size]
         return found
-
-
-def _through(
-    given: np.ndarray, corners: np.ndarray, weights: np.ndarray, levels: np.ndarray, rounds: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) values near those given with which a field has levels (C,) at contacts, as far as these do not
-    pull at the same corners, by the corners (C, 4) of their tetrahedra and the weights A of these: in rounds
-    A^T y is added where (A A^T + loose) y is what they miss their levels by (iterated regularization of A. N.
-    Tikhonov; H. W. Engl 1987), by conjugate gradients (Hestenes and Stiefel 1952). And (C,) what they still
-    miss."""
-    used, at = np.unique(corners, return_inverse=True)
-    at = at.reshape(corners.shape)
-
-    def spread(y: np.ndarray) -> np.ndarray:
-        return np.bincount(at.ravel(), (weights * y[:, None]).ravel(), len(used))
-
-    values = given.copy()
-    missed = levels - dot(given[corners], weights)
-    least = _MET**2 * (missed * missed).sum()
-    for _ in range(rounds):
-        y, way, rest = np.zeros(len(missed)), missed, missed
-        square = (rest * rest).sum()
-        for _ in range(_STEPS):
-            if square <= least:
-                break
-            ahead = dot(spread(way)[at], weights) + _LOOSE * way
-            step = square / (way * ahead).sum()
-            y = y + step * way
-            rest = rest - step * ahead
-            square, before = (rest * rest).sum(), square
-            way = rest + square / before * way
-        values[used] += spread(y)
-        missed = levels - dot(values[corners], weights)
-    return values, missed
 
 
 def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:

@@ -64,16 +64,20 @@ class Estimate:
         """Whether building takes no more memory than there is."""
         return self.memory <= self.available
 
-    def table(self) -> str:
-        """The estimate as text for a terminal."""
+    def rows(self) -> list[tuple[str, str]]:
+        """The estimate as names and values, to be read."""
         about = "about " if self.lattice_nodes else ""
-        rows = [
+        return [
             ("triangles of all surfaces", f"{about}{self.triangles:,}"),
             *([("nodes of lattices", f"{self.lattice_nodes:,}")] if self.lattice_nodes else []),
             (f"memory while building {self.cell_kind}", f"at most {memory_text(self.memory)}"),
             ("memory free", memory_text(self.available)),
             ("time", f"about {_time_text(self.seconds)}"),
         ]
+
+    def table(self) -> str:
+        """The estimate as text for a terminal."""
+        rows = self.rows()
         width = max(len(name) for name, _ in rows)
         return "\n".join(f"{name.ljust(width)}  {value}" for name, value in rows)
 

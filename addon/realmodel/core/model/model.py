@@ -23,7 +23,7 @@ from ..results.contours import contours
 from ..results.erosion import Erosion, eroded
 from ..results.geological_map import geological_map
 from ..results.model_boreholes import borehole
-from ..results.model_fields import field_of
+from ..results.model_fields import field_of, rock_fields
 from ..results.tables import block_table, borehole_table, map_dataset
 from ..settings.method_options import check_threads
 from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
@@ -86,7 +86,7 @@ class Model(ModelData):
         compartment: a name of compartment_names, where faults divide the series; None: there is one field.
         Raises UsageError for a series that has none, and where it has several fields and none is named.
         """
-        return field_of(self, series, compartment)
+        return field_of(self.project, rock_fields(self.rock_inputs), series, compartment)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no

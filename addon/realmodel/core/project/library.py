@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..base.errors import InputRefused
 from ..base.toml_table import Table, TomlDocument
+from .colors import RGB, rgb
 from .looks import LOOKS
 
 _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
@@ -40,12 +41,9 @@ class Property:
     hardness: float | None = None
 
     @property
-    def rgb(self) -> tuple[float, float, float] | None:
+    def rgb(self) -> RGB | None:
         """Red, green, blue from 0 to 1, sRGB encoded; None without a color."""
-        if self.color is None:
-            return None
-        red, green, blue = (int(self.color[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
-        return red, green, blue
+        return None if self.color is None else rgb(self.color)
 
 
 @dataclass

@@ -16,7 +16,7 @@ from .tables.boreholes import Picks
 from .tables.dips import gradient_of, names_units, normal_of, read_dips, read_dips_of_rock, read_space_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
-from .tables.table_kind import TABLE_KINDS, table_kind
+from .tables.table_kind import TABLE_KINDS, table_contents, table_kind
 from .tables.table_preview import TablePreview, preview_table
 from .tables.unit_names import UnitNames
 
@@ -47,5 +47,6 @@ __all__ = [
     "read_region",
     "read_shapes",
     "read_space_dips",
+    "table_contents",
     "table_kind",
 ]

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ..cells.model_data import SomeModel
+from ..project.colors import hex_color, rgb
 from ..project.library import Library, Property
 from ..project.project import Project
 
@@ -24,10 +25,9 @@ PALETTE = (
 def palette() -> Iterator[str]:
     """The colors of PALETTE, then mixed with white, then with black: no two are equal."""
     yield from PALETTE
-    for other in (255, 0):
+    for other in (1.0, 0.0):
         for color in PALETTE:
-            channels = (int(color[at : at + 2], 16) for at in (1, 3, 5))
-            yield "#" + "".join(f"{round(0.6 * channel + 0.4 * other):02x}" for channel in channels)
+            yield hex_color(0.6 * channel + 0.4 * other for channel in rgb(color))
 
 
 def with_library(project: Project) -> Project:

@@ -3,42 +3,65 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..base.errors import UsageError
 from ..cells.model_data import ModelData
 from ..fields import ScalarField
+from ..fields.series_field import SeriesField
+from ..project.project import Project
+from ..settings.series import FIELD
 from ..surfaces.rock_input import RockInput
 
 
-def field_of(model: ModelData, series: str, compartment: str | None) -> ScalarField:
-    """Model.field."""
-    found = {own.name: (entry, own) for entry in model.rock_inputs for own in entry.fields}
+@dataclass(frozen=True)
+class RockFields:
+    """The fields of the series of a rock mass. compartments: what its compartments are called in a model."""
+
+    compartments: list[str]
+    fields: list[SeriesField]
+
+
+def rock_fields(inputs: Sequence[RockInput]) -> list[RockFields]:
+    """Of each rock mass of the model of these."""
+    return [RockFields(names_of_compartments(inputs, entry), entry.fields) for entry in inputs]
+
+
+def field_of(
+    project: Project, rocks: Sequence[RockFields], series: str, compartment: str | None
+) -> ScalarField:
+    """Model.field, of a model of the project."""
+    found = {own.name: (rock, own) for rock in rocks for own in rock.fields}
     if series not in found:
+        known = [each for rock in project.rocks for each in rock.series]
+        if any(each.name == series and each.kind == FIELD for each in known):
+            what = f"series '{series}' has no field here"
+            raise UsageError(f"{what}: a stage before it has none, and of tiles only the whole has it")
         there = f"there are {', '.join(found)}" if found else "the model has none"
         raise UsageError(f"no series '{series}' with a field: {there}")
-    entry, own = found[series]
-    fields = own.distinct()
-    if compartment is None and len(fields) == 1:
+    rock, own = found[series]
+    if compartment is None and len(own.distinct()) == 1:
         return own.fields[0]
-    names = names_of_compartments(model, entry)
-    if compartment not in names:
+    if compartment not in rock.compartments:
         what = f"series '{series}' has a field in each of several compartments"
-        raise UsageError(f"{what}: name one of {', '.join(names)}")
-    return own.fields[names.index(compartment)]
+        raise UsageError(f"{what}: name one of {', '.join(rock.compartments)}")
+    return own.fields[rock.compartments.index(compartment)]
 
 
-def names_of_compartments(model: ModelData, entry: RockInput) -> list[str]:
-    """What the compartments of a rock mass are called in a model."""
+def names_of_compartments(inputs: Sequence[RockInput], entry: RockInput) -> list[str]:
+    """What the compartments of a rock mass are called in the model of these rock masses."""
     names = [name or entry.rock.name for name in entry.divided().names]
-    if len(model.rock_inputs) > 1:
+    if len(inputs) > 1:
         names = [f"{entry.rock.name}: {name}" if name != entry.rock.name else name for name in names]
     return names
 
 
 def local_compartments(model: ModelData, entry: RockInput) -> np.ndarray:
     """For each compartment of a model its number in a rock mass; -1 where it is of another."""
-    names = names_of_compartments(model, entry)
+    names = names_of_compartments(model.rock_inputs, entry)
     known = {name: number for number, name in enumerate(names)}
     if len(names) == 1:
         return np.zeros(max(len(model.compartment_names), 1), np.int64)

@@ -185,8 +185,8 @@ def fit_warnings(
     if pairs < _FEW_PAIRS and not has_dips:
         number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
         warnings.append(
-            f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
-            "hand, or use the method 'plane' or 'tin'"
+            f"the variogram is fitted to only {number} of points, so heights far from them, and how certain "
+            "they are, say little; set one by hand, or use the method 'plane' or 'tin'"
         )
     elif pairs >= _FEW_PAIRS and variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(

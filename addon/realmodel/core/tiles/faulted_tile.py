@@ -21,7 +21,7 @@ from ..model.model import Model
 from ..structures.parts.parts import Structures
 from ..surfaces.surface_arrays import SurfaceArrays
 from .faulted_windows import Window
-from .owned_cells import Seam, owners, reach_of
+from .owned_cells import Seam, inseparable, owners, reach_of
 from .tile_model import Frame, Name
 
 _WALL = -1  # face_surface
@@ -64,7 +64,8 @@ def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, n
     with work.part(0.8, 1.0):
         model = Model.of(assemble(work, project, inputs, built, timings, few))
     model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
-    owner = owners(model.complex, frame.grid)
+    together = inseparable(model.complex)
+    owner = owners(model.complex, frame.grid, together)
     mine = (owner == name).all(axis=1)
     as_whole = _numbered_as_whole(model, whole, window)
     cells = as_whole.without_cells(~mine)
@@ -93,7 +94,7 @@ def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, n
         seams[tuple(other)] = Seam.of(
             as_whole, between[which], own[which], parts[which], is_one[between[which]]
         )
-    reach = reach_of(model.complex, mine) if mine.any() else None
+    reach = reach_of(model.complex, mine, together) if mine.any() else None
     return FaultedTile(model, found, seams, reach, part)
 
 

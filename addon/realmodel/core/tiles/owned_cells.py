@@ -2,7 +2,7 @@
 """Which tile each cell of a model with faults or bodies belongs to, and what tiles have in common then.
 
 Such models are not cut at the lines between tiles. A cell belongs to the tile in which its first corner lies,
-by x, then y, then z: whoever sees the cell finds the same.
+by x, then y, then z: whoever sees the cell finds the same. Cells that cannot be parted are taken as one.
 """
 
 from __future__ import annotations
@@ -11,12 +11,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.work import native_module
 from ..cells.cell_complex import CellComplex
 from .grid import TileGrid
 
 
-def owners(whole: CellComplex, grid: TileGrid) -> np.ndarray:
-    """(C, 2) int64: column and row of the tile that each cell belongs to."""
+def inseparable(whole: CellComplex) -> np.ndarray:
+    """(C,) the first of the cells that a cell cannot be parted from: those on the two sides of a face whose
+    corners are those of another face, too. Between two such faces there are only cells without extent, where
+    vertices one unit in the last place apart were kept; without these both would be borders in one place."""
+    _, number, count = np.unique(_corner_sums(whole), return_inverse=True, return_counts=True)
+    twice = count[number] > 1
+    connecting = np.where(twice[:, None], whole.face_cells, np.int32(-1))
+    return native_module().cell_components(connecting, np.zeros_like(whole.cell_block))
+
+
+def owners(whole: CellComplex, grid: TileGrid, together: np.ndarray) -> np.ndarray:
+    """(C, 2) int64: column and row of the tile that each cell belongs to. together: as `inseparable` has
+    it."""
     order = np.lexsort(whole.vertices.T[::-1])
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
@@ -26,7 +38,8 @@ def owners(whole: CellComplex, grid: TileGrid) -> np.ndarray:
     first = np.full(len(whole.cell_block), len(order), np.int64)
     for side in range(2):
         there = whole.face_cells[:, side] >= 0
-        np.minimum.at(first, whole.face_cells[there, side], lowest[there])
+        np.minimum.at(first, together[whole.face_cells[there, side]], lowest[there])
+    first = first[together]
     places = whole.vertices[order[first]]
     lines = (grid.x, grid.y)
     at = [
@@ -36,12 +49,14 @@ def owners(whole: CellComplex, grid: TileGrid) -> np.ndarray:
     return np.column_stack(at)
 
 
-def reach_of(whole: CellComplex, mine: np.ndarray) -> tuple[float, float, float, float]:
-    """A box in plan around some cells, (C,) bool, and those that share a face with one."""
+def reach_of(whole: CellComplex, mine: np.ndarray, together: np.ndarray) -> tuple[float, float, float, float]:
+    """A box in plan around some cells, (C,) bool, and those that share a face with one or cannot be parted
+    from one that does. together: as `inseparable` has it."""
     faces = np.append(mine, False)[whole.face_cells].any(axis=1)
     near = np.zeros(len(mine) + 1, bool)
     near[whole.face_cells[faces]] = True
     near[-1] = False
+    near[:-1] = np.isin(together, together[near[:-1]])
     faces = near[whole.face_cells].any(axis=1)
     corners = whole.face_vertices[np.repeat(faces, np.diff(whole.face_offsets))]
     plan = whole.vertices[corners, :2]
@@ -118,6 +133,12 @@ def face_keys(whole: CellComplex, faces: np.ndarray) -> np.ndarray:
         hashed = _mixed(hashed ^ np.ascontiguousarray(coordinates).view(np.uint64))
     sums = np.add.reduceat(hashed, offsets[:-1]) if len(faces) else hashed
     return _mixed(sums ^ whole.face_surface[faces].astype(np.uint64))
+
+
+def _corner_sums(whole: CellComplex) -> np.ndarray:
+    """(F,) uint64: of each face a sum of hashes of its vertices, which does not depend on their order."""
+    hashed = _mixed(np.arange(len(whole.vertices), dtype=np.uint64))[whole.face_vertices]
+    return np.add.reduceat(hashed, whole.face_offsets[:-1]) if len(whole.face_surface) else hashed
 
 
 def _mixed(values: np.ndarray) -> np.ndarray:

@@ -17,13 +17,16 @@ from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
 from ..cells.blocks import Block
+from ..fields import ScalarField
 from ..model.model import Model
 from ..model.section import Fence, Section
 from ..notebook import ShortRepr
 from ..project.project import Project
 from ..results.model_boreholes import Interval
+from ..results.model_fields import RockFields, field_of
 from ..results.tables import block_table, borehole_table
 from .catalog import TILES, Catalog, TileEntry, read_catalog
+from .tile_fields import FIELDS, read_rock_fields
 from .tile_model import read_model
 
 _KEPT = 4  # models of tiles in memory
@@ -135,6 +138,16 @@ class TiledModel(ShortRepr):
             if (low <= place).all() and (place <= high).all():
                 found += self._model(number).borehole(*place.tolist())
         return joined_intervals(found)
+
+    def field(self, series: str, compartment: str | None = None) -> ScalarField:
+        """As Model.field: it is the field of the undivided model. Raises InputRefused where the file of the
+        fields is damaged, too."""
+        return field_of(self.project, self.rock_fields(), series, compartment)
+
+    def rock_fields(self) -> list[RockFields]:
+        """The fields of the series of each rock mass; none where no rock mass has one."""
+        file = self.folder / FIELDS
+        return read_rock_fields(file) if file.exists() else []
 
     block_table = block_table
     borehole_table = borehole_table

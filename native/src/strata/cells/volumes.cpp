@@ -66,26 +66,33 @@ Projection project(const CellComplex& complex, std::size_t face,
     return sum;
 }
 
-/// What some faces of a block add up to, seen from a height of one of them: terms are then no
-/// larger than the block is high, at whatever elevation it lies.
+/// What some faces of a block add up to, seen from the height of the one that is largest in plan:
+/// terms are then no larger than the block is high, at whatever elevation it lies, and what
+/// rounding leaves of the areas of long faces is not multiplied by the height of a spike.
 struct BlockSum {
-    bool is_empty = true;
-    double anchor = 0;
+    double anchor = 0, largest = -1;  // of no face yet
     Sum volume, area;
 
     void add(const Projection& face, double height, double sign) {
-        if (is_empty) anchor = height;
-        is_empty = false;
+        see_from(height, std::abs(face.area));
         volume.add(sign * (face.volume + face.area * (height - anchor)));
         area.add(sign * face.area);
     }
     void add(const BlockSum& other) {
-        if (other.is_empty) return;
-        if (is_empty) anchor = other.anchor;
-        is_empty = false;
+        if (other.largest < 0) return;
+        see_from(other.anchor, other.largest);
         for (const double part : {other.volume.total, other.volume.correction,
                                   other.area.value() * (other.anchor - anchor)})
             volume.add(part);
+        area.add(other.area.value());
+    }
+
+private:
+    void see_from(double height, double size) {
+        if (size <= largest) return;
+        volume.add(area.value() * (anchor - height));
+        anchor = height;
+        largest = size;
     }
 };
 

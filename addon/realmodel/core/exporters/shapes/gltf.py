@@ -13,6 +13,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from ...project.colors import linear
 from .parts import Part
 
 _FLOAT, _UINT32, _TRIANGLES, _POSITIONS, _INDICES = 5126, 5125, 4, 34962, 34963
@@ -87,12 +88,10 @@ def write_glb(parts: Sequence[Part], file: BinaryIO, step: Callable[[float], Non
 
 
 def _material(part: Part) -> dict:
-    color = np.array(part.color)
-    linear = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
     return {
         "name": part.material,
         "pbrMetallicRoughness": {
-            "baseColorFactor": [*np.round(linear, 6).tolist(), 1.0],
+            "baseColorFactor": [*(round(linear(channel), 6) for channel in part.color), 1.0],
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,
         },

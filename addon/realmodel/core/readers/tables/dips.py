@@ -35,8 +35,13 @@ DIPS = {
     **{name: (name,) for name in NORMAL},
 }
 # "formation" and "unit" are blocks where there are dips, which are measured within the beds
-_NAMED = {"surface": ("surface", "horizon", "top", "marker", "pick"), "block": OBSERVED["block"]}
+NAMED = {"surface": ("surface", "horizon", "top", "marker", "pick"), "block": OBSERVED["block"]}
+_POLARITY = {
+    **dict.fromkeys(("upright", "normal", "up", "u", "n"), 1.0),
+    **dict.fromkeys(("overturned", "inverted", "reversed", "down", "o", "i", "r"), -1.0),
+}
 _SHEET = "a sheet has one height at each position"
+_SAY_POLARITY = "write 1 or upright, -1 or overturned"
 _ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "field"'
 
 
@@ -70,9 +75,9 @@ def read_dips_of_rock(
     are of nothing that the rock mass has. Raises InputRefused naming file and line."""
     kept, surfaces, blocks = [], [], []
     left_out: list[LeftOut] = []
-    every = list(rows(given, Path(given.file), {**DIPS, **_NAMED}, ("x", "y"), step))
+    every = list(rows(given, Path(given.file), {**DIPS, **NAMED}, ("x", "y"), step))
     for row in every:
-        code = next((row.text(key) for key in _NAMED if row.has(key)), "")
+        code = next((row.text(key) for key in NAMED if row.has(key)), "")
         surface = block = ""
         if code and not units.says_nothing(code):
             over = units.block(code)
@@ -94,8 +99,8 @@ def read_dips_of_rock(
 
 def names_units(given: DipFile, step: Step = no_step) -> bool:
     """Whether a table of dips names surfaces or blocks, in any row. Raises InputRefused."""
-    every = rows(given, Path(given.file), {**DIPS, **_NAMED}, ("x", "y"), step)
-    return any(row.has(key) for row in every for key in _NAMED)
+    every = rows(given, Path(given.file), {**DIPS, **NAMED}, ("x", "y"), step)
+    return any(row.has(key) for row in every for key in NAMED)
 
 
 def _dips(given: DipFile, kept: list[Row], model_unit: str, may_be_none: bool = False) -> Dips:
@@ -136,9 +141,7 @@ def _normal(row: Row) -> np.ndarray:
         if not normal.any():
             raise row.refuse("the normal is 0", "leave the row out")
         return normal
-    polarity = row.number("polarity") if row.has("polarity") else 1.0
-    if polarity == 0:
-        raise row.refuse("the polarity is 0", "write 1 for upright and -1 for overturned bedding")
+    polarity = _polarity(row)
     if {"slope_x", "slope_y"} <= row.columns.keys():
         upright = np.array([-row.number("slope_x"), -row.number("slope_y"), 1.0])
         return upright if polarity > 0 else -upright
@@ -148,6 +151,17 @@ def _normal(row: Row) -> np.ndarray:
     if not 0 <= dip <= 180:
         raise row.refuse(f"the dip {dip:g} is not from 0 to 180 degrees", "leave the row out")
     return normal_of(dip, 0.0 if dip in (0, 180) else _direction_of(row), polarity < 0)
+
+
+def _polarity(row: Row) -> float:
+    """Above 0 where the bedding of a row is upright, below it where it is overturned."""
+    if not row.has("polarity"):
+        return 1.0
+    word = row.text("polarity").lower()
+    polarity = _POLARITY[word] if word in _POLARITY else row.number("polarity", _SAY_POLARITY)
+    if polarity == 0:
+        raise row.refuse("the polarity is 0", _SAY_POLARITY)
+    return polarity
 
 
 def _direction_of(row: Row) -> float:
@@ -167,7 +181,7 @@ def _gradient(row: Row) -> np.ndarray:
     if "dip" not in row.columns:
         raise _no_column(row, "dip")
     dip = row.number("dip")
-    if row.has("polarity") and row.number("polarity") < 0:
+    if _polarity(row) < 0:
         raise row.refuse(f"the dip is overturned: {_SHEET}", _ELSEWHERE)
     if not 0 <= dip < 90:
         what = "vertical" if dip == 90 else "overturned" if 90 < dip <= 180 else "not from 0 to 90 degrees"

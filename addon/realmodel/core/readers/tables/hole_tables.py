@@ -143,10 +143,10 @@ class Row:
         names, at = self.table.layout.names or (), self.columns[column]
         return plain_name(names[at]) if at < len(names) else ""
 
-    def number(self, column: str) -> float:
+    def number(self, column: str, advice: str | None = None) -> float:
         entry = self.text(column)
         if not is_number(entry, self.decimal):
-            raise self.refuse(f"{column} is not a number: '{entry:.40}'")
+            raise self.refuse(f"{column} is not a number: '{entry:.40}'", advice)
         value = float(entry.replace(",", "."))
         if not np.isfinite(value):
             raise self.refuse(f"{column} is {entry}, not a finite number")

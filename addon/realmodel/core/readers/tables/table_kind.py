@@ -4,14 +4,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 
 from ...base.errors import InputRefused
+from ...base.text import no_step
 from ...settings.boreholes import Boreholes
-from .dips import DIPS
-from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, SURVEY, columns_in
+from .dips import DIPS, NAMED
+from .hole_tables import COLLARS, DIRECTIONS, INTERVALS, OBSERVED, PICKS, SURVEY, columns_in, rows
 
-TABLE_KINDS = ("collars", "survey", "picks", "intervals", "assays", "observations", "dips")
+_KNOWN = {
+    "collars": COLLARS,
+    "survey": SURVEY,
+    "picks": PICKS,
+    "intervals": INTERVALS,
+    "assays": INTERVALS,
+    "observations": OBSERVED,
+    "dips": {**DIPS, **NAMED},
+}
+TABLE_KINDS = tuple(_KNOWN)
+_LOOKED_AT = 2000  # rows whose codes are listed
 
 
 def table_kind(file: str | Path, columns: Mapping[str, str | int] | None = None) -> str:
@@ -68,3 +80,16 @@ def _by_azimuth(columns: Mapping[str, str]) -> bool:
     """Whether the dips of a table may as well be the directions of holes."""
     direction = columns.get("dip_direction")
     return "strike" not in columns and direction in DIRECTIONS["azimuth"]
+
+
+def table_contents(
+    file: str | Path, columns: Mapping[str, str | int] | None = None
+) -> tuple[dict[str, str], list[str]]:
+    """What is read of a table: its columns, by meaning, as columns_in, and the codes of surfaces or blocks in
+    its first 2,000 rows, sorted. columns: as for table_kind. Raises InputRefused."""
+    given, kind = Boreholes(columns=columns or {}), table_kind(file, columns)
+    found = columns_in(given, Path(file), _KNOWN[kind])
+    coded = [key for key in ("surface", "block") if key in found and kind != "collars"]
+    first = islice(rows(given, Path(file), _KNOWN[kind], (), no_step), _LOOKED_AT) if coded else ()
+    codes = {row.text(key) for row in first for key in coded if row.has(key)}
+    return found, sorted(codes)
