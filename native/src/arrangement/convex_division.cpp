@@ -154,11 +154,7 @@ bool is_convex(const Loop& loop, const PlanePosition& rounding) {
     }
     if (!goes_there_and_back(loop, 0, rounding) || !goes_there_and_back(loop, 1, rounding))
         return false;
-    std::vector<NodeId> nodes;
-    for (const LoopCorner& c : loop)
-        nodes.push_back(c.node);
-    std::sort(nodes.begin(), nodes.end());
-    return std::adjacent_find(nodes.begin(), nodes.end()) == nodes.end();
+    return !has_repeated(loop, &LoopCorner::node);
 }
 
 bool divide_convex(std::span<const Loop> loops, const PlanePosition& rounding,

@@ -10,6 +10,7 @@
 
 #include "arrangement/polygons.hpp"
 #include "base/counting_sort.hpp"
+#include "base/packed_pair.hpp"
 #include "exact/space_points.hpp"
 #include "realmodel/base/array.hpp"
 
@@ -20,7 +21,16 @@ struct EdgeUse {
     std::array<NodeId, 2> edge;  ///< lesser, greater
     std::int32_t item;           ///< region, or face after all regions
     std::int8_t direction;       ///< 1 from lesser to greater, -1 back
-    auto operator<=>(const EdgeUse&) const = default;
+    /// By edges, then items and directions; in whole words, as most of the sorting is comparing.
+    bool operator<(const EdgeUse& other) const {
+        const auto key = [](const EdgeUse& use) {
+            return std::array{use.key(), packed_pair(use.item, use.direction + 1)};
+        };
+        const auto own = key(*this), to = key(other);
+        return own[0] != to[0] ? own[0] < to[0] : own[1] < to[1];
+    }
+    /// Of the edge: as many keys as edges, in the same order.
+    std::uint64_t key() const { return packed_pair(edge[0], edge[1]); }
 
     /// The side of the item that is ahead of it for one who goes round the edge, 0 or 1; the other
     /// one is behind it. Side 0 is the one that the item does not turn counter-clockwise for.
@@ -77,7 +87,7 @@ EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
         execution);
     EdgeUses edges{std::move(sorted.values)};
     for (std::size_t i = 1; i <= edges.uses.size(); ++i) {
-        if (i == edges.uses.size() || edges.uses[i].edge != edges.uses[i - 1].edge)
+        if (i == edges.uses.size() || edges.uses[i].key() != edges.uses[i - 1].key())
             edges.begins.push_back(i);
     }
     checked_number(edges.size(), "edges");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrangement/polygons.hpp"
+#include "base/packed_pair.hpp"
 
 namespace realmodel::arrangement {
 
@@ -38,7 +39,7 @@ public:
     void pair(const MayJoin& may_join) {
         const auto key = [this](std::int32_t i) {
             const HalfEdge& e = edges_[index(i)];
-            return std::array{std::min(e.from, e.to), std::max(e.from, e.to)};
+            return packed_pair(std::min(e.from, e.to), std::max(e.from, e.to));
         };
         auto& order = order_;
         order.clear();
@@ -53,7 +54,7 @@ public:
                 for (std::size_t j = begin; j < end && e.twin < 0; ++j) {
                     HalfEdge& f = edges_[index(order[j].second)];
                     if (f.from != e.to || f.to != e.from || f.twin >= 0 ||
-                        !may_join(order[i].first, e.polygon, f.polygon))
+                        !may_join(unpacked_pair(order[i].first), e.polygon, f.polygon))
                         continue;
                     e.twin = order[j].second;
                     f.twin = order[i].second;
@@ -101,8 +102,8 @@ public:
 
 private:
     std::vector<HalfEdge> edges_;
-    std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> order_;
-    std::vector<std::uint8_t> done_;  ///< of half-edges
+    std::vector<std::pair<std::uint64_t, std::int32_t>> order_;  ///< by the edges' nodes
+    std::vector<std::uint8_t> done_;                             ///< of half-edges
     std::vector<HalfEdge> outline_;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,24 @@ inline double slack(const PlanePosition& a, const PlanePosition& b, const PlaneP
            rounding[1] * (std::abs(b[0] - a[0]) + std::abs(c[0] - b[0]));
 }
 
+/// Whether a node is there twice.
+/// @param node_of  node_of(element): its node
+template <class Nodes, class NodeOf = std::identity>
+bool has_repeated(const Nodes& nodes, const NodeOf& node_of = {}) {
+    constexpr std::size_t kFew = 16;
+    const auto begin = nodes.begin(), end = nodes.end();
+    if (nodes.size() <= kFew) {
+        for (auto at = begin; at != end; ++at) {
+            if (std::ranges::find(begin, at, std::invoke(node_of, *at), node_of) != at) return true;
+        }
+        return false;
+    }
+    std::vector<NodeId> sorted(nodes.size());
+    std::ranges::transform(nodes, sorted.begin(), node_of);
+    std::ranges::sort(sorted);
+    return std::ranges::adjacent_find(sorted) != sorted.end();
+}
+
 /// Many polygons in one array.
 struct Polygons {
     std::vector<std::int64_t> offsets{0};
@@ -34,8 +53,17 @@ struct Polygons {
         return {nodes.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
     }
     void add(std::span<const NodeId> polygon) {
-        nodes.insert(nodes.end(), polygon.begin(), polygon.end());
+        for (const NodeId node : polygon)  // which are few
+            nodes.push_back(node);
         close();
+    }
+    /// Some of others, from one up to another.
+    void add(const Polygons& others, std::size_t begin, std::size_t end) {
+        const auto moved = static_cast<std::int64_t>(nodes.size()) - others.offsets[begin];
+        nodes.insert(nodes.end(), others.nodes.begin() + others.offsets[begin],
+                     others.nodes.begin() + others.offsets[end]);
+        for (std::size_t i = begin; i < end; ++i)
+            offsets.push_back(others.offsets[i + 1] + moved);
     }
     /// Ends a polygon whose nodes were appended one by one.
     void close() { offsets.push_back(static_cast<std::int64_t>(nodes.size())); }

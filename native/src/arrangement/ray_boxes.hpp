@@ -32,7 +32,7 @@ public:
     /// @throws Cancelled
     std::vector<std::int32_t> find(const spatial::Box& ray, Progress* progress) {
         std::vector<std::int32_t> found;
-        if (!tree_ && ++rays_ > kFewRays) tree_.emplace(std::move(boxes_), progress);
+        if (!tree_ && ++rays_ > kFewRays) tree_.emplace(std::move(boxes_), Execution{1, progress});
         if (tree_) {
             tree_->find(ray, [&found](std::int32_t box) { found.push_back(box); });
             std::sort(found.begin(), found.end());

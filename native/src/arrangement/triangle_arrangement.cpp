@@ -62,6 +62,16 @@ void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> c
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,
                                               SpacePointId to) const {
     const Triangle& t = triangles_[index(triangle)];
+    // first the one that is farthest to the left in doubles: where the line runs along an edge, its
+    // ends are not seen to be on it before exact arithmetic
+    const std::size_t k = (t.axis + 1) % 3, l = (t.axis + 2) % 3;
+    const Position &a = points_.rounded(from), &b = points_.rounded(to);
+    const double x = t.facing * (b[k] - a[k]), y = t.facing * (b[l] - a[l]);
+    const SpacePointId farthest = std::ranges::max(t.corners, {}, [&](SpacePointId corner) {
+        const Position& c = points_.rounded(corner);
+        return x * c[l] - y * c[k];
+    });
+    if (orientation(t, from, to, farthest) > 0) return farthest;
     for (const SpacePointId corner : t.corners) {
         if (orientation(t, from, to, corner) > 0) return corner;
     }
@@ -72,6 +82,10 @@ void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, Spac
                                       SpacePointId q) {
     for (const auto& [mine, yours] : {std::pair(one, other), std::pair(other, one)}) {
         Triangle& t = triangles_[index(mine)];
+        if (t.points.capacity() == 0) {  // what the least piece of memory holds
+            t.points.reserve(6);
+            t.segments.reserve(2);
+        }
         t.points.push_back(p);
         if (p == q) continue;
         t.points.push_back(q);
@@ -82,9 +96,9 @@ void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, Spac
 TriangleArrangement::Sides TriangleArrangement::sides_of(const Triangle& own,
                                                          const Triangle& plane) const {
     Sides sides;
+    const exact::SidesOfPlane side_of(points_, plane.corners);
     for (std::size_t i = 0; i < 3; ++i) {
-        sides.of[i] =
-            orient3d(points_, plane.corners[0], plane.corners[1], plane.corners[2], own.corners[i]);
+        sides.of[i] = side_of(own.corners[i]);
         sides.above += sides.of[i] > 0;
         sides.below += sides.of[i] < 0;
     }

@@ -83,7 +83,7 @@ void ExactDivision::find_candidates() {
     // the tree of the inputs is that of their pieces, as long as none is divided
     const bool all = pieces_.are_whole() && count == pieces_.input_count();
     const std::optional<BoxTree> own =
-        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, execution_.progress);
+        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, execution_);
     const BoxTree& tree = own ? *own : pieces_.tree();
     std::vector<std::vector<std::array<std::int32_t, 2>>> found(
         (tree.leaf_count() + kFacetsAtOnce - 1) / kFacetsAtOnce);
@@ -120,12 +120,15 @@ void ExactDivision::find_meetings() {
         for (const std::int32_t i : pair)
             triangle_of[index(i)] = 0;
     }
+    std::vector<Corners> corners;
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
         poll(execution_.progress, i);
         if (triangle_of[i] < 0) continue;
-        triangle_of[i] = arrangement_.add(pieces_[chosen_[i]].corners);
+        triangle_of[i] = static_cast<std::int32_t>(corners.size());
+        corners.push_back(pieces_[chosen_[i]].corners);
         piece_of_.push_back(static_cast<std::int32_t>(i));
     }
+    arrangement_.add_all(corners, execution_);
     for (auto& pair : candidates_) {
         for (std::int32_t& i : pair)
             i = triangle_of[index(i)];

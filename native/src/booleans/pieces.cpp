@@ -66,7 +66,7 @@ Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& exe
                         for (std::size_t i = begin; i < end; ++i)
                             boxes[i] = box(whole_[i].corners);
                     });
-    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution.progress);
+    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution);
 }
 
 void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
@@ -84,7 +84,7 @@ void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
     std::vector<spatial::Box> boxes(own.pieces.size());
     std::transform(own.pieces.begin(), own.pieces.end(), boxes.begin(),
                    [this](const Piece& piece) { return box(piece.corners); });
-    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), progress_);
+    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
 }
 
 }  // namespace realmodel::booleans

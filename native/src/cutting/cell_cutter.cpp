@@ -63,9 +63,7 @@ void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only
                              static_cast<std::int8_t>(ahead ? 1 : -1), side, level});
         }
     }
-    std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
-        return std::pair(a.edge, a.local) < std::pair(b.edge, b.local);
-    });
+    std::sort(uses_.begin(), uses_.end());
 }
 
 /// A node of a piece that is not in the plane.
@@ -105,7 +103,7 @@ void CellCutter::collect_open_edges(std::span<const PieceRef> refs) {
     slits_.clear();
     for (std::size_t begin = 0; begin < uses_.size();) {
         std::size_t end = begin + 1;
-        while (end < uses_.size() && uses_[end].edge == uses_[begin].edge)
+        while (end < uses_.size() && uses_[end].key() == uses_[begin].key())
             ++end;
         const auto edge = uses_[begin].edge;
         if (in_plane(edge[0]) && in_plane(edge[1])) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/packed_pair.hpp"
 #include "cutting/pieces.hpp"
 #include "cutting/plane_points.hpp"
 
@@ -46,6 +47,11 @@ private:
         std::int8_t direction;       ///< 1 from lesser to greater, -1 back
         std::int8_t side;
         bool level;  ///< the piece lies in the plane
+
+        std::uint64_t key() const { return packed_pair(edge[0], edge[1]); }
+        bool operator<(const Use& other) const {
+            return key() != other.key() ? key() < other.key() : local < other.local;
+        }
     };
     struct DirectedEdge {
         NodeId from, to;

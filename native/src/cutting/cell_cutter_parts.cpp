@@ -26,11 +26,8 @@ void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
                              static_cast<std::int8_t>(a < b ? 1 : -1), kBelow, true});
         }
     }
-    const auto by_edge = [](const Use& a, const Use& b) {
-        return std::pair(a.edge, a.local) < std::pair(b.edge, b.local);
-    };
-    std::sort(uses_.begin() + own, uses_.end(), by_edge);
-    std::inplace_merge(uses_.begin(), uses_.begin() + own, uses_.end(), by_edge);
+    std::sort(uses_.begin() + own, uses_.end());
+    std::inplace_merge(uses_.begin(), uses_.begin() + own, uses_.end());
 }
 
 /// Joins what meets at an edge on one side of the plane: each cap with a face, and what finds no
@@ -74,7 +71,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     add_uses_of_caps(result.caps, pieces);
     DisjointSets sets(count);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        while (end < uses_.size() && uses_[end].edge == uses_[begin].edge)
+        while (end < uses_.size() && uses_[end].key() == uses_[begin].key())
             ++end;
         for (const std::int8_t side : {kBelow, kAbove})
             join_at_edge({uses_.data() + begin, end - begin}, side, pieces, sets);
@@ -110,7 +107,7 @@ bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int
     std::vector<std::int32_t> parts;
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         parts.clear();
-        for (end = begin; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end) {
+        for (end = begin; end < uses_.size() && uses_[end].key() == uses_[begin].key(); ++end) {
             parts.push_back(root[index(uses_[end].local)]);
             if (uses_[end].local >= pieces) parts.push_back(root[index(uses_[end].local + 1)]);
         }

@@ -11,10 +11,12 @@ namespace realmodel::cutting {
 
 std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
     std::vector<Position> positions;
+    positions.reserve(polygon.size());
     for (const NodeId v : polygon)
         positions.push_back(model.vertex(v));
     const View view(polygon_normal(positions));
     Loop loop;
+    loop.reserve(polygon.size());
     for (std::size_t i = 0; i < polygon.size(); ++i)
         loop.push_back({polygon[i], view(positions[i])});
     return {std::move(loop), view.rounding(positions)};

@@ -77,7 +77,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
 
 bool CutterWinding::is_edge(const std::array<NodeId, 2>& edge) const {
     for (std::size_t e = first_edge_[index(edge[0])]; e < first_edge_[index(edge[0]) + 1]; ++e) {
-        if (edges_.ends(e) == edge) return true;
+        if (edges_.ends(e)[1] == edge[1]) return true;
     }
     return false;
 }
@@ -158,7 +158,7 @@ void CutterWinding::collect_uses(Progress* progress) {
     std::size_t kept = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         bool is_own = false;
-        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end)
+        for (; end < uses.size() && uses[end].key() == uses[begin].key(); ++end)
             is_own = is_own || counts(index(uses[end].item));
         if (!is_own) continue;
         ++first_edge_[index(uses[begin].edge[0]) + 1];

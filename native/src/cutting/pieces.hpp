@@ -61,6 +61,14 @@ struct CutPieces {
         polygons.add(polygon);
         origins.push_back(origin);
     }
+    /// Some of others, from one up to another.
+    /// @throws InputError kind too_large
+    void add(const CutPieces& others, std::size_t begin, std::size_t end) {
+        checked_number(origins.size() + (end - begin), "faces of cut cells");
+        polygons.add(others.polygons, begin, end);
+        origins.insert(origins.end(), others.origins.begin() + static_cast<std::ptrdiff_t>(begin),
+                       others.origins.begin() + static_cast<std::ptrdiff_t>(end));
+    }
     void add_reversed(std::span<const NodeId> polygon, const CutPiece& origin) {
         add(polygon, origin);
         std::reverse(polygons.nodes.end() - static_cast<std::ptrdiff_t>(polygon.size()),

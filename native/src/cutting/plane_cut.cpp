@@ -257,10 +257,8 @@ void PlaneCutter::divide_faces(bool all) {
             }
         });
     pieces_ = {};
-    for (const CutPieces& own : found) {
-        for (std::size_t p = 0; p < own.size(); ++p)
-            pieces_.add(own.polygons[p], own[p]);
-    }
+    for (const CutPieces& own : found)
+        pieces_.add(own, 0, own.size());
     first_cap_ = pieces_.size();
 }
 

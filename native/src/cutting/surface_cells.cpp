@@ -106,7 +106,7 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
                             const auto own = uses[node];
                             for (std::size_t begin = 0, end = 0; begin < own.size(); begin = end) {
                                 for (end = begin + 1;
-                                     end < own.size() && own[end].edge == own[begin].edge;)
+                                     end < own.size() && own[end].key() == own[begin].key();)
                                     ++end;
                                 if (end == begin + 1 || winding.is_edge(own[begin].edge)) continue;
                                 for (std::size_t i = begin + 1; i < end; ++i)

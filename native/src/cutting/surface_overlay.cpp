@@ -152,14 +152,15 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p,
 /// Gives the vertices of active faces exact points: where they are, or where they are but for their
 /// rounding. No two share one.
 void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
-    std::vector<NodeId> vertices;
+    std::vector<std::uint8_t> is_new(vertex_point_.size(), 0);
     for (const std::int32_t f : faces) {
-        for (const NodeId v : model_.face(index(f))) {
-            if (vertex_point_[index(v)] == kNone) vertices.push_back(v);
-        }
+        for (const NodeId v : model_.face(index(f)))
+            is_new[index(v)] = vertex_point_[index(v)] == kNone ? 1 : 0;
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<NodeId> vertices;
+    for (std::size_t v = 0; v < is_new.size(); ++v) {
+        if (is_new[v] != 0) vertices.push_back(static_cast<NodeId>(v));
+    }
     const auto is_taken = [this](SpacePointId p) -> std::uint8_t& {
         if (is_taken_.size() <= index(p)) is_taken_.resize(points_.size());
         return is_taken_[index(p)];

@@ -312,8 +312,7 @@ void SurfaceParts::join_parts(Progress* progress) {
     collect_uses(progress);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         poll(progress, begin);
-        while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&
-               uses_[end].half == uses_[begin].half && uses_[end].use.edge == uses_[begin].use.edge)
+        while (end < uses_.size() && uses_[end].is_beside(uses_[begin]))
             ++end;
         if (!is_divided(index(uses_[begin].cell))) continue;
         if (end - begin == 2) {

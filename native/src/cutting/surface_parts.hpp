@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
@@ -77,11 +76,14 @@ private:
         EdgeUse use;
         std::int32_t slot;
         bool operator<(const SlotUse& other) const {
-            const auto key = [](const SlotUse& s) {
-                return std::tie(s.cell, s.half, s.use.edge[0], s.use.edge[1], s.use.item,
-                                s.use.direction, s.slot);
-            };
-            return key(*this) < key(other);
+            if (half_of_cell() != other.half_of_cell())
+                return half_of_cell() < other.half_of_cell();
+            if (use < other.use) return true;
+            return !(other.use < use) && slot < other.slot;
+        }
+        std::uint64_t half_of_cell() const { return packed_pair(cell, half + 1); }
+        bool is_beside(const SlotUse& other) const {
+            return half_of_cell() == other.half_of_cell() && use.key() == other.use.key();
         }
     };
 

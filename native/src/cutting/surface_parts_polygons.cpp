@@ -78,24 +78,24 @@ private:
 
 bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
                   bool is_wall, Polygons& polygons) {
+    if (is_wall && loops.size() == 1 && !arrangement::has_repeated(loops[0])) {
+        polygons.add(loops[0]);
+        return true;
+    }
     const View view(normal);
-    std::vector<Loop> corners;
+    std::vector<Loop> corners(loops.size());
     std::vector<Position> positions;
+    positions.reserve(loops[0].size());
+    auto next = corners.begin();
     for (const auto loop : loops) {
-        Loop& own = corners.emplace_back();
+        Loop& own = *next++;
+        own.reserve(loop.size());
         for (const NodeId p : loop) {
             positions.push_back(overlay.position(p));
             own.push_back({p, view(positions.back())});
         }
         // the same polygons wherever the loop begins
         std::rotate(own.begin(), std::ranges::min_element(own, {}, &LoopCorner::node), own.end());
-    }
-    std::vector<NodeId> sorted(loops[0].begin(), loops[0].end());
-    std::sort(sorted.begin(), sorted.end());
-    const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-    if (is_wall && loops.size() == 1 && simple) {
-        polygons.add(loops[0]);
-        return true;
     }
     return divide_convex(corners, view.rounding(positions), {}, polygons,
                          ExactTurns(overlay, view));
@@ -155,6 +155,7 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
         return;
     }
     std::vector<Position> corners;
+    corners.reserve(model.face(face).size());
     for (const NodeId v : model.face(face))
         corners.push_back(model.vertex(v));
     const bool is_wall = model.face_surface[face] == kWall;
@@ -259,8 +260,7 @@ void SurfaceParts::find_touches(Progress* progress) {
     std::vector<std::array<std::int32_t, 3>> edges;
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         const SlotUse& first = uses_[begin];
-        for (; end < uses_.size() && uses_[end].cell == first.cell &&
-               uses_[end].half == first.half && uses_[end].use.edge == first.use.edge;)
+        while (end < uses_.size() && uses_[end].is_beside(first))
             ++end;
         if (!has_joined_across_ && end - begin <= 2) continue;
         for (std::size_t i = begin; i < end; ++i)

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "exact/homogeneous_points.hpp"
-#include "exact/sign_filters.hpp"
 
 namespace realmodel::exact {
 
@@ -232,6 +231,18 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
     if (own != nullptr && lie_in_one_upright_plane(points, *own, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
+}
+
+SidesOfPlane::SidesOfPlane(const SpacePoints& points, const std::array<SpacePointId, 3>& corners)
+    : points_(points),
+      corners_(corners),
+      filter_(points.rounded(corners[0]), points.rounded(corners[1]), points.rounded(corners[2])) {}
+
+int SidesOfPlane::operator()(SpacePointId d) const {
+    const auto [a, b, c] = corners_;
+    if (d == a || d == b || d == c) return 0;
+    const auto sign = filter_(points_.rounded(d), inexactness(points_, std::array{a, b, c, d}));
+    return sign ? *sign : orient3d(points_, a, b, c, d);
 }
 
 int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,

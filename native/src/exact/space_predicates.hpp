@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "exact/sign_filters.hpp"
 #include "exact/space_points.hpp"
 
 namespace realmodel::exact {
@@ -13,6 +14,17 @@ namespace realmodel::exact {
 /// the other, 0 on it.
 int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePointId c,
              SpacePointId d);
+/// The same for the sides of several points, by a filter for all of them where that can tell.
+class SidesOfPlane {
+public:
+    SidesOfPlane(const SpacePoints& points, const std::array<SpacePointId, 3>& corners);
+    int operator()(SpacePointId d) const;
+
+private:
+    const SpacePoints& points_;
+    std::array<SpacePointId, 3> corners_;
+    SideFilter filter_;
+};
 /// Which way a, b, c turn in the view along `axis` from above: 1 left, -1 right, 0 straight on.
 int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,
              SpacePointId c);

@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "base/index.hpp"
-#include "realmodel/base/progress.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::spatial {
 
@@ -59,7 +58,8 @@ struct Box {
 class BoxTree {
 public:
     /// @throws Cancelled
-    explicit BoxTree(std::vector<Box> boxes, Progress* progress = nullptr) {
+    explicit BoxTree(std::vector<Box> boxes, const Execution& execution = {1, nullptr}) {
+        if (boxes.empty()) return;
         // the boxes and their middles lie together while they are put in order
         std::vector<Item> items(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -69,7 +69,9 @@ public:
         }
         order_.resize(boxes.size());
         boxes_.resize(boxes.size());
-        if (!boxes.empty()) build(items, boxes, 0, items.size(), progress);
+        leaves_.resize(leaves_of(boxes.size()));
+        nodes_.resize(2 * leaves_.size() - 1);
+        build_all(items, boxes, execution);
     }
 
     /// Calls visit(number) for each, in no particular but always the same order.
@@ -131,23 +133,64 @@ private:
         std::int32_t number;
     };
 
-    std::size_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::size_t begin,
-                      std::size_t end, Progress* progress) {
-        constexpr std::size_t kUnasked = 1 << 10;  // so few are soon done
-        if (progress != nullptr && end - begin > kUnasked) progress->check();
-        const std::size_t number = nodes_.size();
-        nodes_.push_back({{}, begin, end});
-        if (end - begin <= kLeaf) {
-            Box whole;
-            for (std::size_t i = begin; i < end; ++i) {
-                order_[i] = items[i].number;
-                boxes_[i] = boxes[index(items[i].number)];
-                whole.include(boxes_[i]);
-            }
-            nodes_[number].box = whole;
-            leaves_.push_back(number);
-            return number;
+    /// What a node has below it: boxes in order, and leaves.
+    struct Part {
+        std::size_t node, begin, end, leaf;
+    };
+
+    /// How many leaves so many boxes get.
+    static std::size_t leaves_of(std::size_t boxes) {
+        std::size_t halvings = 0;
+        while ((boxes >> halvings) > kLeaf)
+            ++halvings;
+        // of these parts some may have one box more than the others
+        const std::size_t parts = std::size_t{1} << halvings;
+        return boxes >> halvings == kLeaf ? parts + boxes % parts : parts;
+    }
+    /// Builds large trees on several threads: the parts of one level at once, then what is below.
+    void build_all(std::vector<Item>& items, const std::vector<Box>& boxes,
+                   const Execution& execution) {
+        constexpr std::size_t kParts = 1 << 5, kLeast = 1 << 11;
+        std::vector<Part> parts{{0, 0, items.size(), 0}}, above;
+        while (parts.size() < kParts && items.size() / parts.size() > 2 * kLeast) {
+            std::vector<Part> halves(2 * parts.size());
+            parallel_chunks(
+                parts.size(), execution,
+                [&](std::size_t i) {
+                    const auto two = halve(items, parts[i]);
+                    std::ranges::copy(two, halves.begin() + static_cast<std::ptrdiff_t>(2 * i));
+                },
+                0.02);
+            above.insert(above.end(), parts.begin(), parts.end());
+            parts = std::move(halves);
         }
+        if (above.empty()) {
+            build(items, boxes, parts[0]);
+            return;
+        }
+        parallel_chunks(
+            parts.size(), execution, [&](std::size_t i) { build(items, boxes, parts[i]); }, 0.02);
+        for (auto part = above.rbegin(); part != above.rend(); ++part)
+            join_boxes(part->node);
+    }
+    void build(std::vector<Item>& items, const std::vector<Box>& boxes, const Part& part) {
+        if (part.end - part.begin > kLeaf) {
+            for (const Part& half : halve(items, part))
+                build(items, boxes, half);
+            join_boxes(part.node);
+            return;
+        }
+        Box whole;
+        for (std::size_t i = part.begin; i < part.end; ++i) {
+            order_[i] = items[i].number;
+            boxes_[i] = boxes[index(items[i].number)];
+            whole.include(boxes_[i]);
+        }
+        nodes_[part.node] = {whole, part.begin, part.end};
+        leaves_[part.leaf] = part.node;
+    }
+    std::array<Part, 2> halve(std::vector<Item>& items, const Part& part) {
+        const auto [number, begin, end, leaf] = part;
         Box middles;
         for (std::size_t i = begin; i < end; ++i)
             middles.include(items[i].twice_middle);
@@ -163,12 +206,14 @@ private:
             const double p = a.twice_middle[axis], q = b.twice_middle[axis];
             return p != q ? p < q : a.number < b.number;
         });
-        build(items, boxes, begin, middle, progress);
-        const std::size_t second = build(items, boxes, middle, end, progress);
-        nodes_[number].second = second;
-        nodes_[number].box = nodes_[number + 1].box;
-        nodes_[number].box.include(nodes_[second].box);
-        return number;
+        const std::size_t leaves = leaves_of(middle - begin), second = number + 2 * leaves;
+        nodes_[number] = {{}, begin, end, second};
+        return {Part{number + 1, begin, middle, leaf}, Part{second, middle, end, leaf + leaves}};
+    }
+    void join_boxes(std::size_t number) {
+        Node& node = nodes_[number];
+        node.box = nodes_[number + 1].box;
+        node.box.include(nodes_[node.second].box);
     }
     static double squared_distance(const Box& box, const Box::Position& p) {
         double sum = 0;

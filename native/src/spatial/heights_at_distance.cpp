@@ -76,7 +76,7 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
     constexpr std::size_t kPositionsOfChunk = 256;
     if (own.size() != positions.size() || away.size() != positions.size())
         throw InputError("bad_index", "a height and a distance of each position are needed");
-    const BoxTree tree(boxes_of(triangles), execution.progress);
+    const BoxTree tree(boxes_of(triangles), execution);
     std::vector<double> found(positions.size(), HUGE_VAL);
     // `support`: a triangle that may ask for most, as it did at a position nearby; then the one
     // that does.

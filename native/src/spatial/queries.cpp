@@ -81,7 +81,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
 
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<const Vec3> positions,
                           double reach, const Execution& execution) {
-    const BoxTree tree(boxes_of(triangles), execution.progress);
+    const BoxTree tree(boxes_of(triangles), execution);
     const std::vector<TrianglePlane> planes(triangles.begin(), triangles.end());
     Nearest found{std::vector<std::int32_t>(positions.size(), -1),
                   std::vector<double>(positions.size(), HUGE_VAL)};

@@ -157,7 +157,7 @@ TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
     for (std::size_t r = 0; r < cut.overlay.size(); ++r)
         arrangement::each_edge(cut.overlay.loops(r), static_cast<std::int32_t>(r),
                                [&](const arrangement::EdgeUse& use) { uses.push_back(use); });
-    std::ranges::sort(uses);
+    std::sort(uses.begin(), uses.end());
     std::size_t begin = 0;
     while (cut.overlay.of_cutter(index(uses[begin].item)) ||
            uses[begin].edge != uses[begin + 3].edge)

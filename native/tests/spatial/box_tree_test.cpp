@@ -59,5 +59,23 @@ TEST(BoxTree, FindsPairsOnce) {
     }
 }
 
+TEST(BoxTree, IsBuiltAlikeOnAnyNumberOfThreads) {
+    const auto boxes = random_boxes(40'000);
+    const auto order_with = [&](int threads) {
+        std::vector<std::int32_t> order;
+        BoxTree(boxes, {threads, nullptr}).find(Box{{0, 0, 0}, {9, 9, 99}}, [&](std::int32_t i) {
+            order.push_back(i);
+        });
+        return order;
+    };
+    const auto order = order_with(1);
+    EXPECT_EQ(std::ranges::count_if(boxes,
+                                    [](const Box& box) {
+                                        return box.meets({{0, 0, 0}, {9, 9, 99}});
+                                    }),
+              std::ssize(order));
+    EXPECT_EQ(order_with(5), order);
+}
+
 }  // namespace
 }  // namespace realmodel::spatial

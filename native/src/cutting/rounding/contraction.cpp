@@ -114,10 +114,20 @@ void Contraction::apply() {
     std::vector<NodeId> loop;
     // what a node became stays: no chains
     assert(std::ranges::all_of(becomes, [this](NodeId n) { return becomes[index(n)] == n; }));
-    for (std::size_t p = 0; p < parts_.pieces.size(); ++p) {
+    const CutPieces& pieces = parts_.pieces;
+    const auto stays = [&](std::size_t p) {
+        return std::ranges::all_of(pieces.polygons[p],
+                                   [this](NodeId n) { return becomes[index(n)] == n; });
+    };
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const std::size_t first = p;
+        while (p < pieces.size() && stays(p))
+            ++p;
+        kept.add(pieces, first, p);
+        if (p == pieces.size()) break;
         loop.clear();
         add_contracted(p, loop);
-        if (!loop.empty()) kept.add(loop, parts_.pieces[p]);
+        if (!loop.empty()) kept.add(loop, pieces[p]);
     }
     parts_.replace_pieces(std::move(kept));
 }

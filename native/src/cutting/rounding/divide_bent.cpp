@@ -127,11 +127,12 @@ void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
     if (std::ranges::count(is_whole, 0) == 0) return;
     CutPieces divided;
     for (std::size_t p = 0; p < parts.pieces.size(); ++p) {
+        const std::size_t first = p;
+        while (p < is_whole.size() && is_whole[p] != 0)
+            ++p;
+        divided.add(parts.pieces, first, p);
+        if (p == is_whole.size()) break;
         const auto nodes = parts.pieces.polygons[p];
-        if (is_whole[p] != 0) {
-            divided.add(nodes, parts.pieces[p]);
-            continue;
-        }
         const NodeId center = add_middle(parts, p);
         for (std::size_t i = 0; i < nodes.size(); ++i)
             divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center},

@@ -84,19 +84,21 @@ void RoundedParts::update() {
     const std::size_t nodes = vertices.size() + new_positions.size();
     for (auto* of_nodes : {&on_base, &on_wall, &is_near})
         of_nodes->assign(nodes, 0);
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        // of joined models whole cells, too, get new polygons where they meet a structure
-        const bool changed = (are_joined && (!is_whole_face(p) || pieces[p].is_level)) ||
-                             std::ranges::any_of(pieces[p].parts, [this](std::int32_t part) {
-                                 return part >= 0 && is_changed(part);
-                             });
-        const std::int32_t surface = surface_of(p, kCutFace);
-        for (const NodeId node : pieces.polygons[p]) {
-            if (changed) is_near[index(node)] = 1;
-            if (surface == kBase) on_base[index(node)] = 1;
-            if (surface == kWall) on_wall[index(node)] = 1;
+    parallel_ranges(pieces.size(), 1 << 12, execution, [this](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            // of joined models whole cells, too, get new polygons where they meet a structure
+            const bool changed = (are_joined && (!is_whole_face(p) || pieces[p].is_level)) ||
+                                 std::ranges::any_of(pieces[p].parts, [this](std::int32_t part) {
+                                     return part >= 0 && is_changed(part);
+                                 });
+            const std::int32_t surface = surface_of(p, kCutFace);
+            for (const NodeId node : pieces.polygons[p]) {
+                if (changed) mark(is_near[index(node)]);
+                if (surface == kBase) mark(on_base[index(node)]);
+                if (surface == kWall) mark(on_wall[index(node)]);
+            }
         }
-    }
+    });
     pieces_of = bucketize<std::int32_t>(half_cells.size(), [this](const auto& visit) {
         for (std::size_t p = 0; p < pieces.size(); ++p) {
             for (const std::int32_t part : pieces[p].parts) {
