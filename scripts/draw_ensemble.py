@@ -24,13 +24,14 @@ from realmodel.core.results.sections.section_drawing import block_outlines, flat
 
 ROOT = Path(__file__).resolve().parents[1]
 NEAR = 40.0  # of the plane: boreholes that are drawn
-CLOUD = (0.1, 0.1, 0.1, 0.08)
+CLOUD = (0.1, 0.1, 0.1, 0.12)
 
 
 @dataclass(frozen=True)
 class Picture:
     """sample: an example. plane: a point and a normal. size: of samples, along the section and up.
-    resolution: of its series, None: its own."""
+    resolution: of its series, None: its own. part: the part of the plan that is modeled, and how far down, so
+    that little is drawn of what does not vary; None: as in the example."""
 
     sample: Path
     plane: tuple
@@ -38,12 +39,18 @@ class Picture:
     exaggeration: float
     size: tuple[float, float]
     resolution: float | None = None
+    part: tuple[list[list[float]], float] | None = None
 
 
 SAMPLES = ROOT / "blend_samples"
 PICTURES = {
     "ensemble": Picture(
-        SAMPLES / "uncertain_valley", ((1530.0, 1000.0, 0.0), (1.0, 0.0, 0.0)), 100, 8.0, (4.0, 0.5)
+        SAMPLES / "uncertain_valley",
+        ((1530.0, 1000.0, 0.0), (1.0, 0.0, 0.0)),
+        100,
+        10.0,
+        (4.0, 0.4),
+        part=([[1430.0, 0.0], [1630.0, 0.0], [1630.0, 2000.0], [1430.0, 2000.0]], 325.0),
     ),
     "ensemble_fold": Picture(
         SAMPLES / "faulted_dome", ((0.0, 520.0, 0.0), (0.0, -1.0, 0.0)), 40, 1.0, (3.0, 3.0), 40.0
@@ -56,6 +63,8 @@ def draw(picture, path):
     project = load_project(picture.sample / "project.toml")
     for series in project.rocks[0].series:
         series.resolution = picture.resolution or series.resolution
+    if picture.part is not None:
+        project.rocks[0].region, project.rocks[0].base_elevation = picture.part
     model = build(project, cells="blocks")
     samples = section_samples(model, model.section(*picture.plane), picture.size)
     realizer = Realizer(model, seed=1)
@@ -76,7 +85,7 @@ def draw(picture, path):
                 above.polygon([on_paper(drawing, ring, picture)], None, CLOUD, 0.5)
     holes = list(boreholes(model, picture))
     for y, top, bottom in holes:
-        above.line(on_paper(drawing, np.array([[y, top], [y, bottom]]), picture), width=1.6)
+        above.line(on_paper(drawing, np.array([[y, top], [y, bottom]]), picture), width=2.2)
     drawing.items[last:last] = above.items
     add_legend(drawing, picture, bool(holes))
     save_drawing(drawing, path)
@@ -90,7 +99,7 @@ def add_legend(drawing, picture, has_boreholes):
     lines = [
         ((0.1, 0.1, 0.1, 0.5), 0.5, f"{picture.realizations} realizations"),
         ((0.0, 0.0, 0.0), 1.0, "interpolated"),
-        ((0.0, 0.0, 0.0), 1.8, "boreholes"),
+        ((0.0, 0.0, 0.0), 2.2, "boreholes"),
     ]
     for color, width, text in lines if has_boreholes else lines[:2]:
         y -= 12.0

@@ -155,6 +155,9 @@ class Filling(PanelCase):
         copy = bpy.data.objects["Strata Preview"]
         rows = {polygon.material_index for polygon in copy.data.polygons}
         self.assertGreater(len(rows), 2)
+        corners = coordinates(copy.data)
+        self.assertTrue(25_000 < len(copy.data.polygons) <= 100_000, "fine enough for thin beds")
+        self.assertTrue((corners.min(axis=0) == coordinates(item.data).min(axis=0)).all())
         self.assertTrue(item.hide_get())
         preview.show(Strata(beds=6, dip=20, palette="cliff"), 0.5)
         preview.remove()

@@ -67,7 +67,9 @@ def fill_and_undo(walk):
     invoked(walk, bpy.ops.realmodel.fill_with_strata)
     yield walk.redrawn(4)
     region = walk.region("WINDOW")
-    walk.move(region.x + 30, region.y + 30)  # over no field of the dialog, which Enter would open
+    walk.move(
+        region.x + region.width - 60, region.y + 30
+    )  # over no field of the dialog, which Enter would open
     yield walk.redrawn(2)
     walk.key("RET")
     yield lambda: "Boulder Strata" in bpy.data.collections and idle()

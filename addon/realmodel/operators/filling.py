@@ -22,6 +22,7 @@ from .pictures import by_hand, set_up_first
 from .reporting import not_building, object_mode
 
 _PICTURE_SIZE = 3.0  # in heights of a button
+_WIDTH = 360  # of the dialog, in units of the interface
 
 
 def _set_preset(self, _context):
@@ -160,6 +161,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
     seed: IntProperty(name="Seed", description="Other thicknesses, rocks, folds and faults", min=0)
 
     _preview = None
+    _preset = None  # that the preview shows
     _shape = None
     _filling = None
     _is_asked = False
@@ -175,16 +177,25 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
         try:
             self._shape = FilledShape.of(item, context.evaluated_depsgraph_get())
             self._shape.closed(self.base_depth)
-            self._preview = FillPreview(item, self._shape)
+            self._preview, self._preset = FillPreview(item, self._shape), self.preset
             self._show()
         except RealModelError as error:
             self._end_preview()
             return self._refused(context, error)
         self._is_asked = True
-        return context.window_manager.invoke_props_dialog(self, width=360)
+        if context.area is not None and context.area.type == "VIEW_3D":
+            # The dialog opens around the mouse: at the left it does not hide the preview in the middle.
+            half = round(0.6 * _WIDTH * context.preferences.system.ui_scale)
+            context.window.cursor_warp(context.area.x + half, context.area.y + context.area.height // 2)
+        return context.window_manager.invoke_props_dialog(self, width=_WIDTH)
 
     def check(self, _context):
         if self._preview is not None:
+            if (
+                self.preset != self._preset
+            ):  # Blender calls its update, which sets the others, only after this
+                self._preset = self.preset
+                _set_preset(self, _context)
             self._show()
         return True
 

@@ -9,6 +9,21 @@ from ...core.filling import PALETTES, lay_beds, rocks_of_beds
 from ..objects import materials, meshes, placing, viewports
 
 _NAME = "Strata Preview"
+_MOST = 100_000  # triangles that coarser ones are divided into: each has one color
+
+
+def divided(vertices, triangles):
+    """Vertices (V, 3) and triangles (T, 3), each of which is divided into four as often as there are no more
+    than 100,000; edges stay straight."""
+    if 4 * len(triangles) > _MOST:
+        return vertices, triangles
+    corners = vertices[triangles]
+    while 4 * len(corners) <= _MOST:
+        a, b, c = corners.transpose(1, 0, 2)
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        parts = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
+        corners = np.concatenate([np.stack(part, axis=1) for part in parts])
+    return corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
 
 
 class FillPreview:
@@ -36,7 +51,7 @@ class FillPreview:
         mesh = bpy.data.objects[self._copy].data
         closed = self._shape.closed(depth)
         if closed is not self._closed:
-            vertices, triangles = closed
+            vertices, triangles = divided(*closed)
             local = self._shape.to_local(vertices).astype(np.float32)
             meshes.refill(mesh, polygon_mesh.of_triangles(local, triangles))
             self._closed, self._middles = closed, vertices[triangles].mean(axis=1)

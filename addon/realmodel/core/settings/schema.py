@@ -232,7 +232,7 @@ SURFACE = {
         tip="Minimum distance above the next older surface",
         low=0.0,
         more="For interpolated surfaces; points that contradict it are listed",
-        switch=("Minimum Thickness", "Keep the surface at least this far above the next older one"),
+        switch=("Thickness ≥", "Keep the surface at least this far above the next older one"),
     ),
     "true_thickness": Setting(
         False,

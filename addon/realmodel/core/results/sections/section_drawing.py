@@ -24,6 +24,7 @@ _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
 _FAULT_WIDTH, _HOLE_WIDTH = 1.4, 3.0
 _HOLES = "Boreholes"  # layer of the drawing
+_NAME_ABOVE = 4  # a name over the end of a hole
 _HIGHEST_NAME = 6  # lines over the end of a hole, where others have taken those below
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
@@ -64,8 +65,14 @@ def draw_section(
         low[0], high[0] = 0.0, section.length
     if is_vertical(section):
         high[1] += _SKY * (high[1] - low[1])
-    extent = np.maximum(high - low, 1e-9 * max(np.abs(flat).max(), 1.0))
+    least = 1e-9 * max(np.abs(flat).max(), 1.0)
+    extent = np.maximum(high - low, least)
     ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
+    if holes:  # room for a line of names over them, within the frame
+        sky = high[1] - max(line[:, 1].max() for _, line in holes)
+        high[1] += max(0.0, (_NAME_ABOVE + _SIZE) / (scale * exaggeration) - sky)
+        extent = np.maximum(high - low, least)
+        ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
     width, height = extent * (1.0, exaggeration) * scale
     present = [int(block) for block in np.unique(section.block)[::-1]]
     entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
@@ -163,7 +170,7 @@ def _draw_holes(
         if hole.name not in named:
             x, y = points[np.argmax(points[:, 1])].tolist()
             half = text_width(hole.name, _SIZE) / 2
-            lifted = [(x - half, x + half, y + 4 + _LINE * k) for k in range(_HIGHEST_NAME)]
+            lifted = [(x - half, x + half, y + _NAME_ABOVE + _LINE * k) for k in range(_HIGHEST_NAME)]
             lifted = [each for k, each in enumerate(lifted) if k == 0 or each[2] + _SIZE < top]
             place = next((each for each in lifted if not any(_overlap(each, one) for one in taken)), None)
             if place is not None:
