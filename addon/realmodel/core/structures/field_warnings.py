@@ -51,8 +51,8 @@ def warn_of_distance(entry: RockInput, series: Series, places: np.ndarray) -> No
         return
     text = (
         f"{series.item}: data lie up to {found[1]:.3g} beyond the region, as at "
-        f"{place_text(places[found[0]])}: the lattice of the field reaches there, and an automatic resolution "
-        "is coarser for it; check their coordinates"
+        f"{place_text(places[found[0]])}: the lattice of the field reaches there, and an automatic "
+        "resolution is coarser for it; check their coordinates"
     )
     entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
 
