@@ -250,3 +250,30 @@ def test_bounds_that_a_mesh_cannot_keep_are_told():
     contradicting = bounds_of([[*points[0, :2], 9.0]], [True])
     result = interpolate(points, nodes, "dsi", triangles=triangles, bounds=contradicting)
     assert any("1 of 1 bounds contradict" in text for text in result.warnings)
+
+
+@pytest.mark.parametrize(
+    ("point", "lower", "upper"),
+    [
+        (
+            [40.8, 85.4, -0.2],
+            [[83.8, 27.1, 1.4], [17.8, 34.6, -11.9], [41.8, 64.2, -3.6], [89.1, 24.5, 2.1]],
+            [],
+        ),
+        (
+            [59.5, 68.9, 1.7],
+            [[65.8, 22.7, 3.5], [65.5, 94.3, -4.3], [23.9, 81.8, 1.0], [67.9, 25.0, 1.3]],
+            [[15.1, 91.2, 3.0], [21.6, 90.9, 1.1], [35.6, 44.7, 3.9]],
+        ),
+    ],
+)
+def test_bounds_of_dsi_hold_where_points_leave_a_tilt_open(point, lower, upper):
+    """A plane satisfies all of them. The set of bounds that counted ran in circles."""
+    along = np.linspace(0, 100, 9)
+    nodes = np.array([(x, y) for y in along for x in along])
+    first = np.array([9 * row + column for row in range(8) for column in range(8)])[:, None]
+    triangles = np.concatenate([first + np.array(each) for each in ([0, 1, 10], [0, 10, 9])]).astype(np.int32)
+    given = bounds_of([*lower, *upper], [True] * len(lower) + [False] * len(upper))
+    result = interpolate([point], nodes, "dsi", triangles=triangles, bounds=given)
+    assert not [text for text in result.warnings if "cannot" in text]
+    assert np.ptp(result.z) < 40.0

@@ -487,6 +487,57 @@ def test_where_a_hole_passes_a_fault_no_surface_is_known_to_be():
     assert build(Project("p", [rock])).observed().left_out
 
 
+def test_what_lies_between_a_fault_and_the_end_of_an_interval_is_listed():
+    """Hole B6 passes the fault at z = 5.0, a little below where block S1 begins: it may be the fault that
+    divides S2 and S1, and the part of S1 between the two says nothing. All else holds, to the fault."""
+    places = [(1, 1), (1, 9), (2, 5), (8, 5), (9, 1), (9, 9)]
+    seen = level_logs(places, [0, 0, 0, 2, 2, 2])
+    ends = [(9, 5.1, "S2"), (5.1, 2, "S1"), (2, 0, "S0")]
+    rows = [(z, block) for top, bottom, block in ends for z in (top, bottom)]
+    hole = Observations(
+        [[5.5, 5.0, z] for z, _ in rows],
+        [block for _, block in rows],
+        ["B6"] * 6,
+        [9 - z for z, _ in rows],
+    )
+    fault = Fault("F", *plane_fault(lean=-0.1), youngest="S1")
+    model = faulted(Observations.joined([seen, hole]), fault)
+    found = model.observed()
+    assert [(each.kind, each.hole, each.block) for _, each in found.left_out] == [("at_fault", "B6", "S1")]
+    assert np.isclose(found.left_out[0][1].depth, 3.9)
+    S1 = model.project.rocks[0].surfaces[1]
+    assert 5.5 not in S1.contact_array()[:, 0]
+    there = S1.bounds.some(S1.bounds.places[:, 0] == 5.5)
+    heights = sorted(there.places[:, 2].tolist())
+    assert np.allclose(heights, [5.0, 5.1], atol=1e-5), "below the fault from it on, above it to the end"
+    assert [warning.kind for warning in model.warnings if "beside a fault" in warning.text] == ["at_fault"]
+
+
+def test_an_interval_holds_on_both_sides_of_a_fault_that_it_passes():
+    """West of the fault the hole comes below the base of its block, which its end east of it does not say."""
+    places = [(1, 1), (1, 9), (3, 9), (8, 5), (9, 1), (9, 9)]
+    seen = level_logs(places, [0, 0, 0, 2, 2, 2])
+    hole = Observations([[4, 5, 5.0], [5.2, 5, 2.2]], ["S1", "S1"], ["B6"] * 2, [0.0, 3.0])
+    model = faulted(Observations.joined([seen, hole]), Fault("F", *plane_fault(), youngest="S1"))
+    found = model.observed()
+    assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
+    assert not found.violated and not found.left_out
+    bounds = model.project.rocks[0].surfaces[0].bounds
+    near = bounds.places[np.abs(bounds.places[:, 0] - 5.0) < 1e-5]
+    assert sorted(near[:, 0] > 5.0) == [False, True] and np.allclose(near[:, 2], 5.0 - 2.8 / 1.2, atol=1e-5)
+
+
+def test_contacts_beside_a_fault_stay_on_their_side():
+    """A contact that fits the surface across the fault, as a point of a horizon there would."""
+    places = [(1, 1), (1, 9), (3, 5), (5.1, 5), (7, 5), (9, 1), (9, 9)]
+    seen = level_logs(places, [0, 0, 0, 0, 2, 2, 2])
+    model = faulted(seen, Fault("F", *plane_fault(), youngest="S1"))
+    found = model.observed()
+    assert all(abs(each.residual) < 1e-9 for each in found.contacts)
+    assert [each.share for each in found.blocks] == [1.0, 1.0, 1.0]
+    assert not found.left_out
+
+
 def test_observations_in_bodies():
     places = [(1, 1), (1, 9), (9, 1), (9, 9)]
     seen = level_logs(places, [0, 0, 0, 0])

@@ -3,23 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ..base.algebra import norm
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..readers.tables.observations import Observations
+from ..readers.tables.observations import Observations, in_one_interval
 from ..surfaces.field_data import apply_observations, observed_on_mesh
-from ..surfaces.observed.derived import Situation
+from ..surfaces.observed.derived import BlockNumbers, Situation
+from ..surfaces.observed.edge_crossings import with_places
+from ..surfaces.observed.succession import Succession
 from ..surfaces.rock_input import RockInput
 from ..surfaces.sides import sides_of
 from .fields import spacing
 from .parts.parts import Structures
+from .sheets.within import box_of, parts_of_lines, walls_of
 
 # Of an edge length of the planar mesh, or of the lattice of a field alone.
 _NEAR = 0.25  # nearer to a fault, a boundary between blocks may be the fault
+_LOGGED = 1e-3  # nearer along a hole, it is the fault, up to the rounding of the log
+_BESIDE = 1e-6  # how far from a fault places are that stand for its two sides
 
 
 # of places (N, 3) those in faults (N, F) and in bodies (N, B)
@@ -30,42 +36,84 @@ def apply_in_compartments(work: Work, structures: Structures, inputs: list[RockI
     """Gives the surfaces of rock masses (RockInput) whose compartments are known the contacts and bounds that
     follow from their observations."""
     for number, entry in enumerate(inputs):
-        observations = entry.rock.observed
-        if observations is None or not len(observations):
+        if entry.rock.observed is None or not len(entry.rock.observed):
             continue
         bodies = [
             (body, times[number])
             for body, times in zip(structures.bodies, structures.times, strict=True)
             if number in times
         ]
+        shapes = [Sheet(*body.triangulation()) for body, _ in bodies]
 
         def sides(
-            places: np.ndarray, entry: RockInput = entry, bodies: list = bodies
+            places: np.ndarray, entry: RockInput = entry, shapes: list[Sheet] = shapes
         ) -> tuple[np.ndarray, np.ndarray]:
-            inside = [_inside(work, Sheet(*body.triangulation()), places) for body, _ in bodies]
-            within = np.array(inside, bool).reshape(len(bodies), len(places)).T
+            inside = [_inside(work, body, places) for body in shapes]
+            within = np.array(inside, bool).reshape(len(shapes), len(places)).T
             return sides_of(work, places, entry.divided().faults), within
 
-        places, parted = observations.places, None
+        given, is_own, edge = entry.rock.observed, np.ones(len(entry.rock.observed), bool), None
+        across = np.zeros(len(given), bool)
         if entry.region is not None:
-            reach = _NEAR * (entry.median_edge() if entry.rock.interpolates else spacing(entry))
-            parted = _parted(observations, reach, sides)
-            places = _off_structures(observations, reach, sides)
-        given = observed_on_mesh(entry, places)
-        if parted is not None:
-            of_given = parted
-            parted = np.zeros(len(given[1]), bool)
-            parted[given[1]] = of_given
-        of_faults, within = sides(given[0].places)
+            edge = entry.median_edge() if entry.rock.interpolates else spacing(entry)
+            given, is_own, across = _with_both_sides(entry, shapes, sides, _BESIDE * edge)
+            given, is_kept = observed_on_mesh(entry, given)
+            at = np.cumsum(is_kept) - 1
+            is_own, across = is_kept & is_own[at], is_kept & across[at]
         situation = Situation(
-            sides=of_faults,
-            inside=within,
+            None,
+            *sides(given.places),
             after=[after for _, after in bodies],
             bodies=[body.name for body, _ in bodies],
             voids=[body.void for body, _ in bodies],
-            parted=parted,
+            across=across,
+            displaced=_displaced(entry),
         )
-        apply_observations(work, entry, situation, given)
+        if edge is not None:
+            disputed, length = _between(entry, given, _NEAR * edge, situation)
+            is_rounding = length <= _LOGGED * edge
+            parted = _parted(given, _NEAR * edge, sides) | (disputed & is_rounding)
+            situation = replace(situation, parted=parted, disputed=disputed & ~is_rounding)
+        apply_observations(work, entry, situation, (given, is_own))
+
+
+def _with_both_sides(
+    entry: RockInput, bodies: Sequence[Sheet], sides: SidesOf, off: float
+) -> tuple[Observations, np.ndarray, np.ndarray]:
+    """The observations of a RockInput, with a place more on each side of a fault, and of the border of a
+    body, wherever an interval that is used passes it; and (N,) bool twice, those that are given, and of the
+    two on both sides the second. off: how far from it the places are, and from the ends of ways at least."""
+    given = entry.rock.observed
+    assert given is not None
+    end = np.flatnonzero(in_one_interval(given, given.in_use))
+    first, last = given.places[end - 1], given.places[end]
+    length = norm(last - first)
+    is_long = length > 2 * off
+    end, first, last, length = end[is_long], first[is_long], last[is_long], length[is_long]
+    if not len(end):
+        return given, np.ones(len(given), bool), np.zeros(len(given), bool)
+    walls = walls_of(entry.divided().faults.shapes, box_of(first, last))
+    walls = np.concatenate([walls, *(body.vertices[body.triangles] for body in bodies)])
+    way, shares = parts_of_lines(first, last, walls)
+    passes = shares[:, 0] > 0
+    way, at = way[passes], shares[passes, 0]
+    beside = off / length
+    ways = [way, way]
+    found = [at - beside[way], at + beside[way]]
+    for share, place in ((beside, first), (1.0 - beside, last)):  # an end that lies on a fault
+        inner = first + share[:, None] * (last - first)
+        on = [(a != b).any(axis=1) for a, b in zip(sides(place), sides(inner), strict=True)]
+        ways.append(np.flatnonzero(np.logical_or(*on)))
+        found.append(share[ways[-1]])
+    way, share = np.concatenate(ways), np.concatenate(found)
+    is_second = np.zeros(len(way), bool)
+    is_second[len(at) : 2 * len(at)] = found[0] >= beside[ways[0]]
+    kept = (share >= beside[way]) & (share <= 1.0 - beside[way])
+    order = np.lexsort((share[kept], way[kept]))
+    more, is_own = with_places(given, end[way[kept][order]], share[kept][order])
+    across = np.zeros(len(more), bool)
+    across[~is_own] = is_second[kept][order]
+    return more, is_own, across
 
 
 def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
@@ -78,7 +126,7 @@ def _inside(work: Work, body: Sheet, places: np.ndarray) -> np.ndarray:
 
 def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
     """(N,) bool: places without a hole where blocks meet, as on a map, and a fault or the border of a body
-    passes nearer in plan than `reach`: it may be this that divides them. sides: as of _off_structures."""
+    passes nearer in plan than `reach`: it may be this that divides them."""
     alone = np.flatnonzero(observations.holes == "")
     places, place = np.unique(observations.places[alone], axis=0, return_inverse=True)
     place, blocks = place.ravel(), observations.blocks[alone]
@@ -97,31 +145,52 @@ def _parted(observations: Observations, reach: float, sides: SidesOf) -> np.ndar
     return parted
 
 
-def _off_structures(observations: Observations, reach: float, sides: SidesOf) -> np.ndarray:
-    """(N, 3) the places of observations. Where two intervals of a hole meet, and a fault or the border of a
-    body passes nearer than `reach` along the hole, it may be this that divides them: no surface is known to
-    be there, and both ends move into their intervals by that much.
-
-    sides(places): of faults and of bodies, (N, F) and (N, B).
-    """
+def _between(
+    entry: RockInput, observations: Observations, reach: float, situation: Situation
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) bool: of intervals the places between an end at which another block begins, and a fault or the
+    border of a body, if that passes within `reach` along the hole: it may be this that divides the blocks,
+    and nothing is known between the two. And (N,) how long that part is."""
+    follows = in_one_interval(observations, observations.in_use)
+    chosen = np.zeros(len(observations), bool)
+    row = np.flatnonzero(follows)
+    length = np.zeros(len(observations))
+    if not len(row):
+        return chosen, length
     places, holes, blocks = observations.places, observations.holes, observations.blocks
-    if len(places) < 2:
-        return places
-    follows = (holes[1:] == holes[:-1]) & (holes[1:] != "")
-    meets = follows & (blocks[1:] != blocks[:-1]) & (places[1:] == places[:-1]).all(axis=1)
-    upper = np.flatnonzero(meets)
-    lower = upper + 1
-    moved = places.copy()
-    inward = np.concatenate([upper - 1, np.minimum(lower + 1, len(places) - 1)])
-    ends = np.concatenate([upper, lower])
-    same = (inward >= 0) & (blocks[inward] == blocks[ends]) & (holes[inward] == holes[ends])
-    way = np.where(same[:, None], places[inward] - places[ends], 0.0)
-    length = norm(way)[:, None]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        step = np.where(length > 0, way * np.minimum(1.0, reach / length), 0.0)
-    inner = places[ends] + step
-    found = np.concatenate([each.astype(np.int8) for each in sides(inner)], axis=1)
-    parted = (found[: len(upper)] != found[len(upper) :]).any(axis=1)
-    moved[upper[parted]] = inner[: len(upper)][parted]
-    moved[lower[parted]] = inner[len(upper) :][parted]
-    return moved
+    meets = (holes[1:] == holes[:-1]) & (blocks[1:] != blocks[:-1])
+    meets &= (places[1:] == places[:-1]).all(axis=1)
+    meets = np.concatenate([[False], meets, [False]])  # each row with the one before
+    number = np.maximum(BlockNumbers(entry.rock, situation.bodies).of(blocks), 0)
+    may_divide = _dividing(entry, situation)
+    assert situation.sides is not None and situation.inside is not None
+    passes_body = (situation.inside[row - 1] != situation.inside[row]).any(axis=1)
+    passed = situation.sides[row - 1] != situation.sides[row]
+    first = np.flatnonzero(~follows)
+    last = np.append(first[1:], len(follows)) - 1
+    interval = np.cumsum(~follows)[row] - 1
+    for end, inner, step in ((first[interval], row - 1, 0), (last[interval], row, 1)):
+        is_end = meets[end + step]
+        other = np.where(is_end, end + 2 * step - 1, end)
+        away = norm(places[inner] - places[end])
+        near = is_end & (away <= reach)
+        near &= passes_body | (passed & may_divide[number[end], number[other]]).any(axis=1)
+        for one, two, far in zip(*(each[near].tolist() for each in (end, inner, away)), strict=True):
+            part = slice(min(one, two), max(one, two) + 1)
+            chosen[part], length[part] = True, np.maximum(length[part], far)
+    return chosen, length
+
+
+def _displaced(entry: RockInput) -> np.ndarray:
+    """(S, F) bool: which surfaces each fault displaces."""
+    faults, count = entry.divided().faults, len(entry.rock.surfaces)
+    return np.array([faults.active(surface) for surface in range(count)]).reshape(count, len(faults))
+
+
+def _dividing(entry: RockInput, situation: Situation) -> np.ndarray:
+    """(B, B, F) bool: whether two blocks may meet at a fault. Not if a surface that it does not displace
+    would be there, too."""
+    count, displaced = len(entry.rock.surfaces), _displaced(entry)
+    succession = Succession([surface.rule for surface in entry.rock.surfaces], situation.after)
+    blocks = range(count + len(situation.after))
+    return np.array([[displaced[succession.contacts((a, b))].all(axis=0) for b in blocks] for a in blocks])

@@ -169,14 +169,14 @@ def _with_points(
     return surface, np.concatenate(known) if known else None
 
 
-def observed_on_mesh(entry: RockInput, places: np.ndarray | None = None) -> tuple[Observations, np.ndarray]:
-    """The observations of a RockInput, with more along its intervals where its surfaces are linear only
-    between edges of its planar mesh, once it is meshed; and (N,) bool, those that are given. places: for
-    their own places."""
-    observations = entry.rock.observed
+def observed_on_mesh(
+    entry: RockInput, observations: Observations | None = None
+) -> tuple[Observations, np.ndarray]:
+    """The observations of a RockInput, or those that are given in their place, with more along its intervals
+    where its surfaces are linear only between edges of its planar mesh, once it is meshed; and (N,) bool,
+    those that are not new."""
+    observations = entry.rock.observed if observations is None else observations
     assert observations is not None
-    if places is not None:
-        observations = replace(observations, places=places)
     if entry.region is None or not entry.rock.interpolates:
         return observations, np.ones(len(observations), bool)
     return with_crossings(observations, entry.region)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
-from ..heights.ties import tie_data
+from ..heights.ties import TieData, tie_data
 from ..project.region_rings import numbered_ring, region_rings
 from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
 from ..settings.meshers import DEFAULT_MESHER
 from .rock_input import RockInput
+from .sides import sides_of
 
 _SAME = 1e-9  # of the extent: nearer places are one
 _LOOKED_AT = 8  # places around one
@@ -197,15 +198,15 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
     nearest = native_module().nearest_points
     least = _CROWDED_AT_FAULTS if entry.has_faults else _CROWDED
     places, rooms = [known], [np.zeros(len(known))]
-    for surface in entry.rock.surfaces:
+    for number, surface in enumerate(entry.rock.surfaces):
         if not surface.ties:
             continue
         work.check()
-        data = tie_data(surface.tied_points, surface.bounds)
-        asked = (data.places, data.lower, data.upper)
-        numbers, away = native_module().crowded_data(*mesh.arrays, asked, least)
-        places.append(data.places[numbers])
-        rooms.append(away)
+        for data in _data_of_sheets(work, entry, number):
+            asked = (data.places, data.lower, data.upper)
+            numbers, away = native_module().crowded_data(*mesh.arrays, asked, least)
+            places.append(data.places[numbers])
+            rooms.append(away)
     every, room = np.concatenate(places), np.concatenate(rooms)
     if len(every) == len(known):
         return np.empty((0, 2))
@@ -217,3 +218,20 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
         others = beside[number][is_near[number]]
         taken[number] = not taken[others[others >= 0]].any()
     return every[len(known) :][taken[len(known) :]]
+
+
+def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieData]:
+    """What each sheet of a surface is to honor: the data on the same sides of all faults that displace it,
+    once these are known."""
+    surface = entry.rock.surfaces[number]
+    points, bounds, structure = surface.tied_points, surface.bounds, entry.structure
+    if structure is None or not structure.faults.active(number).any():
+        yield tie_data(points, bounds)
+        return
+    places = points if bounds is None else np.concatenate([points, bounds.places])
+    sides = sides_of(work, places, structure.faults)[:, structure.faults.active(number)]
+    rows, sheet = np.unique(sides, axis=0, return_inverse=True)
+    for each in range(len(rows)):
+        own = sheet.ravel() == each
+        of_bounds = own[len(points) :]
+        yield tie_data(points[own[: len(points)]], None if bounds is None else bounds.some(of_bounds))

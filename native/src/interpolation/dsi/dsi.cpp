@@ -32,6 +32,9 @@ constexpr double kExactRiseStrength = 32;
 constexpr double kStalled = 0.5, kStalledWithDips = 0.9;
 constexpr double kMet = 1e-8;  // of the range of heights
 constexpr int kMostRounds = 30;
+// The same where the bounds that count are settled first; rounds for that before each; and how many
+// rounds in turn may bring little: bounds contradict each other on the mesh.
+constexpr int kMostCarefulRounds = 100, kMostSettling = 20, kMostStalled = 6;
 constexpr double kFirstTolerance = 1e-4, kLastTolerance = 1e-9, kWeightedTolerance = 1e-9;
 // Of the mesh's stiffness against a tilt: what holds a tilt that the points leave open.
 constexpr double kTiltStrength = 1e-6;
@@ -321,8 +324,21 @@ private:
         }
     }
 
-    /// Rounds of multipliers: each adds to the force on a constraint what the round before missed.
+    /// The heights of the smoothest mesh. The set of bounds that count may run in circles, with
+    /// ever larger multipliers, where bounds hold a tilt that points leave open: then once more,
+    /// carefully.
     void solve(Vector& z) {
+        if (rounds(z, false)) return;
+        std::fill(z.begin(), z.end(), 0.0);
+        for (Constraint& c : constraints_)
+            c.multiplier = 0;
+        rounds(z, true);
+    }
+
+    /// Rounds of multipliers: each adds to the force on a constraint what the round before missed.
+    /// @param careful  whether the bounds that count are to be settled before each round
+    /// @return false where bounds are not met after as many rounds as are allowed
+    bool rounds(Vector& z, bool careful) {
         bool exact = false, bounded = false;
         double stalled = kStalled;
         double largest = 0;
@@ -334,11 +350,12 @@ private:
                 c.kind == Kind::kWeighted || c.kind == Kind::kEqual || c.next_multiplier(z) != 0;
             largest = std::max(largest, c.active ? std::abs(c.height) : 0.0);
         }
-        if (largest == 0) return;  // the plane meets all constraints
+        if (largest == 0) return true;  // the plane meets all constraints
         double before = std::numeric_limits<double>::infinity();
         double tolerance = exact ? kFirstTolerance : kWeightedTolerance;
         bool changed = true;
-        for (int round = 0; round < kMostRounds; ++round) {
+        int settling = 0, stalls = 0;
+        for (int round = 0; round < (careful ? kMostCarefulRounds : kMostRounds); ++round) {
             if (changed) system_->set_constraints(constraints_);
             iterations_ += system_->solve(z, right_side(), tolerance, [&](double share) {
                 const double rounds = exact ? 4 : 1;
@@ -346,15 +363,36 @@ private:
                     0.15 + 0.85 * std::min(0.99, (round + share) / std::max(rounds, round + 1.0)),
                     "smoothing");
             });
-            if (!exact) return;
+            if (!exact) return true;
+            if (careful && settling++ < kMostSettling && activate(z)) {
+                changed = true;
+                continue;
+            }
+            settling = 0;
             double missing = 0;
             std::tie(missing, changed) = update_multipliers(z);
-            if (missing <= kMet * range_ && !changed) return;
+            if (missing <= kMet * range_ && !changed) return true;
             // Points that contradict each other on this mesh are met as well as possible.
-            if (!changed && !bounded && round > 2 && missing > stalled * before) return;
+            if (!changed && !bounded && round > 2 && missing > stalled * before) return true;
+            stalls = missing > kStalledWithDips * before ? stalls + 1 : 0;
+            if (careful && stalls >= kMostStalled) return true;
             before = missing;
             tolerance = std::max(kLastTolerance, std::min(0.1 * tolerance, missing / range_));
         }
+        return !bounded;
+    }
+
+    /// The bounds that count with these heights and multipliers do from now on.
+    /// @return whether they are others than before
+    bool activate(const Vector& z) {
+        bool changed = false;
+        for (Constraint& c : constraints_) {
+            if (c.kind != Kind::kLeast && c.kind != Kind::kMost) continue;
+            const bool active = c.next_multiplier(z) != 0;
+            changed = changed || active != c.active;
+            c.active = active;
+        }
+        return changed;
     }
 
     Vector right_side() const {

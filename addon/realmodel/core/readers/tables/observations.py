@@ -191,6 +191,7 @@ KINDS = {
     "wrong_order": "observations have an older block above a younger one, or a block twice, and are not used",
     "contradiction": "observations contradict others, of which as few as possible are left out",
     "in_body": "observations contradict a body, and are not used",
+    "at_fault": "parts of intervals lie between a fault or a body and another block, and are not used",
     "no_surface": "observations are of blocks that cannot be there, and are not used",
     "not_adjacent": "contacts are between blocks that do not follow one another in a series, and say nothing",
 }

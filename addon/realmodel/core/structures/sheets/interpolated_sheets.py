@@ -33,7 +33,7 @@ from .families import Family, keys_of
 from .few_points import are_few, of_residuals
 from .lips import Lip, beyond_lips
 from .near_rows import near_rows
-from .points_at_faults import at_height, placed_warning, point_sides, sided_dips
+from .points_at_faults import are_contacts, at_height, placed_warning, point_sides, sided_dips
 from .throws import Sheets
 from .tied_sheets import data_of_sheets, sides_of_sheets, tied_sheets, weights_of_sheets
 from .tips import shared, trace_of, with_equal_ends
@@ -70,10 +70,11 @@ class InterpolatedSurface:
         self.most: tuple[int, Interpolation | None] = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
-        """Leaves out points that others at their place in plan contradict, with a warning."""
+        """Leaves out points that others at their place in plan contradict, with a warning. Of a hole that
+        passes a fault, contacts that follow from observations are on their sides."""
         faults = self.entry.divided().faults
         rows = np.where(faults.active(self.number), self.placed.sides, 0)
-        beyond = beyond_faults(self.points, rows)
+        beyond = beyond_faults(self.points, rows) & ~are_contacts(self.points, self.surface)
         wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
         left_out = beyond.copy()
         left_out[np.flatnonzero(~beyond)[wrong]] = True

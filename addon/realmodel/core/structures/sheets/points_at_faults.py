@@ -51,7 +51,8 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
     no fault, that let expect a height nearest to its own. Where only one side has such points, its position
     decides, unless some of the points near the fault agree with them and others do not: these are of the
-    other side.
+    other side. Contacts that follow from observations stay where they lie: so do the bounds that do, and what
+    meets at a fault is no contact.
     """
     structure = entry.divided()
     faults = structure.faults
@@ -61,6 +62,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
     reach, away[:, active] = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
+    near &= ~are_contacts(points, entry.rock.surfaces[number])[:, None]
     agreement = _Agreement(
         work=work,
         points=points,
@@ -74,6 +76,12 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
     return PointSides(placed, placed != sides, reach)
+
+
+def are_contacts(points: np.ndarray, surface: Surface) -> np.ndarray:
+    """(P,) bool: which of points (P, 3) of a surface follow from observations."""
+    contacts = set(map(tuple, surface.contact_array().tolist()))
+    return np.array([tuple(point) in contacts for point in points.tolist()], bool)
 
 
 class _Choice(NamedTuple):

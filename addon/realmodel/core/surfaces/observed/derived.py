@@ -17,11 +17,15 @@ from .succession import Succession
 
 @dataclass(frozen=True)
 class Situation:
-    """Where the places of observations (N) lie, as far as it is known. covered: (N, S) bool, over or under
-    which surfaces of the rock mass. sides: (N, F) int8, of the faults that act in it. inside: (N, B) bool, in
-    which bodies; after: of each body, the surface after which it came; bodies: their names; voids: which of
-    them are voids. parted: (N,) bool, where blocks meet that a fault or a body may divide. None and empty:
-    everywhere covered, without faults and bodies."""
+    """Where the places of observations (N) lie, as far as it is known.
+
+    covered: (N, S) bool, over or under which surfaces of the rock mass. sides: (N, F) int8, of the faults
+    that act in it; displaced: (S, F) bool, which surfaces each of these displaces. across: (N,) bool, places
+    on the other side of a fault beside the one before: for surfaces that it does not displace they are one.
+    inside: (N, B) bool, in which bodies; after: of each body, the surface after which it came; bodies: their
+    names; voids: which of them are voids. parted: (N,) bool, where blocks meet that a fault or a body may
+    divide, which says nothing; disputed: (N,) bool, the same, where parts of intervals are left out for that.
+    None and empty: everywhere covered, without faults and bodies."""
 
     covered: np.ndarray | None = None
     sides: np.ndarray | None = None
@@ -30,6 +34,9 @@ class Situation:
     bodies: Sequence[str] = ()
     voids: Sequence[bool] = ()
     parted: np.ndarray | None = None
+    disputed: np.ndarray | None = None
+    across: np.ndarray | None = None
+    displaced: np.ndarray | None = None
 
 
 @dataclass
@@ -78,10 +85,14 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
         "no_surface",
         "no block, surface or body of the rock mass has this name",
     )
-    blocks = np.where(observations.in_use, blocks, -1)
-    used = blocks >= 0
+    used = observations.in_use & (blocks >= 0)
+    if situation.disputed is not None:
+        text = "the block ends beside a fault or a body, which may divide it from the next one"
+        left_out.add(used & situation.disputed, "at_fault", text)
+        used &= ~situation.disputed
     if situation.parted is not None:
         used &= ~situation.parted
+    blocks = np.where(used, blocks, -1)
     used &= ~_without_surface(rock, situation, blocks, left_out)
     used &= ~_against_bodies(rock, situation, blocks, left_out)
     rows = np.flatnonzero(used)
@@ -248,7 +259,23 @@ def _statements(
             if situation.voids[body]:  # what fills a void lies below surfaces that it was dug through
                 fills = situation.inside[used, body] & (blocks[used] > dug) & (blocks[used] < count)
                 below[fills, : dug + 1] = False
+    if situation.across is not None:
+        twice = _said_before(situation, used)
+        above &= ~twice
+        below &= ~twice
     return above, below
+
+
+def _said_before(situation: Situation, used: np.ndarray) -> np.ndarray:
+    """(U, S) bool: of places that are used, the surfaces for which each is the one before, as no fault that
+    lies between the two displaces them."""
+    assert situation.across is not None and situation.sides is not None and situation.displaced is not None
+    found = np.zeros((len(used), len(situation.displaced)), bool)
+    second = np.flatnonzero(situation.across[used])
+    second = second[(second > 0) & (used[second - 1] == used[second] - 1)]
+    passed = situation.sides[used[second]] != situation.sides[used[second] - 1]
+    found[second] = ~(passed[:, None] & situation.displaced).any(axis=2)
+    return found
 
 
 def _crossed(

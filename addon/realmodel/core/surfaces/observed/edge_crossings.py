@@ -21,7 +21,14 @@ _AT_END, _INSIDE = 1e-9, 2.5e-10
 def with_crossings(observations: Observations, mesh: Sheet) -> tuple[Observations, np.ndarray]:
     """Observations with a place more wherever the way from one to the next of an interval that is used
     crosses an edge of a planar mesh in plan; and (N,) bool, those that are given, in their order."""
-    end, share = _crossings(observations, mesh)
+    return with_places(observations, *_crossings(observations, mesh))
+
+
+def with_places(
+    observations: Observations, end: np.ndarray, share: np.ndarray
+) -> tuple[Observations, np.ndarray]:
+    """As with_crossings, with K places more of intervals: the row (K,) at the end of the way that each is on,
+    and its share of that way, ascending along each."""
     count = len(observations)
     if not len(end):
         return observations, np.ones(count, bool)
