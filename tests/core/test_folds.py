@@ -228,6 +228,19 @@ def test_a_model_without_a_field_says_so(tmp_path):
         write_fields([entry.fields for entry in model.rock_inputs], file)
 
 
+def test_data_far_from_the_region_are_told(monkeypatch):
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    project = folded_project()
+    told = [each.text for each in build(project, cells="blocks").warnings]
+    assert not any("beyond the region" in text for text in told)
+    surface = project.rocks[0].surfaces[0]
+    surface.points = np.vstack([surface.points, [5.0, 70.0, 3.0]])
+    told = [each.text for each in build(project, cells="blocks").warnings]
+    assert any(
+        "series 'folded': data lie up to 60 beyond the region, as at (5, 70, 3)" in text for text in told
+    )
+
+
 def test_what_cannot_be_made_of_fields_is_refused(monkeypatch):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     project = folded_project()

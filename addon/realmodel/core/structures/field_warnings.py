@@ -13,6 +13,7 @@ from ..fields import ScalarField, SolvedField, are_on
 from ..fields.series_field import SeriesField
 from ..project.series import Series
 from ..readers.tables.observations import KINDS, LeftOut
+from ..surfaces.distant_points import farthest
 from ..surfaces.rock_input import RockInput
 from ..surfaces.wrong_sides import heights_at
 from .series_data import SeriesData
@@ -41,6 +42,19 @@ def warn_of_direction(entry: RockInput, series: Series, compartments: list[str])
         "in which direction the rock gets younger there; give one"
     )
     entry.warnings.append(BuildWarning(text, "dips", entry.rock.name))
+
+
+def warn_of_distance(entry: RockInput, series: Series, places: np.ndarray) -> None:
+    """Adds the warning that some of the data of a series, at places (N, 3), lie far from the region."""
+    found = farthest(entry.planar_mesh().vertices[:, :2], places)
+    if found is None:
+        return
+    text = (
+        f"{series.item}: data lie up to {found[1]:.3g} beyond the region, as at "
+        f"{place_text(places[found[0]])}: the lattice of the field reaches there, and an automatic "
+        "resolution is coarser for it; check their coordinates"
+    )
+    entry.warnings.append(BuildWarning(text, "contacts", entry.rock.name))
 
 
 def leave_out(entry: RockInput, series: Series, data: SeriesData, field: SolvedField) -> None:

@@ -32,6 +32,7 @@ from .field_warnings import (
     warn_of_contacts,
     warn_of_critical_points,
     warn_of_direction,
+    warn_of_distance,
     warn_of_field,
     warn_of_lacks,
     within_rock,
@@ -124,6 +125,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     numbers = entry.rock.members(series)
     lattice = _lattice(entry, series, SeriesData.of(entry, series, numbers).positions(), top)
     data = SeriesData.of(entry, series, numbers, _PLACES * lattice.spacing[0])
+    warn_of_distance(entry, series, data.positions())
     structure = entry.divided()
     sides = sides_of(work, data.positions(), structure.faults)
     fields: dict[int, ScalarField] = {}

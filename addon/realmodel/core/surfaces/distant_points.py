@@ -39,5 +39,15 @@ def require_points_near(rock: Rock, unit: str) -> None:
             )
 
 
+def farthest(region: np.ndarray, places: np.ndarray) -> tuple[int, float] | None:
+    """The place of some (P, 2 or 3) that lies farthest from the bounding box of a region (N, 2) in plan, and
+    how far, if that is more than three times the diagonal of the box."""
+    low, high = _box(region)
+    beyond = np.maximum(np.maximum(low - places[:, :2], places[:, :2] - high), 0.0)
+    away = np.hypot(*beyond.T)
+    worst = int(away.argmax()) if len(away) else 0
+    return (worst, float(away[worst])) if (away > _FARTHEST * np.hypot(*(high - low))).any() else None
+
+
 def _box(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plan.min(axis=0), plan.max(axis=0)
