@@ -191,9 +191,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def check(self, _context):
         if self._preview is not None:
-            if (
-                self.preset != self._preset
-            ):  # Blender calls its update, which sets the others, only after this
+            if self.preset != self._preset:  # its update, which sets the others, comes only after this
                 self._preset = self.preset
                 _set_preset(self, _context)
             self._show()
