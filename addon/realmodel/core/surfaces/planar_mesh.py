@@ -194,10 +194,22 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
     """(K, 2) places that should become vertices of a planar mesh beside known ones (N, 2): of contacts that
     it cannot honor beside others of their surface, but with large corrections, and of bounds. Those nearest
     to other data of their surface come first; of several surfaces' places close together only one is taken,
-    for the others may get by with its vertex."""
-    nearest = native_module().nearest_points
+    for the others may get by with its vertex, or with a known one. Where none is left, those that hardly can
+    be met although a known vertex is close."""
     least = _CROWDED_AT_FAULTS if entry.has_faults else _CROWDED
-    places, rooms = [known], [np.zeros(len(known))]
+    places, room = _crowded(work, entry, mesh, least)
+    if not len(places):
+        return places
+    same = _SAME * float(np.ptp(mesh.vertices, axis=0).max())
+    found = _apart(places, room, known, same, _BESIDE)
+    if not len(found):
+        found = _apart(*_crowded(work, entry, mesh, _CROWDED_AT_FAULTS), known, same, 0.0)
+    return found
+
+
+def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[np.ndarray, np.ndarray]:
+    """(K, 2) the places of crowded data, and (K,) how far from each the next datum of its sheet is."""
+    places, rooms = [np.empty((0, 2))], [np.empty(0)]
     for number, surface in enumerate(entry.rock.surfaces):
         if not surface.ties:
             continue
@@ -207,17 +219,23 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
             numbers, away = native_module().crowded_data(*mesh.arrays, asked, least)
             places.append(data.places[numbers])
             rooms.append(away)
-    every, room = np.concatenate(places), np.concatenate(rooms)
-    if len(every) == len(known):
-        return np.empty((0, 2))
-    same = _SAME * float(np.ptp(mesh.vertices, axis=0).max())
-    beside, away = nearest(every, every, _LOOKED_AT)
-    is_near = away <= np.maximum(same, _BESIDE * room)[:, None]
+    return np.concatenate(places), np.concatenate(rooms)
+
+
+def _apart(
+    places: np.ndarray, room: np.ndarray, known: np.ndarray, same: float, beside_known: float
+) -> np.ndarray:
+    """(K, 2) those of places (N, 2) that are neither beside a known one nor beside one that is taken before,
+    which those with the least room are. beside_known: in shares of their room."""
+    every = np.concatenate([known, places])
+    own = np.concatenate([np.zeros(len(known)), room])[:, None]
+    near, away = native_module().nearest_points(every, every, _LOOKED_AT)
+    share = np.where(near < len(known), beside_known, _BESIDE)
+    is_near = (near >= 0) & (away <= np.maximum(same, share * own))
     taken = np.arange(len(every)) < len(known)
-    for number in np.argsort(room[len(known) :], kind="stable") + len(known):
-        others = beside[number][is_near[number]]
-        taken[number] = not taken[others[others >= 0]].any()
-    return every[len(known) :][taken[len(known) :]]
+    for number in np.argsort(room, kind="stable") + len(known):
+        taken[number] = not taken[near[number][is_near[number]]].any()
+    return places[taken[len(known) :]]
 
 
 def _data_of_sheets(work: Work, entry: RockInput, number: int) -> Iterator[TieData]:
