@@ -23,10 +23,10 @@ constexpr double kAzimuthStep = 15;
 constexpr double kMostAnisotropic = 20;
 constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};                      // of the sill
 constexpr double kThicknesses[] = {1e-5, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};  // of the sill
-constexpr double kOfAnisotropy = 2, kOfNugget = 2;  // gains of the logarithm, at least
-constexpr std::size_t kFewestFree = 8;              // data that show an anisotropy or a nugget
-constexpr std::size_t kFewestOfWave = 24;           // data that show a wave
-constexpr double kOfWave = 10;                      // as above: many waves are tried
+constexpr double kOfNugget = 2;            // a gain of the logarithm, at least
+constexpr std::size_t kFewestFree = 8;     // data that show an anisotropy or a nugget
+constexpr std::size_t kFewestOfWave = 24;  // data that show a wave
+constexpr double kOfWave = 10;             // as above: many waves are tried
 constexpr double kShortestWave = 0.15, kLongestWave = 1;  // of the extent of the data
 constexpr int kWaves = 11;
 constexpr double kWaveRange = 2;  // to begin with, of the extent
@@ -39,6 +39,17 @@ constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
 std::span<const VariogramModel> models_for(bool has_dips) {
     if (has_dips) return kSmooth;
     return kRisingModels;
+}
+
+/// By how much the logarithm has to be larger with `more` parameters than with `few` of them, as so
+/// many data show: few data may look like anything by chance (the criterion of Akaike, corrected
+/// for few data: C. M. Hurvich and C.-L. Tsai 1989, "Regression and time series model selection in
+/// small samples").
+double needed_gain(double few, double more, std::size_t data) {
+    const auto penalty = [count = static_cast<double>(data)](double parameters) {
+        return parameters + parameters * (parameters + 1) / (count - parameters - 1);
+    };
+    return penalty(more) - penalty(few);
 }
 
 /// Multiplies all that is in units of height squared.
@@ -105,7 +116,8 @@ public:
         if (!with.best_) return;
         with.ranges_of(models, with.shape_.variogram.anisotropy);
         with.refine(true);
-        if (with.best_->logarithm() > best_->logarithm() + kOfAnisotropy) *this = with;
+        const double gain = needed_gain(2, 4, free_);  // sill and range; ratio and azimuth, too
+        if (with.best_->logarithm() > best_->logarithm() + gain) *this = with;
     }
 
     void nuggets() {

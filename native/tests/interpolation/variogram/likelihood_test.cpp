@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "../dense_kriging.hpp"
 #include "realmodel/interpolation/nearest_distance.hpp"
@@ -108,6 +109,33 @@ TEST(Likelihood, OneDomeIsNoWave) {
     const auto found = likeliest_variogram(points, {}, options, nullptr);
     ASSERT_TRUE(found);
     EXPECT_TRUE(found->further.empty());
+}
+
+/// Waves in all directions.
+double choppy(double x, double y, unsigned seed) {
+    std::mt19937 random(seed);
+    double sum = 0;
+    for (int wave = 0; wave < 100; ++wave) {
+        const double azimuth = static_cast<double>(random()), phase = static_cast<double>(random());
+        const double number = 0.0075 * static_cast<double>(random()) / 4294967296.0;
+        sum += std::cos((x * std::cos(azimuth) + y * std::sin(azimuth)) * number + phase);
+    }
+    return sum;
+}
+
+TEST(Likelihood, AFewContactsShowNoAnisotropyByChance) {
+    FitOptions options;
+    options.finds_anisotropy = true;
+    int anisotropic = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        Points points = hills(9, 1000, {0, 0}, seed);
+        for (auto& [x, y, z] : points)
+            z = choppy(x, y, 100 + seed);
+        const auto found = likeliest_variogram(points, {}, options, nullptr);
+        ASSERT_TRUE(found);
+        anisotropic += found->anisotropy.ratio > 1 ? 1 : 0;
+    }
+    EXPECT_LE(anisotropic, 1);
 }
 
 TEST(Likelihood, AGivenAnisotropyStays) {
