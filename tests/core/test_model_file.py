@@ -246,9 +246,9 @@ def old_project():
 def test_a_file_without_a_project_is_read_as_far_as_it_goes(tmp_path):
     old = Model.load(OLD)
     new = build(old_project())
-    assert [(b.name, b.property, b.volume) for b in old.blocks] == [
-        (b.name, b.property, b.volume) for b in new.blocks
-    ]
+    assert [(b.name, b.property) for b in old.blocks] == [(b.name, b.property) for b in new.blocks]
+    volumes = [[block.volume for block in model.blocks] for model in (old, new)]
+    np.testing.assert_allclose(*volumes, rtol=1e-15)  # added up in another order since
     assert old.surface_names == new.surface_names
     assert [rock.name for rock in old.project.rocks] == [rock.name for rock in new.project.rocks]
     assert [s.block for s in old.project.rocks[0].surfaces] == [b.name for b in new.blocks[:4]]
