@@ -15,7 +15,7 @@ namespace {
 
 /// Of the share of a contact in its tetrahedron: where contacts share corners, none moves far.
 constexpr double kLoose = 1e-2;
-constexpr int kSteps = 200;     ///< of each solution
+constexpr int kSteps = 200;         ///< of each solution
 constexpr double kReached = 1e-12;  ///< of what contacts miss their levels by at first: nothing
 
 double sum_of_squares(std::span<const double> values) {
