@@ -462,18 +462,19 @@ def test_a_sheet_without_points_keeps_the_bounds_of_its_compartment():
     assert not found.violated
 
 
+def hole_b6(ends):
+    """The intervals (top, bottom, block) of a vertical hole at (5.5, 5), from z = 9 down."""
+    rows = [(z, block) for top, bottom, block in ends for z in (top, bottom)]
+    places = [[5.5, 5.0, z] for z, _ in rows]
+    return Observations(places, [block for _, block in rows], ["B6"] * len(rows), [9 - z for z, _ in rows])
+
+
 def test_where_a_hole_passes_a_fault_no_surface_is_known_to_be():
     """Hole B6 passes an inclined normal fault at z = 5, and the younger block again below it."""
     places = [(1, 1), (1, 9), (2, 5), (8, 5), (9, 1), (9, 9)]
     seen = level_logs(places, [0, 0, 0, 2, 2, 2])
     ends = [(9, 6, "S2"), (6, 5, "S1"), (5, 4, "S2"), (4, 2, "S1"), (2, 0, "S0")]
-    rows = [(z, block) for top, bottom, block in ends for z in (top, bottom)]
-    hole = Observations(
-        [[5.5, 5.0, z] for z, _ in rows],
-        [block for _, block in rows],
-        ["B6"] * 10,
-        [9 - z for z, _ in rows],
-    )
+    hole = hole_b6(ends)
     fault = Fault("F", *plane_fault(lean=-0.1), youngest="S1")
     model = faulted(Observations.joined([seen, hole]), fault)
     surfaces = model.project.rocks[0].surfaces
@@ -493,13 +494,7 @@ def test_what_lies_between_a_fault_and_the_end_of_an_interval_is_listed():
     places = [(1, 1), (1, 9), (2, 5), (8, 5), (9, 1), (9, 9)]
     seen = level_logs(places, [0, 0, 0, 2, 2, 2])
     ends = [(9, 5.1, "S2"), (5.1, 2, "S1"), (2, 0, "S0")]
-    rows = [(z, block) for top, bottom, block in ends for z in (top, bottom)]
-    hole = Observations(
-        [[5.5, 5.0, z] for z, _ in rows],
-        [block for _, block in rows],
-        ["B6"] * 6,
-        [9 - z for z, _ in rows],
-    )
+    hole = hole_b6(ends)
     fault = Fault("F", *plane_fault(lean=-0.1), youngest="S1")
     model = faulted(Observations.joined([seen, hole]), fault)
     found = model.observed()

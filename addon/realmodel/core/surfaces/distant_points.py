@@ -45,8 +45,10 @@ def farthest(region: np.ndarray, places: np.ndarray) -> tuple[int, float] | None
     low, high = _box(region)
     beyond = np.maximum(np.maximum(low - places[:, :2], places[:, :2] - high), 0.0)
     away = np.hypot(*beyond.T)
-    worst = int(away.argmax()) if len(away) else 0
-    return (worst, float(away[worst])) if (away > _FARTHEST * np.hypot(*(high - low))).any() else None
+    if not (away > _FARTHEST * np.hypot(*(high - low))).any():
+        return None
+    worst = int(away.argmax())
+    return worst, float(away[worst])
 
 
 def _box(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

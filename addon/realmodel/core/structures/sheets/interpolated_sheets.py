@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...base.algebra import are_among
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.sheet import Sheet
@@ -33,7 +34,7 @@ from .families import Family, keys_of
 from .few_points import are_few, of_residuals
 from .lips import Lip, beyond_lips
 from .near_rows import near_rows
-from .points_at_faults import are_contacts, at_height, placed_warning, point_sides, sided_dips
+from .points_at_faults import at_height, placed_warning, point_sides, sided_dips
 from .throws import Sheets
 from .tied_sheets import data_of_sheets, sides_of_sheets, tied_sheets, weights_of_sheets
 from .tips import shared, trace_of, with_equal_ends
@@ -74,7 +75,7 @@ class InterpolatedSurface:
         passes a fault, contacts that follow from observations are on their sides."""
         faults = self.entry.divided().faults
         rows = np.where(faults.active(self.number), self.placed.sides, 0)
-        beyond = beyond_faults(self.points, rows) & ~are_contacts(self.points, self.surface)
+        beyond = beyond_faults(self.points, rows) & ~are_among(self.points, self.surface.contact_array())
         wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
         left_out = beyond.copy()
         left_out[np.flatnonzero(~beyond)[wrong]] = True

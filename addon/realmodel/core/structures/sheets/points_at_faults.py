@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.algebra import are_among
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.work import Work, native_module, on_threads
@@ -62,7 +63,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
     reach, away[:, active] = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
-    near &= ~are_contacts(points, entry.rock.surfaces[number])[:, None]
+    near &= ~are_among(points, entry.rock.surfaces[number].contact_array())[:, None]
     agreement = _Agreement(
         work=work,
         points=points,
@@ -76,12 +77,6 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
     return PointSides(placed, placed != sides, reach)
-
-
-def are_contacts(points: np.ndarray, surface: Surface) -> np.ndarray:
-    """(P,) bool: which of points (P, 3) of a surface follow from observations."""
-    contacts = set(map(tuple, surface.contact_array().tolist()))
-    return np.array([tuple(point) in contacts for point in points.tolist()], bool)
 
 
 class _Choice(NamedTuple):
