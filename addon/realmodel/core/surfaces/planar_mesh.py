@@ -26,7 +26,7 @@ _LOOKED_AT = 8  # places around one
 # less the corrections of nodes are much larger than those of data. Beside a fault the points on its two sides
 # are close together in plan and ask for nothing of one another: there only data that hardly can be met are
 # crowded
-_CROWDED, _CROWDED_AT_FAULTS = 0.25, 0.05
+_CROWDED, _HARDLY_MET = 0.25, 0.05
 _BESIDE = 0.25  # of the distance to another datum of the same surface: the vertex of another one serves, too
 
 
@@ -196,15 +196,17 @@ def crowded_places(work: Work, entry: RockInput, mesh: Sheet, known: np.ndarray)
     to other data of their surface come first; of several surfaces' places close together only one is taken,
     for the others may get by with its vertex, or with a known one. Where none is left, those that hardly can
     be met although a known vertex is close."""
-    least = _CROWDED_AT_FAULTS if entry.has_faults else _CROWDED
+    least = _HARDLY_MET if entry.has_faults else _CROWDED
     places, room = _crowded(work, entry, mesh, least)
     if not len(places):
         return places
     same = _SAME * float(np.ptp(mesh.vertices, axis=0).max())
     found = _apart(places, room, known, same, _BESIDE)
-    if not len(found):
-        found = _apart(*_crowded(work, entry, mesh, _CROWDED_AT_FAULTS), known, same, 0.0)
-    return found
+    if len(found):
+        return found
+    if least != _HARDLY_MET:
+        places, room = _crowded(work, entry, mesh, _HARDLY_MET)
+    return _apart(places, room, known, same, 0.0)
 
 
 def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[np.ndarray, np.ndarray]:
