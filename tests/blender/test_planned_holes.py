@@ -27,6 +27,7 @@ class PlannedHoles(PanelCase):
         self.assertEqual([(each.begin, each.end) for each in hole.intervals], [(0, 15), (15, 35)])
         self.assertEqual((row.east, row.north, row.height), ("50.000", "50.000", "35.000"))
         (item,) = self.tubes()
+        self.assertTrue(item.show_in_front, "within the blocks nobody would see it")
         found = coordinates(item.data)
         self.assertAlmostEqual(found[:, 2].max(), 35, places=4)
         self.assertAlmostEqual(found[:, 2].min(), 35 - 1.1 * 35, places=4)

@@ -39,6 +39,7 @@ def put(scene, found, samples, blocks, seed):
     shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
     item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
     item[BLOCKS] = stored_arrays.pack(blocks=blocks[:, kept])
+    item.show_in_front = True  # it runs through the blocks
     sections.stand(scene, item, samples.section.plane)
     group = scene.realmodel.ensemble
     group.object = item
