@@ -51,7 +51,7 @@ class PlannedHoles(PanelCase):
         ops.planned_hole_collar()
         self.assertEqual((row.east, row.north, row.height), ("20.000", "30.000", "35.000"))
         row.height, row.dip = "80", 90.0
-        planned_holes.begin_on_ground(self.scene, row)
+        planned_holes.begin_on_ground(row)
         self.assertEqual(row.height, "35.000")
         ops.planned_hole_remove()
         self.assertEqual(self.tubes(), [])

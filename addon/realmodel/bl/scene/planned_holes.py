@@ -55,7 +55,7 @@ def update_all(scene):
     show(scene)
 
 
-def begin_on_ground(scene, row):
+def begin_on_ground(row):
     """Moves the collar of a hole straight down to where it enters the rock."""
     hole = kept(row)
     if hole is not None and hole.intervals:
