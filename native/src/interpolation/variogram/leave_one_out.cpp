@@ -17,16 +17,20 @@ constexpr std::size_t kChunk = 64;
 static_assert(kChunk % kLanes == 0);
 constexpr std::size_t kMostNeighbors = 64;
 static_assert(kMostNeighbors <= LaneKriging::kMostNeighbors);
+constexpr std::size_t kAskedBeyond = 8;  // times as many are looked through for those beyond
 
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most,
-                         const Execution& execution)
+                         double buffer, const Execution& execution)
     : neighbors_(std::min({neighbors, points.size() - 1, kMostNeighbors})),
       execution_(execution),
       left_out_(even_part(points.size(), most)) {
-    const std::vector<spatial::Neighbor> near =
-        points.nearest(IsotropicSpace({}), left_out_, neighbors_ + 1, execution);
+    const std::size_t wanted = buffer > 0 ? kAskedBeyond * neighbors_ : neighbors_;
+    const std::size_t asked = std::min(wanted, points.size() - 1) + 1;
+    std::vector<spatial::Neighbor> near =
+        points.nearest(IsotropicSpace({}), left_out_, asked, execution);
+    near = beyond(near, asked, buffer);
     const std::vector<std::int32_t> kept = points.kept(near);
     data_ = points.some(kept);
     others_.reserve(left_out_.size() * neighbors_);
@@ -36,6 +40,23 @@ LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::s
     }
     for (std::int32_t& point : left_out_)
         point = index_among(kept, points.size(), point);
+}
+
+/// Of each point left out, and of the `asked` nearest to it: itself, and its nearest others beyond a
+/// distance, or the farthest where there are too few beyond.
+std::vector<spatial::Neighbor> LeaveOneOut::beyond(std::span<const spatial::Neighbor> near,
+                                                   std::size_t asked, double buffer) const {
+    std::vector<spatial::Neighbor> out;
+    out.reserve(left_out_.size() * (neighbors_ + 1));
+    for (std::size_t k = 0; k < left_out_.size(); ++k) {
+        const auto own = near.subspan(k * asked, asked);
+        std::size_t first = 1;
+        while (first + neighbors_ < asked && own[first].squared_distance < buffer * buffer)
+            ++first;
+        out.push_back(own[0]);
+        out.insert(out.end(), own.begin() + first, own.begin() + first + neighbors_);
+    }
+    return out;
 }
 
 namespace {

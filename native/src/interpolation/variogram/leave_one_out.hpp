@@ -21,8 +21,9 @@ struct PredictionErrors {
 class LeaveOneOut {
 public:
     /// @param neighbors  1 .. 64; fewer where there are not so many others
-    /// @param most        points that are left out, where there are so many
-    LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most,
+    /// @param most       points that are left out, where there are so many
+    /// @param buffer     others nearer than this are left out with each of them; 0: none
+    LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most, double buffer,
                 const Execution& execution);
 
     std::size_t size() const { return left_out_.size(); }
@@ -34,6 +35,8 @@ public:
     PredictionErrors errors(const Covariance& covariance, Drift drift = Drift::kConstant) const;
 
 private:
+    std::vector<spatial::Neighbor> beyond(std::span<const spatial::Neighbor> near,
+                                          std::size_t asked, double buffer) const;
     void predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const;
 
     DataPoints data_;  // those left out, and their others

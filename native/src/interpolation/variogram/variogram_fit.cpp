@@ -10,6 +10,7 @@
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/variogram/anisotropy_search.hpp"
 #include "interpolation/variogram/capped_square.hpp"
+#include "interpolation/variogram/clustering.hpp"
 #include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
 #include "interpolation/variogram/likelihood.hpp"
@@ -43,9 +44,11 @@ public:
         : all_(all),
           options_(options),
           execution_(execution),
-          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut, execution),
+          buffer_(buffer_of_clusters(all, execution)),
+          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut, buffer_,
+                  execution),
           few_(all, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
-               kPointsSearched, execution) {}
+               kPointsSearched, buffer_, execution) {}
 
     /// Leaves `out` as it is where no model fits at all. Its experimental values and its
     /// variogram's anisotropy are given; they change where an anisotropy is found.
@@ -137,7 +140,7 @@ private:
         const bool drifts = options_.drift != Drift::kConstant;
         std::optional<LeaveOneOut> fewer;
         if (drifts) {
-            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift, execution_);
+            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift, buffer_, execution_);
         }
         const LeaveOneOut& points = drifts ? *fewer : points_;
         const auto errors_with = [&](const Variogram& v) {
@@ -215,6 +218,7 @@ private:
     const ManyPoints& all_;
     const FitOptions& options_;
     Execution execution_;
+    double buffer_;
     LeaveOneOut points_, few_;  // all that are left out, and those that search
     std::optional<CappedSquare> square_of_;
 };
