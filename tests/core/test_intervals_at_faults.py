@@ -58,6 +58,17 @@ def test_a_sheet_without_points_keeps_the_bounds_of_its_compartment():
     assert not found.violated
 
 
+def test_a_bound_beside_a_fault_is_looked_at_on_its_side():
+    """One west of it is as high as those east of it."""
+    x, y = (each.ravel() for each in np.meshgrid([0.5, 2, 3.5, 6.5, 8, 9.5], np.linspace(0, 10, 6)))
+    points = np.column_stack([x, y, np.where(x < 5, 0.0, 5.0)])
+    seen = Observations(np.vstack([points, [4.99, 5, 4.8]]) + np.array([0, 0, 0.1]), ["S1"] * 37)
+    surfaces = [Surface("S0", points=points, method="tin"), Surface("S1", points=points + 9.0, method="tin")]
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-9.0, observations=seen)
+    found = build(Project("p", [rock], faults=[Fault("F", *plane_fault())])).observed()
+    assert found.share == 1.0 and not found.violated
+
+
 def hole_b6(ends):
     """The intervals (top, bottom, block) of a vertical hole at (5.5, 5), from z = 9 down."""
     rows = [(z, block) for top, bottom, block in ends for z in (top, bottom)]
