@@ -184,6 +184,8 @@ test_native() { # PRESET: it is configured
 
 test_sanitized() { cmake --preset "$1" --log-level=WARNING && test_native "$1"; }
 
+test_asan() { test_sanitized asan; }
+
 check_tidy() {
     cmake --preset dev --log-level=WARNING &&
         git ls-files -z 'native/src/*.cpp' | xargs -0 -n 1 -P 2 clang-tidy --quiet -p build/dev --warnings-as-errors='*'
@@ -240,8 +242,8 @@ wants site && alone+=(site check_site)
 wants ruff && alone+=(ruff check_ruff)
 wants format && alone+=(format check_format)
 wants shellcheck && alone+=(shellcheck check_shell)
+wants asan && alone+=(asan test_asan) # uses all processors; begins when the first one has nothing else to do
 beside "${alone[@]}"
-wants asan && step asan test_sanitized asan
 if wants builds; then
     if command -v clang++ >/dev/null; then
         # the sanitizer build is clang++'s already

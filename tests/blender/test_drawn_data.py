@@ -130,6 +130,7 @@ class DrawnData(PanelCase):
             self.curve([(40, y, 30), (50, y, -10)])
             ops.draw_stick(use_object=True)
         self.assertEqual((row.source, row.object.name), ("STICKS_OBJECT", "fault sticks"))
+        self.assertTrue(row.object.show_in_front, "within the blocks nobody would see it")
         self.assertEqual(len(row.object.data.edges), 3)
         ops.build()
         self.assertEqual(len(self.model.results), 1)
@@ -192,6 +193,7 @@ class DrawnData(PanelCase):
         item = bpy.context.active_object
         self.assertTrue(np.allclose(self.corners(item), [[10, 20, -5], [90, 80, 45]], atol=1e-4))
         self.assertIsNotNone(item.data.packed_file)
+        self.assertEqual(item.empty_image_depth, "FRONT", "within the blocks nobody would see it")
         _, normal = drawn_data.plane(bpy.context)
         self.assertTrue(np.allclose(np.cross(normal, [0.6, -0.8, 0]), 0, atol=1e-6), normal)
         self.model.view.exaggeration = 3.0

@@ -50,7 +50,9 @@ class EnsembleInTheScene(PanelCase):
             drawn = [each.blocks[number].volume for each in models]
             np.testing.assert_allclose(row["percentiles"], np.percentile(drawn, [10, 50, 90]))
             self.assertAlmostEqual(row["mean"], np.mean(drawn), places=5)
-        mesh = ensembles.item_of(self.scene).data
+        item = ensembles.item_of(self.scene)
+        self.assertTrue(item.show_in_front, "within the blocks nobody would see it")
+        mesh = item.data
         origin = np.array(self.scene.get("realmodel_origin", (0, 0, 0)))
         centers = np.array([face.center for face in mesh.polygons]) + origin
         blocks = self.blocks()

@@ -27,6 +27,7 @@ class PlannedHoles(PanelCase):
         self.assertEqual([(each.begin, each.end) for each in hole.intervals], [(0, 15), (15, 35)])
         self.assertEqual((row.east, row.north, row.height), ("50.000", "50.000", "35.000"))
         (item,) = self.tubes()
+        self.assertTrue(item.show_in_front, "within the blocks nobody would see it")
         found = coordinates(item.data)
         self.assertAlmostEqual(found[:, 2].max(), 35, places=4)
         self.assertAlmostEqual(found[:, 2].min(), 35 - 1.1 * 35, places=4)
@@ -50,7 +51,7 @@ class PlannedHoles(PanelCase):
         ops.planned_hole_collar()
         self.assertEqual((row.east, row.north, row.height), ("20.000", "30.000", "35.000"))
         row.height, row.dip = "80", 90.0
-        planned_holes.begin_on_ground(self.scene, row)
+        planned_holes.begin_on_ground(row)
         self.assertEqual(row.height, "35.000")
         ops.planned_hole_remove()
         self.assertEqual(self.tubes(), [])

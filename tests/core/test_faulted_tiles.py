@@ -298,7 +298,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
 
 @pytest.mark.parametrize(("cells", "dies_out"), [("columns", True), ("blocks", False)])
 def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):
-    project = faulted(48, dies_out)
+    project = faulted(36, dies_out)
     whole, seen = build(project, cells=cells), []
     real = faulted_folder._write_window
 
@@ -337,7 +337,7 @@ def test_rounding_is_judged_alike_in_all_tiles(tmp_path):
 
 
 def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
-    project = faulted()
+    project = faulted(12)
     whole, asked = build(project), []
     real, around = Windows.window, Windows._around
 
@@ -389,7 +389,7 @@ def test_random_models(seed, tmp_path):
 
 
 def test_a_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    project, built = faulted(), []
+    project, built = faulted(12), []
     real = faulted_folder._build
 
     def stops(shared, name):

@@ -11,7 +11,7 @@ from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers.maps.unit_polygons import UnitPolygon
 from realmodel.core.surfaces.field_data import read_field_data
 from realmodel.core.surfaces.observed.polygon_borders import border_lines
-from structure_cases import plane_fault
+from structure_cases import heights_at, plane_fault
 from test_map_points import needs_pyshp, shapefile
 
 PROJECT = """format = 1
@@ -287,6 +287,29 @@ def test_the_ground_is_a_surface_or_is_made_from_its_file(project_of, tmp_path):
     own.surfaces = [rock.surfaces[0], Surface("ground", block="sand", method="natural_neighbour")]
     with pytest.raises(InputRefused, match=r"ground of the map is not known.*ground = "):
         contacts_of(Project("p", [own]))
+
+
+@pytest.mark.parametrize("method", ["natural_neighbour", "kriging"])
+def test_the_ground_passes_through_the_places_of_its_map_between_cells(project_of, tmp_path, method):
+    """Its cells, 5 apart, are vertices; bilinear heights between them are on no triangle of these."""
+    write_ground(tmp_path, lambda x, y: ground(x, y) + 3 * np.sin(x / 9) * np.cos(y / 11))
+    project = project_of(("clay", WEST), ("Yng", EAST))
+    project.rocks[0].surfaces[1].method = method
+    model = build(project)
+    assert not model.observed().violated
+    places = model.project.rocks[0].observed.places
+    assert len(places) > 240
+    z = heights_at(places[:, :2], *model.surface(1))
+    assert np.abs(z - places[:, 2]).max() < 1e-9 * np.ptp(places[:, 2])
+
+
+def test_a_small_polygon_that_reaches_beyond_the_region_has_a_place(project_of):
+    strip = [[90, 20.2], [300, 20.2], [300, 20.4], [90, 20.4]]
+    observed = field_of(project_of(("clay", WEST), ("Yng", EAST, strip), ("clay", strip))).rock.observations
+    _, first, times = np.unique(observed.places, axis=0, return_index=True, return_counts=True)
+    within = first[times == 1]
+    (place,) = observed.places[within][observed.blocks[within] == "top of clay"][-1:]
+    assert np.allclose(place[:2], [95, 20.3])
 
 
 def test_places_without_ground_are_listed(project_of, tmp_path):

@@ -147,3 +147,9 @@ def test_equal_arrays_are_stored_once_and_known_ones_only_named():
     assert first.vertices is known["elsewhere"] and first.triangles is second.triangles
     again = NamedArrays(known, "a_")
     assert SURFACE.write([first, second, np.empty((0, 2))], again) == text
+
+
+def test_arrays_that_begin_alike_are_told_apart():
+    arrays = NamedArrays({})
+    rows = [np.append(np.zeros(20), last) for last in (1.0, 2.0, 1.0)]
+    assert [arrays.name_of(row) for row in rows] == ["0", "1", "0"]

@@ -51,7 +51,7 @@ class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
             settings.set_number(row, "length", float(_LONGER * (high[2] - low[2])))
             scene.realmodel.active_planned_hole = len(rows) - 1
         planned_holes.update(scene, row)
-        planned_holes.begin_on_ground(scene, row)
+        planned_holes.begin_on_ground(row)
 
 
 def _cursor(scene):

@@ -48,7 +48,7 @@ class REALMODEL_PT_quality(FoldedPanel, bpy.types.Panel):
             for part in wrapped(line):
                 column.label(text=part)
         if chart == "CROSS_VALIDATION" and found.cross_validation is not None:
-            _draw_worst(layout, context.scene, found.cross_validation)
+            _draw_worst(layout, found.cross_validation)
         row = layout.row(align=True)
         saving = row.operator("realmodel.save_chart", text="Save Chart...", icon="FILE_TICK")
         saving.chart = chart
@@ -65,7 +65,7 @@ def _draw_picture(layout, context, chart):
         layout.template_icon(icon_value=icon, scale=size)
 
 
-def _draw_worst(layout, scene, result):
+def _draw_worst(layout, result):
     """The points with the largest errors, each with a button that moves the 3D cursor there."""
     column = layout.column(align=True)
     column.label(text="Largest errors")

@@ -11,8 +11,8 @@ from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
 from .surfaces import draw_drawing, draw_figures, draw_filters, draw_property
 
 _EMPTY = {
-    "FAULT": "Faults displace the layers. Select open meshes or lines on the ground, or import meshes, fault "
-    "sticks or lines.",
+    "FAULT": "Faults displace the layers. Select open meshes or lines on the ground, import meshes, fault "
+    "sticks or lines, or add a fault (+) and draw its sticks.",
     "BODY": "Bodies are another rock in the layers, or a void: intrusions, domes, tunnels. "
     "Select closed meshes, or import them.",
 }

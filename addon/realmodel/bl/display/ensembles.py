@@ -32,13 +32,14 @@ def put(scene, found, samples, blocks, seed):
     """Shows an ensemble in place of an earlier one. found: core.Ensemble. samples: SectionSamples. blocks:
     (R, N) int16, the block of each cell in each realization, -1 for none."""
     remove(scene)
-    rows = list(_rows(scene, found))
+    rows = list(_rows(found))
     kept = np.flatnonzero((blocks >= 0).any(axis=0))
     places = offsets_from(project_settings.model_origin(scene), samples.corners[kept].reshape(-1, 3))
     ends = np.arange(0, 4 * len(kept) + 1, 4, dtype=np.int32)
     shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
     item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
     item[BLOCKS] = stored_arrays.pack(blocks=blocks[:, kept])
+    item.show_in_front = True  # it runs through the blocks
     sections.stand(scene, item, samples.section.plane)
     group = scene.realmodel.ensemble
     group.object = item
@@ -57,7 +58,7 @@ def put(scene, found, samples, blocks, seed):
     recolor(scene)
 
 
-def _rows(scene, found):
+def _rows(found):
     percentiles = found.percentiles()
     for number, block in enumerate(found.model.blocks):
         drawn = found.volumes[:, number]

@@ -15,6 +15,7 @@ from ..host.threads import threads
 from ..objects import block_shapes, built_models, viewports
 from ..project import compartments, project_settings, settings
 
+BUILT = 0.1  # share of the progress for the model, which is built again if it is not cached
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
 _stages = caches.new()  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
 _shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}

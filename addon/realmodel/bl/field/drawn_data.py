@@ -68,6 +68,7 @@ def add_sticks(scene, row, lines):
     known = _sticks(scene, row)
     if known is not None:
         item = bpy.data.objects.new(f"{row.name} sticks", bpy.data.meshes.new(f"{row.name} sticks"))
+        item.show_in_front = True  # they run through the blocks
         scene.collection.objects.link(item)
         for stick in known:
             _add_to_mesh(scene, item, stick, _along(len(stick)))

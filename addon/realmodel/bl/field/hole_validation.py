@@ -14,7 +14,6 @@ from ..project import borehole_picks, project_settings, settings
 from . import heights
 
 _NOTHING = 1e-6  # of the length of a hole: an error that is none
-_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
 _FRAMED = 0.15  # of all data, at least, around a hole that is jumped to
 
 
@@ -29,9 +28,9 @@ class HoleValidationJob(ThreadJob):
         self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
 
     def _work(self, job):
-        with job.part(0.0, _BUILT):
+        with job.part(0.0, shown_models.BUILT):
             model = self._request.make()
-        with job.part(_BUILT, 1.0):
+        with job.part(shown_models.BUILT, 1.0):
             return validated_holes(job, model, self._folds)
 
     def _put(self, found):

@@ -75,7 +75,8 @@ def place(scene, path, placing):
     item = bpy.data.objects.new(path.stem, None)
     item.empty_display_type, item.data = "IMAGE", image
     item.empty_display_size, item.empty_image_offset = 1.0, (0.0, 0.0)
-    item.use_empty_image_alpha, item.color = True, (1.0, 1.0, 1.0, 0.8)
+    item.use_empty_image_alpha, item.color = True, (1.0, 1.0, 1.0, 0.6)
+    item.empty_image_depth = "FRONT"  # it runs through the blocks; what is drawn on it shows through it
     item[settings.IMAGE] = True
     longest = max(size)  # is as long as the display size
     normal = np.cross(right, up)

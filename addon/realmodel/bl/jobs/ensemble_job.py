@@ -11,8 +11,6 @@ from ..host.thread_job import ThreadJob
 from ..objects import shapes
 from ..project import project_settings, settings
 
-_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
-
 
 class EnsembleJob(ThreadJob):
     """So many realizations of the model of a scene.
@@ -42,9 +40,9 @@ class EnsembleJob(ThreadJob):
         return fraction, f"{self._done} of {self._count} realizations" if self._done else text
 
     def _work(self, job):
-        with job.part(0.0, _BUILT):
+        with job.part(0.0, shown_models.BUILT):
             model = self._request.make()
-        with job.part(_BUILT, 1.0):
+        with job.part(shown_models.BUILT, 1.0):
             cut = model.section(*self._plane) if self._line is None else model.fence(self._line)
             samples = section_samples(model, cut)
             blocks = []

@@ -12,8 +12,6 @@ from ..host.thread_job import ThreadJob
 from ..project import settings
 from ..scene import planned_holes
 
-_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
-
 
 class PlannedJob(ThreadJob):
     """The realizations of a scene's ensemble along its active planned hole. `finish()` keeps what they say in
@@ -32,10 +30,10 @@ class PlannedJob(ThreadJob):
 
     def _work(self, job):
         axis = self._axis
-        with job.part(0.0, _BUILT):
+        with job.part(0.0, shown_models.BUILT):
             model = self._request.make()
             hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
-        with job.part(_BUILT, 1.0):
+        with job.part(shown_models.BUILT, 1.0):
             return hole_of_realizations(job, Realizer(model, self._seed), self._count, hole)
 
     def _put(self, hole):

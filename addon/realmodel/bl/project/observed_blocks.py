@@ -13,7 +13,7 @@ from ..objects import stored_arrays
 from . import settings
 
 _shown = caches.new(most=8)  # by text
-NAMES = ("places", "blocks", "holes", "depths", "intervals", "used")
+NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on")
 
 
 def keep(row, observations):
@@ -54,9 +54,11 @@ def of_rock(row):
 def rename(row, old, new):
     """Gives the blocks beneath a surface, or a body, its new name."""
     found = of_rock(row)
-    if found is not None and (found.blocks == old).any():
-        blocks = np.where(found.blocks == old, new, found.blocks)
-        keep(row, replace(found, blocks=blocks))
+    if found is None:
+        return
+    blocks, on = (np.where(names == old, new, names) for names in (found.blocks, found.on))
+    if (blocks != found.blocks).any() or (on != found.on).any():
+        keep(row, replace(found, blocks=blocks, on=on))
 
 
 def places_of(row):

@@ -133,7 +133,7 @@ def _other_origin(model, composed, away):
     return origin
 
 
-def shapes_to_come(scene, prepared, composed):
+def shapes_to_come(scene, prepared):
     """(name, PolygonMesh) of each mesh that `put` will make, as the scene stands."""
     for place, row in settings.interface_rows(scene):
         shape, digest = prepared.interfaces.get(place, (None, ""))

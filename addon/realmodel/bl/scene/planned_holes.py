@@ -55,7 +55,7 @@ def update_all(scene):
     show(scene)
 
 
-def begin_on_ground(scene, row):
+def begin_on_ground(row):
     """Moves the collar of a hole straight down to where it enters the rock."""
     hole = kept(row)
     if hole is not None and hole.intervals:
@@ -152,6 +152,7 @@ def _show(scene, name, axis, parts, size):
     places = axis.places(ends) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
     radii = size * np.where(pairs[:, 0] == 0, _AXIS, _RADIUS)
-    mesh = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES)).data
+    item = bodies.add(scene, KIND, name, marks.lines(places, pairs, radii, _SIDES))
+    item.show_in_front = True  # it begins on the ground: blocks hide all of it
     of_parts = [colors.of_property(scene, number) for number, *_ in parts]
-    bodies.give_materials(mesh, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)
+    bodies.give_materials(item.data, [colors.plain_material(*_NOTHING), *of_parts], _SIDES)

@@ -16,6 +16,7 @@ import numpy as np
 
 NOT_STORED = {"stored": False}  # metadata of a field that is as if it had not been given when it is read
 _ARRAY, _PATH, _LIST, _TUPLE, _DICT = "array", "path", "list", "tuple", "dict"
+_HEAD = 64  # bytes of an array by which it is looked for
 
 
 class NamedArrays(dict[str, np.ndarray]):
@@ -27,17 +28,21 @@ class NamedArrays(dict[str, np.ndarray]):
         self._prefix = prefix
         self._alike: dict[tuple, list[tuple[str, np.ndarray]]] = {}
         for name, array in known.items():
-            self._alike.setdefault((array.dtype.str, array.shape), []).append((name, array))
+            self._alike_of(array).append((name, array))
 
     def name_of(self, array: np.ndarray) -> str:
-        alike = self._alike.setdefault((array.dtype.str, array.shape), [])
+        alike = self._alike_of(array)
         for name, other in alike:
-            if other is array or not array.size or _bytes(other) == _bytes(array):
+            if other is array or _bytes(other) == _bytes(array):
                 return name
         name = f"{self._prefix}{len(self)}"
         self[name] = array
         alike.append((name, array))
         return name
+
+    def _alike_of(self, array: np.ndarray) -> list[tuple[str, np.ndarray]]:
+        """Those that may be equal: of thousands of holes each has arrays of its own."""
+        return self._alike.setdefault((array.dtype.str, array.shape, bytes(_bytes(array)[:_HEAD])), [])
 
 
 def _bytes(array: np.ndarray) -> memoryview:

@@ -320,18 +320,22 @@ def observations_text(rock: Rock) -> bytes:
     written = _block_codes(rock)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    all_used = bool(given.in_use.all())
-    table.writerow(("x", "y", "z", "block", "hole", "depth") + ("use",) * (not all_used))
-    for place, block, hole, depth, used in zip(
+    more = {}
+    if not given.in_use.all():
+        more["use"] = given.in_use.astype(int).tolist()
+    if (given.seen_on != "").any():
+        more["seen_on"] = given.on.tolist()
+    table.writerow(("x", "y", "z", "block", "hole", "depth", *more))
+    for place, block, hole, depth, *others in zip(
         given.places.tolist(),
         given.blocks.tolist(),
         given.holes.tolist(),
         given.depths.tolist(),
-        given.in_use.tolist(),
+        *more.values(),
         strict=True,
     ):
         row = (*place, written.get(block, block), hole, "" if np.isnan(depth) else depth)
-        table.writerow(row if all_used else (*row, int(used)))
+        table.writerow((*row, *others))
     return text.getvalue().encode()
 
 

@@ -33,7 +33,7 @@ def check_series(rock: Rock) -> None:
                 what = f"its surfaces are not consecutive: '{between.name}' is between them"
                 raise refuse(what, "name", "give this surface the same series, or use two series")
         if series.kind == FIELD:
-            _check_field(rock, series, refuse)
+            _check_field(rock, refuse)
         else:
             _check_sheets(rock, series, own, refuse)
 
@@ -65,7 +65,7 @@ def _check_dips(series: Series, refuse: Refuse) -> None:
             raise refuse("its dips are not in space", "dips", "give a file, or SpaceDips")
 
 
-def _check_field(rock: Rock, series: Series, refuse: Refuse) -> None:
+def _check_field(rock: Rock, refuse: Refuse) -> None:
     for key, value in (("region", rock.region), ("base_elevation", rock.base_elevation)):
         if value is None:
             what = f"its field has no end: {rock.item} has no {key}"

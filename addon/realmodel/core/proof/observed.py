@@ -139,7 +139,8 @@ def violated_bounds(model: ModelData, surface: tuple[int, int, int], near: float
     places, row = bounds.along(np.inf if own_field is None else own_field.fields[0].lattice.spacing[0])
     there = replace(bounds.some(row), places=places, ends=None)
     beyond = np.zeros(len(bounds))
-    np.maximum.at(beyond, row, there.beyond(heights_of_points(model, number, at, r, places)))
+    heights = heights_of_points(model, number, at, r, places, are_bounds=True)
+    np.maximum.at(beyond, row, there.beyond(heights))
     return [
         ViolatedBound(
             rock.name,

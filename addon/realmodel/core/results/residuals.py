@@ -39,10 +39,13 @@ class Residuals:
         return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
 
 
-def heights_of_points(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
-    """(P,) the heights of a surface at points (P, 3); with faults those of its sheet in each point's
-    compartment. Those of a level set, which may have several over a place, are as far beneath each point as
-    this is from it, about. number: of the surface in the model, at: in its rock mass, rock: of that."""
+def heights_of_points(
+    model: ModelData, number: int, at: int, rock: int, points: np.ndarray, are_bounds: bool = False
+) -> np.ndarray:
+    """(P,) the heights of a surface at points (P, 3); with faults those of its sheet in the compartment that
+    each counts for, which is the one that it lies in where they are bounds. Those of a level set, which may
+    have several over a place, are as far beneath each point as this is from it, about. number: of the surface
+    in the model, at: in its rock mass, rock: of that."""
     entry = model.rock_inputs[rock]
     own_field = entry.field_of(at)
     if not model.structures.is_divided and own_field is None:
@@ -50,7 +53,7 @@ def heights_of_points(model: ModelData, number: int, at: int, rock: int, points:
     structure = entry.divided()
 
     def task(work: Work) -> np.ndarray:
-        if own_field is None:
+        if own_field is None and not are_bounds:
             sides = point_sides(work, points, entry, at).sides
         else:
             sides = sides_of(work, points, structure.faults)

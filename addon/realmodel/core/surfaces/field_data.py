@@ -73,6 +73,8 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     mapped = _mapped(project, rock, units, dips)
     if rock.map is not None:
         observed, not_used, map_warnings = read_map(project, rock, units)
+        if (ground := given.ground_number) is not None:
+            observed = replace(observed, on=np.full(len(observed), rock.surfaces[ground].name))
         found.append(observed)
         left_out += not_used
     observations = Observations.joined(found).along_holes() if found else None

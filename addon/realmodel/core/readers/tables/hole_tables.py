@@ -85,6 +85,7 @@ OBSERVED = {
     "hole": _HOLE[:-2],  # names and ids are of the places
     "depth": ("depth", "md"),
     "use": ("use",),
+    "on": ("seen_on",),
 }
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 # What stands in a column where there is no value; in small letters.

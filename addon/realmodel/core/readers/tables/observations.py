@@ -16,7 +16,7 @@ from ...notebook import ShortRepr
 # Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
 # rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
 BESIDE_BOUND = 1e-6
-_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used")
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,6 +30,8 @@ class Observations(ShortRepr):
     intervals: (N,) int64, equal for the places of one interval, so that two of one block with lost core
     between them are two; without them places of one block that follow one another in a hole are one interval.
     used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
+    on: (N,) texts, the surface on which each was seen, as the ground of a map, by its name, "" for none: it
+    passes through the place, too.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -43,6 +45,7 @@ class Observations(ShortRepr):
     depths: np.ndarray = field(default_factory=lambda: np.empty(0))
     intervals: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
     used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
+    on: np.ndarray = field(default_factory=lambda: np.empty(0, str))
 
     def __post_init__(self) -> None:
         try:
@@ -64,11 +67,12 @@ class Observations(ShortRepr):
             raise InputRefused(what, item="observations", advice="give each place one of each")
         intervals = np.asarray(self.intervals, np.int64).reshape(-1)
         used = np.asarray(self.used, bool).reshape(-1)
-        for what, given in (("numbers of intervals", intervals), ("of 'used'", used)):
+        on = np.asarray(self.on, str).reshape(-1)
+        for what, given in (("numbers of intervals", intervals), ("of 'used'", used), ("of 'on'", on)):
             if len(given) not in (0, count):
                 text = f"{count} places have {len(given)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
-        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals, used), strict=True):
+        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals, used, on), strict=True):
             object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
@@ -83,6 +87,11 @@ class Observations(ShortRepr):
     def in_use(self) -> np.ndarray:
         """(N,) bool: which are not switched off."""
         return self.used if len(self.used) else np.ones(len(self), bool)
+
+    @property
+    def seen_on(self) -> np.ndarray:
+        """(N,) texts: the surface on which each was seen, "" for none."""
+        return self.on if len(self.on) else np.full(len(self), "")
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -125,14 +134,16 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        *arrays, intervals, used = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        *arrays, intervals, used, on = ([getattr(part, name) for part in parts] for name in _ARRAYS)
         if any(map(len, intervals)):
             intervals = [np.cumsum(~part.goes_on) for part in parts]
             firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
             intervals = [own + first for own, first in zip(intervals, firsts.tolist(), strict=True)]
         if any(map(len, used)):
             used = [part.in_use for part in parts]
-        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used)))
+        if any(map(len, on)):
+            on = [part.seen_on for part in parts]
+        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used, on)))
 
 
 def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...settings.observation_file import ObservationFile
-from .hole_tables import OBSERVED, rows
+from .hole_tables import OBSERVED, Row, rows
 from .observations import LeftOut, Observations, unknown_block
 from .unit_names import UnitNames
 
@@ -23,7 +23,7 @@ def read_observed_places(
     InputRefused naming file and line."""
     plan, height = factors(given.units, model_unit)
     scale = np.array([plan, plan, height])
-    places, blocks, holes, depths, used = [], [], [], [], []
+    places, blocks, holes, depths, used, on = [], [], [], [], [], []
     left_out: list[LeftOut] = []
     count = 0
     for row in rows(given, Path(given.file), OBSERVED, ("x", "y", "z", "block"), step):
@@ -48,8 +48,22 @@ def read_observed_places(
         holes.append(hole)
         depths.append(depth)
         used.append(row.is_used)
+        on.append(_surface(row, units))
     if not count:
         raise InputRefused("there are no observations in it", file=given.file)
     texts = np.array(blocks, str), np.array(holes, str)
     in_use = np.array([] if all(used) else used, bool)
-    return Observations(np.array(places).reshape(-1, 3), *texts, np.array(depths), used=in_use), left_out
+    seen_on = np.array(on if any(on) else [], str)
+    observed = Observations(
+        np.array(places).reshape(-1, 3), *texts, np.array(depths), used=in_use, on=seen_on
+    )
+    return observed, left_out
+
+
+def _surface(row: Row, units: UnitNames) -> str:
+    """The surface on which a place was seen; "" for none."""
+    code = row.text("on") if row.has("on") else ""
+    name = units.surface(code) if code else ""
+    if name and name not in units.surfaces:
+        raise row.refuse(f"'{code}' is no surface of the rock mass", "leave it empty, or name a surface")
+    return name

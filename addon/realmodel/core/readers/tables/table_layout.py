@@ -13,7 +13,7 @@ from ...base.errors import InputRefused
 from ...base.text import NOT_FINITE, NUMBER, Content
 
 HEAD_BYTES = 1 << 18
-_SEPARATORS = (";", "\t", ",", "|", " ")  # in the order of preference
+_SEPARATORS = (";", "\t", "|", ",", " ")  # in the order of preference: a comma may stand for a point
 _COMMENTS = ("#", "!", "%", ">", "//")
 _COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")

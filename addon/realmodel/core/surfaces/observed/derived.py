@@ -203,6 +203,7 @@ def _of_used(
         np.logical_or.at(found, place, said)
     meets = at_place[0] & at_place[1]
     _, column = _numbered(np.column_stack([places[:, :2], sides]))
+    seen_on = observations.seen_on[used]
     fields = FieldStatements(rock, observations, used, (above, below), (place, first_rows))
     contacts, bounds = [], []
     for number, surface in enumerate(rock.surfaces):
@@ -212,7 +213,11 @@ def _of_used(
             continue
         on = np.sort(first_rows[meets[:, number]])
         contacts.append(places[on])
-        lower, upper = (np.flatnonzero(said[:, number] & ~meets[place, number]) for said in (above, below))
+        # bounds from both sides, not a contact: the points of a grid are only those of the grid
+        is_on = seen_on == surface.name
+        lower, upper = (
+            np.flatnonzero((said[:, number] | is_on) & ~meets[place, number]) for said in (above, below)
+        )
         crossed = _crossed(places, column, lower, upper, on)
         kept = [
             np.union1d(_tightest(places, column, rows, on, sign), rows[crossed[column[rows]]])

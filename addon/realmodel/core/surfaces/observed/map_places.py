@@ -20,6 +20,7 @@ from .polygon_borders import Apart, BorderLine, border_lines, inside, places_alo
 _NEAR_BORDER = 0.25  # of the spacing: places within polygons are farther from their borders
 _NEAR_FAULT = 0.25  # of the spacing: nearer to a fault, it may be this that divides two blocks
 _LISTED = 6
+_LINES = 3  # across a small polygon, the farthest from its corners first
 
 Heights = Callable[[np.ndarray], np.ndarray]  # of places (N, 2), (N,), NaN where the ground is not known
 
@@ -151,7 +152,7 @@ def _within(
         own = rows[inside(polygons[number].rings, plan[rows])]
         seen[number] = len(own) > 0
         owner[own] = np.where(owner[own] < 0, number, owner[own])
-    more = [_middle(each) for number, each in enumerate(polygons) if not seen[number]]
+    more = [_middle(each, frame.box) for number, each in enumerate(polygons) if not seen[number]]
     alone = np.flatnonzero(~seen)
     at = np.array(more).reshape(-1, 2)
     is_here = np.isfinite(at).all(axis=1)
@@ -188,20 +189,23 @@ def _in_boxes(polygons: list[UnitPolygon], plan: np.ndarray) -> Iterator[tuple[i
             yield number, np.sort(rows)
 
 
-def _middle(polygon: UnitPolygon) -> np.ndarray:
-    """A place (2,) within a polygon: the middle of the longest part of a line across it; NaN for one that has
-    no area."""
+def _middle(polygon: UnitPolygon, box: np.ndarray) -> np.ndarray:
+    """A place (2,) within a polygon and a box (2, 2): the middle of the longest part of a line across it; NaN
+    where they have no area in common."""
     begin = np.concatenate(polygon.rings)
     end = np.concatenate([np.roll(ring, -1, axis=0) for ring in polygon.rings])
-    heights = np.unique(begin[:, 1])
+    (left, bottom), (right, top) = box.tolist()
+    heights = np.unique(np.clip(begin[:, 1], bottom, top))
     best, found = 0.0, np.full(2, np.nan)
     steps = np.diff(heights)
-    for at in np.argsort(-steps, kind="stable")[:3]:
+    for tried, at in enumerate(np.argsort(-steps, kind="stable")):
+        if tried >= _LINES and best > 0:
+            break
         y = heights[at] + 0.5 * steps[at]
         crosses = (begin[:, 1] < y) != (end[:, 1] < y)
         share = (y - begin[crosses, 1]) / (end[crosses, 1] - begin[crosses, 1])
         x = np.sort(begin[crosses, 0] + share * (end[crosses, 0] - begin[crosses, 0]))
-        for left, right in zip(x[::2].tolist(), x[1::2].tolist(), strict=True):
-            if right - left > best:
-                best, found = right - left, np.array([0.5 * (left + right), y])
+        for low, high in np.clip(x, left, right).reshape(-1, 2).tolist():
+            if high - low > best:
+                best, found = high - low, np.array([0.5 * (low + high), y])
     return found
