@@ -31,7 +31,6 @@ from gallery_picture import (
     SAMPLES,
     SECONDS,
     SIZE,
-    WHITE,
     Picture,
     aim,
     apply_looks,
@@ -292,21 +291,33 @@ def rocks(folder):
         item.hide_render = item not in blocks
     base = [shape for block, shape in zip(model.blocks, shapes, strict=True) if block.rock == BASE]
     near, far = meadow(next(item for item in blocks if item.name.startswith("Soil")), base, 2500.0)
-    slopes = math.radians(34.0), math.radians(44.0)
+    slopes = math.radians(44.0), 0.0  # without scree, which would be a row of dots along the steep bank
     weathering.put_on(scene, [*blocks, near], weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, 0.6))
     weathering.put_on(scene, [far], weathering.Weathering(0.0, 0.0, 1.0, 3, *slopes, 0))
     far.location.z = -2.0  # the meadow is worn, so its rim is lower than it was
-    picture.landscape(sun=(math.radians(226.0), math.radians(17.0)), haze=6000.0)
+    picture.landscape(sun=(math.radians(205.0), math.radians(24.0)), haze=6000.0)
     middle = np.concatenate(picture.points)
     middle = 0.5 * (middle.min(axis=0) + middle.max(axis=0))
-    eye, target = np.array([-100.0, -84.0, -5.0]), np.array([-19.0, 4.0, 1.0])
-    picture.look(middle + eye, middle + target, lens=24.0)
+    eye, target = np.array([-38.0, -94.0, -5.0]), np.array([-38.0, 8.0, 9.0])
+    picture.look(middle + eye, middle + target, lens=22.0)
+    floor = middle + np.array([-37.0, -13.0, -11.0])
+    labels = [
+        (text, middle + np.array(place), offset)
+        for text, place, offset in (
+            ("Upper conglomerate", (-6.0, -14.0, 15.0), (-70.0, 74.0)),
+            ("Lower conglomerate", (-50.0, -9.0, 6.0), (-6.0, 92.0)),
+            ("Pebble bed", (12.0, -14.0, 3.8), (28.0, -66.0)),
+            ("Slip faces of a bar", (-93.0, -9.0, -1.0), (44.0, -84.0)),
+            ("Sets of sandstone", (-58.0, -9.0, -6.0), (30.0, -64.0)),
+        )
+    ]
     picture.finish(
         "rocks",
         "Haut-Barr",
         "Bedding follows the layers as they were deposited: sets and slip faces of sandstone under "
         "conglomerate.",
         exposure=0.35,
+        labels=[*labels, ("10 m", (floor, floor + np.array([0.0, 0.0, 10.0])), None)],
     )
 
 
@@ -335,18 +346,22 @@ def quarry(folder):
     apply_looks(model, 1.0, {"Loam": 0.3})  # a meadow is finer than a rock
     around(made, origin, "Loam", 4000.0, 40.0)
     taken = model.eroded().taken.sum(axis=0)
-    rows = [(b.name, f"{v:,.0f} m\u00b3") for b, v in zip(model.blocks, taken, strict=True) if v > 0]
-    picture.landscape(sun=(math.radians(232.0), math.radians(44.0)), haze=5000.0)
-    picture.look(np.array([66.0, 6.0, 168.0]) - origin, np.array([200.0, 150.0, 78.0]) - origin, lens=26.0)
-    board([("Excavated", ""), *reversed(rows), ("Total", f"{taken.sum():,.0f} m\u00b3")])
+    rows = [
+        (b.name, picture.names[b.name], f"{v:,.0f} m\u00b3")
+        for b, v in zip(model.blocks, taken, strict=True)
+        if v > 0
+    ]
+    picture.landscape(sun=(math.radians(228.0), math.radians(42.0)), haze=5000.0)
+    picture.look(np.array([98.0, 24.0, 148.0]) - origin, np.array([214.0, 158.0, 79.0]) - origin, lens=22.0)
+    total = ("Total", None, f"{taken.sum():,.0f} m\u00b3")
+    board([("Excavated", None, ""), *reversed(rows), total], (2.6, -1.3))
     for x, y, z, heading in ((196.0, 172.0, made.BOTTOM, 20.0), (262.0, 148.0, made.BOTTOM, 115.0)):
         truck(np.array([x, y, z]) - origin, math.radians(heading))
     picture.finish(
         "quarry",
         "Quarry",
-        "Benches of twelve meters with their ramps, cut exactly; on the board what they remove from each "
-        "layer.",
-        color=WHITE,
+        "Benches of twelve meters, cut exactly; on the board what they remove of each layer. The trucks are "
+        "nine meters long.",
         exposure=0.15,
     )
 

@@ -22,7 +22,9 @@ WEATHERED = ROOT / "docs" / "images" / "weathering.jpg"
 PICTURES = ROOT / "build" / "looks"  # one for each
 CLOSE = ROOT / "docs" / "images" / "looks_close.jpg"
 NEAR, WEATHERING = "close", "weathering"
-NEAR_SIZE, AWAY = (600, 400), 2.0  # of the picture of a close-up, taken from so many meters
+NEAR_SIZE, AWAY = (720, 540), 2.0  # of the picture of a close-up, taken from so many meters
+NEAR_BLOCK = "Lower conglomerate"
+BAR, PART = 6, 0.05  # parts of the scale in it, and how long one is, meters
 HALF = (800, 620)  # of the pictures before and after
 SIZE = (400, 325)  # of the picture of a look
 SMALL = (320, 260)  # in the sheet
@@ -63,11 +65,8 @@ def put_together():
 
     if (pictures := pictures_of(LOOKS)) is not None:
         make_sheet(pictures, [look.label for look in LOOKS.values()])
-    if (pictures := pictures_of([f"{NEAR}_{name}" for name in ("rock", "ground")])) is not None:
-        pair = Image.new("RGB", (2 * NEAR_SIZE[0], NEAR_SIZE[1]))
-        for number, picture in enumerate(pictures):
-            pair.paste(picture, (number * NEAR_SIZE[0], 0))
-        pair.save(CLOSE, quality=80, optimize=True)
+    if (pictures := pictures_of([NEAR])) is not None:
+        pictures[0].save(CLOSE, quality=88, optimize=True)
     if (pictures := pictures_of([f"{WEATHERING}_{name}" for name in ("before", "after")])) is not None:
         pair = Image.new("RGB", (2 * HALF[0], HALF[1]))
         pen, font = ImageDraw.Draw(pair), ImageFont.load_default(26)
@@ -228,7 +227,7 @@ def draw_weathering(folder):
 
 
 def draw_close(folder):
-    """Haut-Barr, weathered, from two meters away: conglomerate in a wall, and the bench."""
+    """A wall of Haut-Barr, weathered, from two meters away, with a scale."""
     import math
 
     import bpy
@@ -250,42 +249,71 @@ def draw_close(folder):
     weathering.put_on(scene, blocks, weathering.Weathering(1.0, 0.5, 1.0, 3, *slopes, 1, wear=0.15))
     corners = np.array([item.matrix_world @ Vector(c) for item in blocks for c in item.bound_box])
     shown.points = [corners]
-    azimuth, elevation = math.radians(205.0), math.radians(42.0)
+    azimuth, elevation = math.radians(215.0), math.radians(40.0)
     shown.landscape(sun=(azimuth, elevation))
     low, high = corners.min(axis=0), corners.max(axis=0)
     from_south = [
         (x, low[1] - 5.0, z) for x in np.arange(low[0], high[0], 1.5) for z in np.arange(low[2], high[2])
     ]
-    across, along = np.arange(low[0], high[0], 4.0), np.arange(low[1], high[1], 3.0)
-    from_above = [(x, y, high[2] + 5.0) for x in across for y in along]
-    sun = towards(azimuth, elevation)
-    for name, block, starts, way, back in (
-        ("rock", "Upper conglomerate", from_south, (0.0, 1.0, 0.0), (0.45, -0.85, 0.2)),
-        ("ground", "Bench", from_above, (0.0, 0.0, -1.0), (0.1, -0.85, 0.5)),
-    ):
-        target = lit_place(block, starts, way, sun)
-        shown.look(target + AWAY * Vector(back).normalized(), target, lens=30.0)
-        scene.camera.data.clip_start = 0.01
-        picture.set_renderer(scene, "", NEAR_SIZE, RAYS, SECONDS)
-        scene.view_settings.exposure = EXPOSURE
-        render(folder, f"{NEAR}_{name}")
+    target, normal = lit_place(NEAR_BLOCK, from_south, Vector((0.0, 1.0, 0.0)), towards(azimuth, elevation))
+    back = Vector((0.35, -0.9, 0.12)).normalized()
+    shown.look(target + AWAY * back, target, lens=30.0)
+    scene.camera.data.clip_start = 0.01
+    put_scale(target, normal, back)
+    picture.set_renderer(scene, "", NEAR_SIZE, RAYS, SECONDS)
+    scene.view_settings.exposure = EXPOSURE
+    render(folder, NEAR)
+
+
+def put_scale(target, normal, back):
+    """Puts a scale of black and white parts of 5 cm below the middle of the picture, on the rock."""
+    import gallery_picture
+    from mathutils import Matrix, Vector
+
+    right = Vector((0.0, 0.0, 1.0)).cross(back)
+    right = (right - right.dot(normal) * normal).normalized()
+    up = normal.cross(right)
+    axes = Matrix((right, up, normal)).transposed().to_4x4()
+    parent = gallery_picture.empty(Matrix.Translation(target + 0.04 * normal - 0.42 * up) @ axes)
+    for number in range(BAR):
+        begin = (number - BAR / 2) * PART
+        color = "#f2f0ea" if number % 2 else "#16181b"
+        gallery_picture.cuboid(
+            f"Part {number % 2}", (begin, 0.0, 0.0), (begin + PART, 0.03, 0.012), color, parent
+        )
 
 
 def lit_place(block, starts, way, sun):
-    """The middle one of the places in the sun where rays meet blocks of a name about at right angles."""
+    """One of the places in the sun where rays meet blocks of a name about at right angles, and the normal
+    there: the one with the evenest rock around it."""
+    import math
+
     import bpy
     from mathutils import Vector
 
     scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
     places = []
     for start in starts:
-        found, place, normal, _, item, _ = scene.ray_cast(depsgraph, Vector(start), Vector(way))
+        found, place, normal, _, item, _ = scene.ray_cast(depsgraph, Vector(start), way)
         if not found or not item.name.startswith(block):
             continue
-        is_open = normal.dot(way) < -0.95 and normal.dot(sun) > 0.3
+        is_open = normal.dot(way) < -0.9 and normal.dot(sun) > 0.3
         if is_open and not scene.ray_cast(depsgraph, place + 0.5 * normal, sun)[0]:
-            places.append(place.copy())
-    return places[len(places) // 2]
+            places.append((place.copy(), normal.copy()))
+
+    def unevenness(found):
+        place, normal = found
+        right = normal.orthogonal().normalized()
+        apart = []
+        for step in range(12):
+            turn = step * math.pi / 6.0
+            side = math.cos(turn) * right + math.sin(turn) * normal.cross(right)
+            near, hit, *_, item, _ = scene.ray_cast(depsgraph, place + 1.2 * side + normal, -normal)
+            same = near and item.name.startswith(block)
+            apart.append(abs((hit - place).dot(normal)) if same else 1.0)
+        return max(apart)
+
+    return min(places, key=unevenness)
 
 
 def in_blender(folder, *names):

@@ -60,29 +60,19 @@ class Picture:
         """Renders and writes the picture. azimuth, elevation: degrees of where it is seen from. labels:
         (text, position in the scene, offset in points from there). room: shares of width and height to be
         left free at the left and at the top. Over it are the `lines`."""
-        import bpy
-        from bpy_extras.object_utils import world_to_camera_view
-        from mathutils import Vector
         from realmodel.core.drawing.drawing import Drawing
 
-        scene = bpy.context.scene
         file = self.folder / f"{name}.png"
-        camera = self.render(file, SIZE, azimuth, elevation, room)
+        self.render(file, SIZE, azimuth, elevation, room)
         drawing = Drawing(POINTS, POINTS * SIZE[1] / SIZE[0])
         height = drawing.height
         drawing.text(28, height - 40, title, TITLE, INK)
         for number, line in enumerate(subtitle.split("\n")):
             drawing.text(28, height - 60 - 1.45 * LABEL * number, line, LABEL, SOFT)
-        bpy.context.view_layer.update()
-
-        def seen(position):
-            x, y, _ = world_to_camera_view(scene, camera, Vector(position))
-            return x * drawing.width, y * height
-
         for line in self.lines:
-            drawing.line([seen(position) for position in line], FAULT, 1.6)
+            drawing.line([seen(drawing, position) for position in line], FAULT, 1.6)
         for text, position, offset in labels:
-            add_label(drawing, seen(position), offset, text)
+            add_label(drawing, seen(drawing, position), offset, text)
         if legend:
             add_legend(drawing, list(self.names.items()))
         put_over(file, drawing)
@@ -119,10 +109,12 @@ class Picture:
         camera.data.shift_x = camera.data.shift_y = 0.0
         camera.data.clip_start, camera.data.clip_end = back.length / 1e3, back.length * 100.0
 
-    def finish(self, name, title, subtitle, color=None, exposure=-0.3):
-        """Renders and writes the picture as the camera stands, with a title. color: of the title."""
+    def finish(self, name, title, subtitle, color=None, exposure=-0.3, labels=()):
+        """Renders and writes the picture as the camera stands, with a title and labels as `draw` has them.
+        color: of the title. Of a label without an offset the position is the two ends of a scale."""
         import bpy
         from realmodel.bl.pictures import picture
+        from realmodel.core.drawing.drawing import Drawing
 
         scene = bpy.context.scene
         file = self.folder / f"{name}.png"
@@ -132,9 +124,16 @@ class Picture:
         scene.cycles.denoising_prefilter = "FAST"
         bpy.ops.render.render(write_still=True)
         write_title(file, title, subtitle, color or INK)
+        drawing = Drawing(POINTS, POINTS * SIZE[1] / SIZE[0])
+        for text, position, offset in labels:
+            if offset is None:
+                add_scale(drawing, [seen(drawing, end) for end in position], text)
+            else:
+                add_label(drawing, seen(drawing, position), offset, text)
+        put_over(file, drawing)
 
     def render(self, file, size, azimuth, elevation, room):
-        """Writes a picture of so many pixels without texts. Returns the camera."""
+        """Writes a picture of so many pixels without texts."""
         import bpy
         import numpy as np
         from realmodel.bl.objects.viewports import towards
@@ -150,7 +149,6 @@ class Picture:
         picture.set_renderer(scene, file, size, RAYS, SECONDS)
         scene.view_settings.exposure = EXPOSURE
         bpy.ops.render.render(write_still=True)
-        return camera
 
 
 def put_sky(world):
@@ -214,6 +212,25 @@ def seen_from(points, axes, tangents):
         away = max(away, (high + low) / (2.0 * tangent))
         center.append((high - low) / 2.0)
     return np.array([*center, away])
+
+
+def seen(drawing, position):
+    """Where the camera sees a position of the scene, in a drawing over the picture."""
+    import bpy
+    from bpy_extras.object_utils import world_to_camera_view
+    from mathutils import Vector
+
+    bpy.context.view_layer.update()
+    scene = bpy.context.scene
+    x, y, _ = world_to_camera_view(scene, scene.camera, Vector(position))
+    return x * drawing.width, y * drawing.height
+
+
+def add_scale(drawing, ends, text):
+    """An upright bar between two ends, and its length beside it."""
+    drawing.line(ends, WHITE, 5.0)
+    drawing.line(ends, INK, 2.6)
+    drawing.text(ends[0][0] + 8.0, (ends[0][1] + ends[1][1]) / 2.0 - 0.35 * LABEL, text, LABEL, WHITE)
 
 
 def add_label(drawing, place, offset, text):
@@ -446,9 +463,9 @@ def truck(place, heading):
             cuboid("Tire", (x - 0.8, y, 0.0), (x + 0.8, y + 0.7, 1.6), "#1d1d1d", parent)
 
 
-def board(rows):
-    """A board before the camera, at its left: two columns of text. rows: (left, right), the first the
-    title."""
+def board(rows, place):
+    """A board before the camera. rows: (left, color of a square or None, right), the first the title. place:
+    of its upper left corner, to the right and up, of a picture that is 16 wide."""
     import bpy
     from mathutils import Matrix
 
@@ -457,20 +474,22 @@ def board(rows):
     before = set(bpy.data.objects)
     parent = empty(
         camera.matrix_world
-        @ Matrix.Translation((-5.3, -1.5, -8.0))
-        @ Matrix.Rotation(0.16, 4, "Y")
+        @ Matrix.Translation((*place, -8.0))
+        @ Matrix.Rotation(-0.16 if place[0] > 0.0 else 0.16, 4, "Y")
         @ Matrix.Rotation(-0.10, 4, "X")
         @ Matrix.Scale(0.62, 4)
     )
-    pitch, width = 0.34, 4.2
+    pitch, width = 0.34, 4.7
     height = pitch * len(rows) + 0.42
     cuboid("Board", (-0.2, -height, -0.08), (width, 0.0, 0.0), "#f4f1e8", parent)
     cuboid("Frame", (-0.28, -height - 0.08, -0.12), (width + 0.08, 0.08, -0.02), "#5b4632", parent)
     for x in (0.25, width - 0.45):
         cuboid("Post", (x, -12.0, -0.30), (x + 0.2, -height, -0.12), "#5b4632", parent)
-    for number, row in enumerate(rows):
+    for number, (left, color, right) in enumerate(rows):
         base = -0.46 - pitch * number - (0.06 if number else 0.0)
-        for text, x, align in ((row[0], 0.0, "LEFT"), (row[1], width - 0.2, "RIGHT")):
+        if color is not None:
+            cuboid(f"Square {color}", (0.02, base - 0.03, 0.0), (0.3, base + 0.2, 0.01), color, parent)
+        for text, x, align in ((left, 0.42 if number else 0.02, "LEFT"), (right, width - 0.2, "RIGHT")):
             curve = bpy.data.curves.new("text", "FONT")
             curve.body, curve.align_x, curve.size = text, align, 0.34 if number == 0 else 0.29
             curve.extrude = 0.004

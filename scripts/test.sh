@@ -234,9 +234,9 @@ wants core && step core test_core
 # What uses one processor, the longest first.
 alone=()
 wants blender && alone+=(blender test_blender)
-wants package && alone+=(package test_package)
 ((${ended[bpy-install]-1} != 0)) || alone+=(bpy test_bpy)
 wants gui && alone+=(gui test_gui)
+wants package && alone+=(package test_package)
 wants types && alone+=(types check_types)
 wants site && alone+=(site check_site)
 wants ruff && alone+=(ruff check_ruff)

@@ -30,16 +30,18 @@ using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
 using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
 /// Axes and ratios.
 using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::array<double, 3>>;
-/// How many faults die out, combinations of sides; further coordinates of contacts, dips and
-/// bounds, how they rise at dips; those of nodes, the nodes that are the same, the sides of bounds.
-using SlitsTuple = std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>,
-                              Array<double>, Array<double>, Array<std::int64_t>, Indices>;
+/// How many faults part the field, combinations of sides; further coordinates of contacts, dips and
+/// bounds, how they rise at dips; normals of the faults; those of nodes, the nodes that are the
+/// same, the sides of bounds.
+using SlitsTuple =
+    std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>, Array<double>,
+               Array<double>, Array<double>, Array<std::int64_t>, Indices>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
 /// Anisotropy, order, errors of values and of slopes, lift, scale; gaps, centers, left out.
 using KindTuple =
-    std::tuple<AnisotropyTuple, int, double, double, double, double, std::vector<double>,
-               std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
+    std::tuple<AnisotropyTuple, int, double, double, double, std::vector<std::array<double, 3>>,
+               double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
 /// A kind; numbers of directions, of steps and of errors of dips.
 using DrawTuple = std::tuple<KindTuple, Array<double>, Array<double>, Array<double>>;
 
@@ -49,6 +51,7 @@ KindTuple tuple_of(const fields::FunctionKind& kind) {
             kind.value_error,
             kind.slope_error,
             kind.lift,
+            kind.throws,
             kind.scale,
             kind.gaps,
             kind.centers,
@@ -73,9 +76,10 @@ std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
 
 fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
     const auto& [kind, directions, steps, errors] = given;
-    const auto& [anisotropy, order, value, slope, lift, scale, gaps, centers, left_out] = kind;
-    return {{std::make_from_tuple<fields::Anisotropy>(anisotropy), order, value, slope, lift, scale,
-             gaps, centers, left_out},
+    const auto& [anisotropy, order, value, slope, lift, throws, scale, gaps, centers, left_out] =
+        kind;
+    return {{std::make_from_tuple<fields::Anisotropy>(anisotropy), order, value, slope, lift,
+             throws, scale, gaps, centers, left_out},
             {3 + slits, view(directions), view(steps), view(errors)}};
 }
 
@@ -93,10 +97,12 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     data.bound_below = view(std::get<1>(bounds));
     data.bound_above = view(std::get<2>(bounds));
     if (slits) {
-        const auto& [count, sides, of_contacts, of_dips, of_bounds, slopes, nodes, same, of_bound] =
-            *slits;
-        data.slits = {count, view(of_contacts), view(of_dips), view(of_bounds), view(slopes),
-                      sides, view(nodes),       view(same),    view(of_bound)};
+        const auto& [count, sides, of_contacts, of_dips, of_bounds, slopes, normals, nodes, same,
+                     of_bound] = *slits;
+        data.slits = {count,           view(of_contacts), view(of_dips),
+                      view(of_bounds), view(slopes),      rows<3>(normals, "normals"),
+                      sides,           view(nodes),       view(same),
+                      view(of_bound)};
     }
     const auto& [tolerance, most_centers, anisotropy] = given;
     std::optional<fields::Anisotropy> known;
@@ -153,14 +159,15 @@ lattice: (origin, spacing, counts). contacts: how many surfaces there are, posit
 each (N,), 0 the oldest. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
 (B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
 at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
-one. slits: of faults that die out how many, and the combinations of their sides; the further coordinates that these
-give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3), those of nodes (S, nodes, F) on each
+one. slits: of faults that part the field how many, and the combinations of their sides; the further coordinates that
+these give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3); normals of the faults (F, 3),
+of length 1; those of nodes (S, nodes, F) on each
 combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
 draw: None, or of a field that is drawn at random its kind, as it is returned of the same data, and normal numbers:
 (lines, 3 + F), (lines, steps) and (M, 2).
 Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
 each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
-(axes, ratios), order, errors of values and of slopes, scale of further coordinates, variance, gaps, centers,
+(axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of half of the lattice's diagonal, variance, gaps, centers,
 inequalities that are left out. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),

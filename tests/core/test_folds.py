@@ -116,26 +116,10 @@ def leaning():
     [(plane((5.3, -2), (4.1, 12)), "columns"), (leaning(), "columns"), (leaning(), "blocks")],
 )
 def test_a_fold_on_both_sides_of_a_fault(monkeypatch, shape, cells):
-    def thrown(p):
-        return recumbent(np.asarray(p) + np.array([0.0, 0.0, 0.8]))
-
-    asked = []
-
-    def chosen(data):
-        asked.append(data)
-        return recumbent if len(asked) == 1 else thrown
-
-    given_field(monkeypatch, chosen, LEVELS[recumbent])
-    project = folded_project(faults=[Fault("F", *shape, youngest="fii")])
-    for surface in project.rocks[0].surfaces[:3]:
-        level = LEVELS[recumbent][len(surface.name) - 1]
-        surface.points = np.concatenate([surface.points, contacts(thrown, level, 20, seed=9)])
-    model = build(project, cells=cells)
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    model = build(folded_project(faults=[Fault("F", *shape, youngest="fii")]), cells=cells)
     assert model.validate().passed, model.validate().failure()
-    assert len(asked) == 2
-    assert sum(len(each.contacts) for each in asked) == sum(
-        len(surface.points) for surface in project.rocks[0].surfaces[:3]
-    )
+    assert len(model.rock_inputs[0].fields[0].distinct()) == 2
     assert len(model.compartment_names) >= 2
 
 

@@ -318,6 +318,18 @@ def test_places_without_ground_are_listed(project_of, tmp_path):
     assert field.surfaces[0][1][:, 1].max() <= 30
     (warning,) = field.map_warnings
     assert "places of the map are where the ground is not known" in warning
+    assert float(warning.rpartition(", ")[2].rstrip(")")) > 30
+
+
+def test_a_feature_of_several_parts_that_is_not_known_is_listed_once(project_of, tmp_path):
+    project = project_of(("clay", WEST), ("Yng", EAST))
+    known = json.loads((tmp_path / "map.geojson").read_text())
+    parts = [[[*ring, ring[0]]] for ring in (WEST, EAST)]
+    known["features"] += json.loads(features(("Xyz", WEST)))["features"]
+    known["features"][2]["geometry"] = {"type": "MultiPolygon", "coordinates": parts}
+    (tmp_path / "map.geojson").write_text(json.dumps(known))
+    kinds = [each.kind for each in field_of(project).left_out]
+    assert kinds.count("unknown_block") == 1
 
 
 def test_maps_that_are_refused(project_of, tmp_path):

@@ -172,7 +172,7 @@ def two_layers():
 def foam_flux(two_layers, tmp_path_factory):
     """The heat that flows in on top of the prisms, by laplacianFoam; of unit diffusivity times MEDIA."""
     folder = tmp_path_factory.mktemp("foam")
-    mesh = two_layers.simulation_mesh(2.5, 0.4, layer_thickness=1.0)
+    mesh = two_layers.simulation_mesh(3.0, 0.48, layer_thickness=1.2)
     case = folder / "case.foam"
     save_mesh(mesh, case)
     cells = ElementFaces(mesh).polyhedral()
@@ -229,7 +229,7 @@ def cell_centers(cells, areas, centers):
 
 def ogs_flux(model, folder):
     """The same by OpenGeoSys on tetrahedra: what linear elements dissipate at a difference of 1."""
-    mesh = model.simulation_mesh(2.5, 0.4, layer_thickness=1.0, elements="tetrahedra")
+    mesh = model.simulation_mesh(3.0, 0.48, layer_thickness=1.2, elements="tetrahedra")
     save_mesh(mesh, folder / "mesh.vtu")
     triangles, surface = mesh.faces["triangle"], mesh.face_surface["triangle"]
     corners = mesh.points[triangles]

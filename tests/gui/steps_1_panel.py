@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 from driver import hue_differs
 from realmodel.bl.display import viewpoints
+from realmodel.bl.objects import viewports
 from realmodel.bl.scene import live
 from realmodel.ui import start
 from realmodel.ui.panel import TabPanel
@@ -87,6 +88,11 @@ def look_at_it(walk):
         assert hue_differs(seen, wanted) < 0.1, (row.name, tuple(wanted), seen)
         shown += 1
     assert shown >= 2, "fewer than two blocks show their color"
+    corners = viewports.corners([row.object for row in model().results if row.object is not None])
+    across = viewports.pixels(walk.area, corners)[:, 0] + walk.region("WINDOW").x
+    tools, sidebar = walk.region("TOOLS"), walk.region("UI")
+    assert tools.x + tools.width <= across.min(), "the toolbar covers the model"
+    assert across.max() <= sidebar.x, "the sidebar covers the model"
 
 
 def choose_a_block(walk):

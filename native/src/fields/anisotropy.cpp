@@ -3,9 +3,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -19,6 +21,15 @@ namespace {
 // So much the logarithm of the likelihood has to rise for a ratio and a direction more.
 constexpr double kWorth = 4;
 constexpr double kLeastRatio = 0.01;
+// Scales of further coordinates: with the least one the sides of a fault hardly differ but by its
+// throw, with the largest one says little of the other.
+constexpr double kLeastLift = 1.0 / 64;
+constexpr std::size_t kLifts = 10;
+// Throws that are tried, for each fault in turn, so many times; then what is near the best, until
+// steps are so short.
+constexpr std::array kThrows{0.02, 0.05, 0.1, 0.16, 0.24};
+constexpr int kSweeps = 2;
+constexpr double kLeastThrow = 0.002;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 struct Candidate {
@@ -145,21 +156,64 @@ void search_second(const Search& search, Candidate& best) {
 void search_errors(const Search& search, Candidate& best) {
     std::vector<Likely> tried;
     for (const double value : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5}) {
-        for (const double slope : {0.0, 1e-4, 1e-3, 1e-2, 1e-1})
-            tried.push_back({best.what.anisotropy, {value, slope}, 3, best.what.lift});
+        for (const double slope : {0.0, 1e-4, 1e-3, 1e-2, 1e-1}) {
+            tried.push_back(best.what);
+            tried.back().errors = {value, slope};
+        }
     }
     Search::improve(best, search.best(tried), kWorth);
 }
 
 /// Other scales of further coordinates: the larger, the less one side says of the other.
 void search_lift(const Search& search, Candidate& best) {
-    std::vector<Likely> tried(7, best.what);
-    double lift = 1.0 / 8;
+    std::vector<Likely> tried(kLifts, best.what);
+    double lift = kLeastLift;
     for (Likely& each : tried) {
         each.lift = lift;
         lift *= 2;
     }
     Search::improve(best, search.best(tried), 0);
+}
+
+/// The same with another throw of a fault: `step` away in all directions in its plane.
+std::vector<Likely> thrown(const Likely& of, std::size_t fault, const Vec3& normal, double step,
+                           int directions) {
+    const Vec3 first = perpendicular(normal), second = cross(normal, first);
+    std::vector<Likely> out(static_cast<std::size_t>(directions), of);
+    for (int n = 0; n < directions; ++n) {
+        const double angle = 2 * std::numbers::pi * n / directions;
+        Vec3& own = out[static_cast<std::size_t>(n)].throws[fault];
+        own = moved(own, step * elementary::cos(angle), first);
+        own = moved(own, step * elementary::sin(angle), second);
+    }
+    return out;
+}
+
+/// Throws of faults, in their planes. They are seen only if the two sides hardly differ otherwise.
+void search_throws(const Search& search, std::span<const Vec3> normals, Candidate& best) {
+    Likely start = best.what;
+    const bool is_first = start.throws.empty();
+    if (is_first) {
+        start.throws.assign(normals.size(), Vec3{});
+        start.lift = kLeastLift;
+    }
+    Candidate found = search.best(std::array{start});
+    const auto look = [&](std::span<const double> steps, int directions) {
+        for (std::size_t fault = 0; fault < normals.size(); ++fault) {
+            std::vector<Likely> tried;
+            for (const double step : steps) {
+                for (Likely& each : thrown(found.what, fault, normals[fault], step, directions))
+                    tried.push_back(std::move(each));
+            }
+            Search::improve(found, search.best(tried), 0);
+        }
+    };
+    for (int sweep = 0; is_first && sweep < kSweeps; ++sweep)
+        look(kThrows, 12);
+    for (double step = 0.04; step > kLeastThrow; step /= 2)
+        look(std::array{step}, 6);
+    search_lift(search, found);
+    Search::improve(best, found, is_first ? kWorth : 0);
 }
 
 }  // namespace
@@ -175,14 +229,18 @@ Map3 map_of(const Anisotropy& anisotropy) {
 }
 
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
-                   const Execution& execution) {
+                   std::span<const Vec3> faults, const Execution& execution) {
     const Search search(known, execution);
-    const bool has_lift =
-        std::ranges::any_of(known, [](const Functional& each) { return !each.of_lift().empty(); });
     const auto climb = [&](Candidate best) {
         search_first(search, normals, best);
         search_second(search, best);
-        if (has_lift) search_lift(search, best);
+        if (!faults.empty()) {
+            search_lift(search, best);
+            search_throws(search, faults, best);
+            search_first(search, normals, best);
+            search_second(search, best);
+            search_throws(search, faults, best);
+        }
         search_errors(search, best);
         return best;
     };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "fields/functional.hpp"
 #include "fields/spline.hpp"
@@ -19,17 +20,20 @@ Map3 map_of(const Anisotropy& anisotropy);
 struct Likely {
     Anisotropy anisotropy = kIsotropic;
     Errors errors;
-    int order = 3;    ///< of the derivatives that are least
-    double lift = 1;  ///< of further coordinates
+    int order = 3;               ///< of the derivatives that are least
+    double lift = 1;             ///< of further coordinates
+    std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
 
-    Smoothness smoothness() const { return {map_of(anisotropy), errors, order, lift}; }
+    Smoothness smoothness() const { return {map_of(anisotropy), errors, order, lift, throws}; }
 };
 
 /// The anisotropy, the errors of measurement and the scale of further coordinates under which what
 /// is known is most likely, with the third order. The anisotropy is along the fold axis, to which
 /// the normals are most nearly perpendicular, or where they show none along the best of some
-/// directions; then along a direction across it.
+/// directions; then along a direction across it. Where faults give further coordinates, it is also
+/// sought by how much places on one side of each have been moved along it.
+/// @param faults  their normals
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
-                   const Execution& execution);
+                   std::span<const Vec3> faults, const Execution& execution);
 
 }  // namespace realmodel::fields

@@ -121,7 +121,11 @@ private:
     /// A function of the kind that was found, which the data condition.
     void draw(const FieldDraw& given) {
         const FunctionKind& kind = given.kind;
-        likely_ = {kind.anisotropy, {kind.value_error, kind.slope_error}, kind.order, kind.lift};
+        likely_ = {kind.anisotropy,
+                   {kind.value_error, kind.slope_error},
+                   kind.order,
+                   kind.lift,
+                   {kind.throws.begin(), kind.throws.end()}};
         gaps_ = kind.gaps;
         if (kind.centers.size() != is_center_.size())
             throw InputError("option", "a field is drawn with the contacts that it was found of");
@@ -148,7 +152,10 @@ private:
             for (const double coordinate : each)
                 sum = std::max(sum, std::abs(coordinate));
         }
-        return std::abs(likely_.lift) * sum * static_cast<double>(slits.count);
+        double far = std::abs(likely_.lift) * sum * static_cast<double>(slits.count);
+        for (const Vec3& thrown : likely_.throws)
+            far += sum * length(thrown);
+        return far;
     }
 
     /// The inequalities that the field left out whose kind is drawn.
@@ -169,6 +176,7 @@ private:
                          likely_.errors.value,
                          likely_.errors.slope,
                          likely_.lift,
+                         {likely_.throws.begin(), likely_.throws.end()},
                          spline_->scale(),
                          gaps_,
                          {is_center_.begin(), is_center_.end()},
@@ -345,7 +353,7 @@ private:
                              -1, against, data.dips[against[0]]);
         }
         for (const std::int64_t dip : against) {
-            if (!is_against_neighbors(data, static_cast<std::size_t>(dip))) continue;
+            if (!is_against_neighbors(known_, static_cast<std::size_t>(dip))) continue;
             throw InputError(
                 "polarity",
                 "dip " + std::to_string(dip) + " has the polarity against its neighbors", -1, {dip},

@@ -37,15 +37,17 @@ Lift scaled(double factor, Lift lift) {
 
 }  // namespace
 
-Functional Functional::mapped_by(const Map3& map, double lift) const {
+Functional Functional::mapped_by(const Map3& map, double lift, std::span<const Vec3> throws) const {
     Functional out = *this;
     for (ValueAtom& atom : out.values) {
-        atom.at = mapped(map, atom.at);
+        atom.at = mapped(map, atom.at, atom.lift, throws);
         atom.lift = scaled(lift, std::move(atom.lift));
     }
     for (SlopeAtom& atom : out.slopes) {
-        atom = {mapped(map, atom.at), mapped(map, atom.along), scaled(lift, std::move(atom.lift)),
-                scaled(lift, std::move(atom.along_lift))};
+        atom.at = mapped(map, atom.at, atom.lift, throws);
+        atom.along = mapped(map, atom.along, atom.along_lift, throws);
+        atom.lift = scaled(lift, std::move(atom.lift));
+        atom.along_lift = scaled(lift, std::move(atom.along_lift));
     }
     return out;
 }

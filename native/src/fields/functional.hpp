@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "base/vectors.hpp"
@@ -49,6 +50,15 @@ struct ValueAtom {
     Lift lift{};
 };
 
+/// A place or a way as a spline has it: moved by so much for each unit of each further coordinate
+/// (none: not at all), then mapped.
+inline Vec3 mapped(const Map3& map, Vec3 v, std::span<const double> lift,
+                   std::span<const Vec3> throws) {
+    for (std::size_t k = 0; k < throws.size() && k < lift.size(); ++k)
+        v = moved(v, lift[k], throws[k]);
+    return mapped(map, v);
+}
+
 /// Of functions of which derivatives of one order are least, integrated over all of space, with the
 /// variance of measured values: -r for the second derivatives, r^3 for the third.
 struct Kernel {
@@ -86,7 +96,8 @@ struct Functional {
     }
 
     /// @param lift  by how much further coordinates are scaled
-    Functional mapped_by(const Map3& map, double lift = 1) const;
+    /// @param throws  by how much places move for each unit of each of these
+    Functional mapped_by(const Map3& map, double lift = 1, std::span<const Vec3> throws = {}) const;
     /// With differences of values, `step` to both sides, in the place of derivatives: what the
     /// kernel -r needs, whose functions have none at a point.
     Functional by_differences(double step) const;

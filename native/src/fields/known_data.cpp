@@ -105,6 +105,11 @@ void KnownData::check_slits() const {
         if (side < 0 || static_cast<std::size_t>(side) >= slits.sides)
             throw InputError("option", "a bound is on one of the combinations of sides");
     }
+    if (slits.normals.size() != slits.count) throw InputError("option", "each slit has a normal");
+    for (const Vec3& normal : slits.normals) {
+        if (!(std::abs(length(normal) - 1) < 1e-6))
+            throw InputError("option", "normals of slits have length 1");
+    }
     if (!all_finite(slits.contacts) || !all_finite(slits.dips) || !all_finite(slits.bounds) ||
         !all_finite(slits.dip_slopes) || !all_finite(slits.nodes))
         throw InputError("not_finite", "a coordinate of a slit is not finite");
@@ -118,7 +123,7 @@ Lift KnownData::lift(std::span<const double> of, std::size_t n) const {
 
 /// The derivative of f along a vector at a dip.
 SlopeAtom KnownData::slope(std::size_t dip, const Vec3& along) const {
-    SlopeAtom out{frame_.to_local(data_.dips[dip]), along, lift(data_.slits.dips, dip), {}};
+    SlopeAtom out{frame_.to_local(data_.dips[dip]), along, lift_of_dip(dip), {}};
     for (std::size_t k = 0; k < data_.slits.count; ++k) {
         const double* const rise = &data_.slits.dip_slopes[3 * (dip * data_.slits.count + k)];
         out.along_lift.push_back(frame_.unit * dot(along, {rise[0], rise[1], rise[2]}));

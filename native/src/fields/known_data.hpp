@@ -66,6 +66,8 @@ public:
     double half_spacing() const;
     /// The further coordinates of a contact.
     Lift lift_of(std::size_t contact) const { return lift(data_.slits.contacts, contact); }
+    /// Those of a dip.
+    Lift lift_of_dip(std::size_t dip) const { return lift(data_.slits.dips, dip); }
     /// Levels that rise, polarities and bounds.
     std::vector<Inequality> inequalities() const;
     /// About the distance of the first surface from the last.

@@ -22,6 +22,8 @@ constexpr int kGapRounds = 6;
 constexpr double kUneven = 4;
 // Levels that come out in the wrong order by more than this share of the mean gap are refused.
 constexpr double kWrongOrder = 0.5;
+// Of further coordinates: with this one side of a fault says little of the other.
+constexpr double kFarLift = 8;
 constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kSampledForOrder = 600,
                       kSampledForDistance = 2000;
 // What a critical point of the field through the sample costs, as a logarithm of likelihood, and on
@@ -54,7 +56,7 @@ public:
         if (known_.data().surfaces < 3) return {likely_, gaps_};
         const std::vector<double> apart = distances_between(known_, kSampledForDistance);
         if (!is_uneven(apart)) return {likely_, gaps_};
-        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift});
+        find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift, likely_.throws});
         look();
         find_gaps(apart, likely_);
         look();
@@ -65,7 +67,7 @@ private:
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
-        const Likely rough{kIsotropic, {1e-6, 1e-3}, 3, 1};
+        const Likely rough{kIsotropic, {1e-6, 1e-3}, 3, kFarLift};
         const Spline spline(sampled({}, rough.order), rough.smoothness(), execution_);
         const std::vector<double> levels = FrameFunction(known_, spline).levels();
         const double mean_gap = known_.total_gap() / last;
@@ -82,7 +84,8 @@ private:
     }
 
     void look() {
-        likely_ = most_likely(sampled(gaps_, 3), known_.data().normals, execution_);
+        likely_ = most_likely(sampled(gaps_, 3), known_.data().normals, known_.data().slits.normals,
+                              execution_);
         choose_order();
     }
 
@@ -125,7 +128,7 @@ private:
     /// critical points. That whose second ones are least bends at contacts instead. It is taken
     /// where it has so many fewer of them that the data may be less likely.
     void choose_order() {
-        const Likely rough{kIsotropic, {}, 2, likely_.lift};
+        const Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
         if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
     }
 

@@ -61,13 +61,18 @@ std::vector<double> distances_between(const KnownData& known, std::size_t most) 
     std::vector<std::vector<std::size_t>> on(known.data().surfaces);
     for (const std::size_t n : thinned(known, most))
         on[known.surface_of(n)].push_back(n);
+    std::vector<Lift> lifts;
+    for (std::size_t n = 0; n < at.size(); ++n)
+        lifts.push_back(known.lift_of(n));
     std::vector<double> out;
     for (std::size_t k = 0; k + 1 < on.size(); ++k) {
         std::vector<double> nearest;
         for (const std::size_t n : on[k]) {
             double least = 1e300;
-            for (const std::size_t m : on[k + 1])
-                least = std::min(least, length(minus(at[m], at[n])));
+            for (const std::size_t m : on[k + 1]) {
+                const Vec3 d = minus(at[m], at[n]);
+                least = std::min(least, std::sqrt(dot(d, d) + squared(lifts[m], lifts[n])));
+            }
             nearest.push_back(least);
         }
         const auto tenth = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 10);
@@ -77,13 +82,16 @@ std::vector<double> distances_between(const KnownData& known, std::size_t most) 
     return out;
 }
 
-bool is_against_neighbors(const FieldData& data, std::size_t dip) {
+bool is_against_neighbors(const KnownData& known, std::size_t dip) {
+    const FieldData& data = known.data();
     constexpr std::size_t kNearest = 3, kNear = 8;
     constexpr double kAlike = 0.7;
+    const Lift lift = known.lift_of_dip(dip);
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t n = 0; n < data.dips.size(); ++n) {
-        const Vec3 d = minus(data.dips[n], data.dips[dip]);
-        if (n != dip) near.emplace_back(dot(d, d), n);
+        if (n == dip) continue;
+        const Vec3 d = times(1 / known.frame().unit, minus(data.dips[n], data.dips[dip]));
+        near.emplace_back(dot(d, d) + squared(known.lift_of_dip(n), lift), n);
     }
     if (near.size() < kNearest) return false;
     std::sort(near.begin(), near.end());

@@ -27,6 +27,6 @@ std::vector<double> distances_between(const KnownData& known, std::size_t most);
 
 /// Whether the nearest dips have the attitude of one, but the other polarity, and none a little
 /// farther away agrees with it, as one on the same limb of a tight fold would.
-bool is_against_neighbors(const FieldData& data, std::size_t dip);
+bool is_against_neighbors(const KnownData& known, std::size_t dip);
 
 }  // namespace realmodel::fields

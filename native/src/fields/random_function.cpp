@@ -103,7 +103,8 @@ void RandomFunction::add_values(std::span<const Vec3> positions, std::span<const
     std::vector<Vec3> places(positions.size());
     std::vector<Lift> lifts_of(positions.size(), Lift(further));
     for (std::size_t n = 0; n < positions.size(); ++n) {
-        places[n] = mapped(smoothness_.map, positions[n]);
+        places[n] = mapped(smoothness_.map, positions[n], lifts.subspan(n * further, further),
+                           smoothness_.throws);
         for (std::size_t k = 0; k < further; ++k)
             lifts_of[n][k] = smoothness_.lift * lifts[n * further + k];
     }
@@ -120,7 +121,8 @@ double RandomFunction::of(const Functional& functional) const {
     double sum = 0;
     for (const ValueAtom& atom : functional.values)
         sum += atom.weight * value(atom.at, atom.lift);
-    const Functional here = functional.mapped_by(smoothness_.map, smoothness_.lift);
+    const Functional here =
+        functional.mapped_by(smoothness_.map, smoothness_.lift, smoothness_.throws);
     for (const SlopeAtom& atom : here.slopes) {
         assert(smoothness_.order == 3);
         double rise = 0;

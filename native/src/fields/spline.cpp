@@ -28,7 +28,7 @@ Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
     assert(smoothness.order == 2 || smoothness.order == 3);
     known_.reserve(known.size());
     for (const Functional& f : known)
-        known_.push_back(f.mapped_by(smoothness.map, smoothness.lift));
+        known_.push_back(f.mapped_by(smoothness.map, smoothness.lift, smoothness.throws));
     factor(execution);
     solve(execution);
     collect_centers();
@@ -143,7 +143,8 @@ std::vector<double> Spline::misfits_without(std::span<const std::size_t> functio
 }
 
 std::vector<double> Spline::weights_for(const Functional& functional) const {
-    const Functional f = functional.mapped_by(smoothness_.map, smoothness_.lift);
+    const Functional f =
+        functional.mapped_by(smoothness_.map, smoothness_.lift, smoothness_.throws);
     const Vec3 of = f.of_coordinates();
     const Lift lift = f.of_lift();
     const auto n = static_cast<Eigen::Index>(known_.size());
@@ -206,8 +207,12 @@ Lift Spline::scaled(const Lift& lift) const {
     return out;
 }
 
+Vec3 Spline::place(const Vec3& at, std::span<const double> lift) const {
+    return mapped(smoothness_.map, at, lift, smoothness_.throws);
+}
+
 double Spline::value(const Vec3& at, const Lift& lift) const {
-    const Vec3 p = mapped(smoothness_.map, at);
+    const Vec3 p = place(at, lift);
     const Lift q = scaled(lift);
     double sum = dot(tilt_, p) + product(q, lift_tilt_);
     for (const ValueAtom& atom : value_centers_) {
@@ -231,7 +236,8 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
         const std::size_t count = std::min<std::size_t>(kBlock, positions.size() - first);
         Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
         for (std::size_t n = 0; n < count; ++n) {
-            const Vec3 p = mapped(smoothness_.map, positions[first + n]);
+            const Vec3 p =
+                place(positions[first + n], lifts.subspan((first + n) * further, further));
             x(n) = p[0];
             y(n) = p[1];
             z(n) = p[2];
@@ -268,7 +274,7 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
 }
 
 std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
-    const Vec3 p = mapped(smoothness_.map, at);
+    const Vec3 p = place(at, lift);
     const Lift q = scaled(lift);
     Vec3 sum = tilt_;
     Lift rise = q.empty() ? Lift{} : lift_tilt_;
@@ -304,7 +310,7 @@ Vec3 Spline::gradient(const Vec3& at, const Lift& lift) const {
 
 /// By how much what was measured differs from the function.
 double Spline::error_at(const Vec3& at, const Lift& lift) const {
-    const auto found = measured_.find({mapped(smoothness_.map, at), scaled(lift)});
+    const auto found = measured_.find({place(at, lift), scaled(lift)});
     return found == measured_.end() ? 0 : smoothness_.errors.value * found->second;
 }
 
@@ -316,8 +322,7 @@ double Spline::of(const Functional& functional) const {
     }
     for (const SlopeAtom& atom : functional.slopes) {
         const auto [rise, up] = mapped_gradient(atom.at, atom.lift);
-        sum +=
-            dot(rise, mapped(smoothness_.map, atom.along)) + product(up, scaled(atom.along_lift));
+        sum += dot(rise, place(atom.along, atom.along_lift)) + product(up, scaled(atom.along_lift));
     }
     return sum;
 }

@@ -25,6 +25,7 @@ struct Smoothness {
     Errors errors{};
     int order = 3;    ///< of the derivatives that are least: 2 (no slopes are known), or 3
     double lift = 1;  ///< of further coordinates
+    std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
 
     Kernel kernel() const { return {order, errors.value}; }
 };
@@ -83,6 +84,7 @@ private:
     /// The gradient in the mapped coordinates, with the derivatives by the further ones.
     std::pair<Vec3, Lift> mapped_gradient(const Vec3& at, const Lift& lift) const;
     Lift scaled(const Lift& lift) const;
+    Vec3 place(const Vec3& at, std::span<const double> lift) const;
     double error_at(const Vec3& at, const Lift& lift) const;
 
     Smoothness smoothness_;

@@ -76,6 +76,7 @@ TEST(RandomFunction, RisesAsItsSlopesSay) {
     Smoothness smoothness;
     smoothness.map = {{{0.3, 0.1, 0}, {0.1, 1, 0}, {0, 0, 0.7}}};
     smoothness.lift = 2;
+    smoothness.throws = {{0.1, -0.2, 0.3}};
     const RandomFunction drawn(smoothness, 1, 2, 0.1, {4, numbers.directions, numbers.steps, {}});
     const Vec3 at{0.2, -0.1, 0.3}, along{0.5, 1, -0.4};
     constexpr double kStep = 1e-6;

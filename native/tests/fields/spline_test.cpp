@@ -167,6 +167,50 @@ TEST(Spline, BesideASlitBothSidesAreMet) {
     EXPECT_NEAR(spline.of(beyond), 0, 0.05);
 }
 
+/// Values of the wave and its slopes on both sides of a fault at x = 0, which has moved them along
+/// z.
+std::vector<Functional> beside_a_fault(const Vec3& thrown) {
+    std::mt19937 random(5);
+    const auto drawn = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+    const Lift from_lift{0.5};
+    const Vec3 from{0.3, 0, 0};
+    std::vector<Functional> known;
+    for (int n = 0; n < 60; ++n) {
+        const Vec3 at{drawn(), drawn(), drawn()};
+        const Lift lift{at[0] > 0 ? 0.5 : -0.5};
+        const Vec3 before = moved(at, lift[0], thrown);
+        known.push_back(Functional::difference(at, from, lift, from_lift));
+        known.back().right = wave(before) - wave(moved(from, 0.5, thrown));
+        if (n % 2 == 0) continue;
+        const Vec3 along{drawn(), drawn(), drawn()};
+        known.push_back({{}, {{at, along, lift, {0}}}, dot(wave_slope(before), along), false});
+    }
+    return known;
+}
+
+TEST(Spline, PlacesAreThoseBeforeAFault) {
+    const Vec3 thrown{0, 0, 0.2};
+    const std::vector<Functional> known = beside_a_fault(thrown);
+    const Spline spline(known, {kStretched, {}, 3, 0.1, {thrown}}, {});
+    for (const Functional& functional : known)
+        EXPECT_NEAR(spline.of(functional), functional.right, 1e-7);
+    const std::vector<Vec3> at{{0.1, -0.2, 0.3}, {-0.4, 0.1, 0}};
+    std::vector<double> values(2);
+    spline.values_at(at, std::array{0.5, -0.5}, values);
+    for (std::size_t n = 0; n < 2; ++n)
+        EXPECT_NEAR(values[n], spline.value(at[n], {n == 0 ? 0.5 : -0.5}), 1e-12);
+    // the same as a spline in those places
+    std::vector<Functional> before = known;
+    for (Functional& functional : before) {
+        for (ValueAtom& atom : functional.values)
+            atom.at = moved(atom.at, atom.lift[0], thrown);
+        for (SlopeAtom& atom : functional.slopes)
+            atom.at = moved(atom.at, atom.lift[0], thrown);
+    }
+    const Spline there(before, {kStretched, {}, 3, 0.1}, {});
+    EXPECT_NEAR(spline.value({0.4, 0.3, 0.1}, {0.5}), there.value({0.4, 0.3, 0.2}, {0.5}), 1e-9);
+}
+
 TEST(Spline, BetweenAStepASecondOrderOvershootsLess) {
     std::vector<Functional> known;
     for (int n = -10; n <= 10; ++n) {
@@ -265,7 +309,7 @@ TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
     for (int n = 0; n < 20; ++n)
         normals.push_back(unit(wave_slope({0.1 * n, 0, 0})));
     for (const int threads : {1, 4}) {
-        const Likely likely = most_likely(known, normals, {threads, nullptr});
+        const Likely likely = most_likely(known, normals, {}, {threads, nullptr});
         EXPECT_EQ(likely.errors.value, 0);
         const Anisotropy& found = likely.anisotropy;
         EXPECT_NEAR(std::abs(found.axes[0][1]), 1, 1e-9);
@@ -273,6 +317,19 @@ TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
         // and upwards, along which the wave is only moved
         EXPECT_NEAR(std::abs(found.axes[1][2]), 1, 0.02);
         EXPECT_LT(found.ratios[1], 0.5);
+    }
+}
+
+TEST(Anisotropy, ByHowMuchAFaultHasMovedRockIsFound) {
+    const Vec3 thrown{0, 0, 0.37};
+    const std::vector<Functional> known = beside_a_fault(thrown);
+    const std::vector<Vec3> faults{{1, 0, 0}};
+    for (const int threads : {1, 4}) {
+        const Likely likely = most_likely(known, {}, faults, {threads, nullptr});
+        ASSERT_EQ(likely.throws.size(), 1U);
+        EXPECT_EQ(likely.throws[0][0], 0);
+        EXPECT_NEAR(likely.throws[0][2], thrown[2], 0.02);
+        EXPECT_LT(likely.lift, 1);
     }
 }
 

@@ -93,7 +93,7 @@ def corners(items):
 
 
 def frame_items(items, shown):
-    """Frames objects in viewports, and extends their clipping."""
+    """Frames objects in viewports, beside their toolbars and sidebars, and extends their clipping."""
     around = corners(items)
     if not len(around):
         return
@@ -101,11 +101,39 @@ def frame_items(items, shown):
     diagonal = float(np.linalg.norm(np.ptp(around, axis=0)))
     for space in shown:
         space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
-        space.region_3d.view_location = middle
-        space.region_3d.view_distance = diagonal
-        space.region_3d.view_rotation = view_rotation().to_quaternion()
+        view = space.region_3d
+        view.view_location = middle
+        view.view_distance = diagonal
+        view.view_rotation = view_rotation().to_quaternion()
+        _move_beside(space, diagonal)
         if middle[2] < 0.0:
             space.overlay.show_floor = False  # its lines would lie over a model below it
+
+
+def _move_beside(space, distance):
+    """Moves what a viewport shows from the distance in its middle to the middle of what no toolbar and no
+    sidebar covers, and farther away as that is narrower."""
+    area = next((area for area in areas() if area.spaces.active == space), None)
+    if area is None or bpy.app.background:  # there Blender ends where it looks for a region's pixels
+        return
+    regions = {region.type: region for region in area.regions}
+    region, view = regions["WINDOW"], space.region_3d
+    left, right = region.x, region.x + region.width
+    for kind in ("TOOLS", "UI"):
+        other = regions.get(kind)
+        if other is None or other.width <= 1 or other.x + other.width <= left or other.x >= right:
+            continue  # it is hidden, or stands beside the region
+        if other.x + 0.5 * other.width < region.x + 0.5 * region.width:
+            left = max(left, other.x + other.width)
+        else:
+            right = min(right, other.x)
+    if right <= left:
+        return
+    view.view_distance = distance * region.width / (right - left)
+    view.update()
+    at = 0.5 * (left + right) - region.x, 0.5 * region.height
+    target = Vector(view.view_location)
+    view.view_location = 2.0 * target - view3d_utils.region_2d_to_location_3d(region, view, at, target)
 
 
 def under_mouse(context, event):

@@ -46,10 +46,12 @@ _GROOVE = 0.07  # texture units: half the width of a groove or a crack
 _BENT = 0.9  # texture units: how far joints wind
 _JOINT_SETS = (((0.93, 0.35, 0.09), 1.9), ((-0.46, 0.88, -0.14), 1.0))  # normals, and how far apart
 _CRYSTAL = 0.4  # clasts of this size and smaller touch one another
-_CLAST_SIZES, _CLAST_SHARES = (1.0, 0.36), (0.5, 0.8)  # large and small clasts; how far crystals differ
+_CLAST_SIZES, _CLAST_SHARES = (1.0, 0.4), (0.5, 0.8)  # large and small clasts; how far crystals differ
 _RADII = 0.26, 0.2  # of pebbles, of the size of a cell: how much they differ, and the least
 _ROUND, _ROUNDED = (-3.0, 1.08), 0.5  # how pebbles end at the border of their cell, and how round there
 _UNEVEN = 0.08  # texture units: how uneven the outlines of pebbles are
+_DOME = 0.42  # how far pebbles stand out, of their radius: their rims are not steeper than 40 degrees
+_SEAM, _SHADE = 1.3, 0.16  # of its radius: how far its shade reaches into the matrix; and how dark it is
 _OCTAVES = 7.0  # of the relief: a hundredth of its size, so that it is rough at two meters, too
 _WAVY = 0.16  # texture units: how far laminae are from straight
 _BLADE, _BENT_BLADES = 0.012, 14.0  # texture units: how wide a blade of grass is; blades: how far they wind
@@ -346,18 +348,16 @@ def _add_pebbles(nodes, place, look, rough, texture):
         away = nodes.math("SMOOTH_MAX", whole, ends, _ROUNDED)
         here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", third, look.packing), free)
         inside = nodes.math("MULTIPLY", nodes.ramp(away, 0.92, 1.0, 1.0, 0.0), here)
-        seam = nodes.math("MULTIPLY", nodes.ramp(away, 1.0, 1.12, 1.0, 0.0), here)
+        seam = nodes.math("MULTIPLY", nodes.ramp(away, 0.96, _SEAM, 1.0, 0.0), here)
         tone = nodes.math("MULTIPLY", nodes.about(first, 2.0 * look.clasts), inside)
-        between = nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, seam), 0.3)  # around them it is dark
+        between = nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, seam), _SHADE)
         texture.tones.append(nodes.math("ADD", tone, between))
         texture.pale.append(nodes.math("MULTIPLY", nodes.about(second, 1.6 * look.clasts), inside))
         hue = nodes.math("MULTIPLY", nodes.math("SUBTRACT", third, 0.5), 0.5)
         texture.hues.append(nodes.math("MULTIPLY_ADD", hue, inside, 0.5))
-        dome = nodes.math("SUBTRACT", 1.0, nodes.math("MULTIPLY", whole, whole))
-        dome = nodes.math("SQRT", nodes.math("MAXIMUM", dome, 0.0))
-        dome = nodes.math("MULTIPLY", dome, nodes.ramp(away, 0.35, 1.0, 1.0, 0.0))
-        high = nodes.math("MULTIPLY", nodes.math("MULTIPLY", dome, radius), 0.9 * size)
-        texture.heights.append(nodes.math("MULTIPLY", high, here))
+        dome = nodes.math("SUBTRACT", 1.0, nodes.math("MULTIPLY", away, away))
+        dome = nodes.math("MULTIPLY", nodes.math("MAXIMUM", dome, 0.0), radius)
+        texture.heights.append(nodes.math("MULTIPLY", nodes.math("MULTIPLY", dome, _DOME * size), here))
         free = nodes.math("SUBTRACT", 1.0, nodes.math("MAXIMUM", inside, seam))
 
 

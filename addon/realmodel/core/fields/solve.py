@@ -26,19 +26,21 @@ def _item(kind: str, row: int) -> str:
 
 @dataclass(frozen=True, eq=False)
 class SlitData:
-    """Faults that die out: each gives places one more coordinate, which jumps across it, so that the field
-    may differ on its two sides and is one function around its tips.
+    """Faults: each gives places one more coordinate, which jumps across it, so that the field may differ on
+    its two sides; around the tips of those that die out it is one function.
 
     contacts (N, F), dips (M, F), bounds (B, F): the coordinates of data. slopes: (M, F, 3) how they rise at
-    dips. nodes: (S, nodes, F) those of a lattice's nodes, on each combination of sides as if the faults were
-    not there. same: (S, nodes) int64: combination * nodes + node of the first combination that has the same
-    coordinates there by being beyond tips. bound_sides: (B,) int32 the combination that each bound is on.
+    dips. normals: (F, 3) of the faults in the mean, of length 1. nodes: (S, nodes, F) the coordinates of a
+    lattice's nodes, on each combination of sides as if the faults were not there. same: (S, nodes) int64:
+    combination * nodes + node of the first combination that has the same coordinates there by being beyond
+    tips. bound_sides: (B,) int32 the combination that each bound is on.
     """
 
     contacts: np.ndarray
     dips: np.ndarray
     bounds: np.ndarray
     slopes: np.ndarray
+    normals: np.ndarray
     nodes: np.ndarray
     same: np.ndarray
     bound_sides: np.ndarray
@@ -46,11 +48,13 @@ class SlitData:
     def native(self) -> tuple:
         """The argument of the native module."""
         sides, _, count = self.nodes.shape
-        arrays = (self.contacts, self.dips, self.bounds, self.slopes, self.nodes)
+        arrays = (self.contacts, self.dips, self.bounds, self.slopes)
         return (
             count,
             sides,
             *(np.ascontiguousarray(each, np.float64).ravel() for each in arrays),
+            np.ascontiguousarray(self.normals, np.float64),
+            np.ascontiguousarray(self.nodes, np.float64).ravel(),
             self.same.ravel(),
             self.bound_sides,
         )

@@ -39,7 +39,7 @@ from .field_warnings import (
 )
 from .parts.part_models import level
 from .series_data import SeriesData
-from .sheets.families import Family, families
+from .sheets.families import DIES_OUT, Family, families
 from .sheets.within import Within
 from .slits import Slits
 
@@ -49,6 +49,8 @@ _MOST_NODES = 20_000_000
 _DIGITS = 20  # of an edge of the lattice
 _NEAR = 1e-12  # of the range of f: a bound so near holds
 _PLACES = 0.5  # of an edge of the lattice: how far places within intervals are apart at most
+_FEW = 1500  # contacts and dips: of more each compartment has a field of its own data
+_MOST_TOGETHER = 32  # compartments whose fields are one function
 _ROUNDS = 4  # in which bounds that contacts have put off are held
 # By how much of a cell the lattice reaches beyond the rock at its low end: not by a simple fraction, so that
 # its planes do not lie in those of other meshes.
@@ -128,13 +130,15 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
     warn_of_distance(entry, series, data.positions())
     structure = entry.divided()
     sides = sides_of(work, data.positions(), structure.faults)
+    shared = _families(entry, series, numbers, len(data.contacts) + len(data.dips))
     fields: dict[int, ScalarField] = {}
     critical = [np.empty((0, 3))]
     draws = entry.field_draws.get(series.name)
-    for number, family in enumerate(work.share_out(_families(entry, series, numbers))):
+    for number, family in enumerate(work.share_out(shared)):
         within = Within(work, structure, numbers[-1], family)
         names = [structure.names[each] for each in family.members]
         chosen = _chosen(entry, series, data, within.has(sides), names)
+        _warn_of_sides(entry, series, data, sides, family)
         own = data.some(chosen)
         with naming(f"{entry.rock.item}, {series.item}"):
             slits = Slits.of(entry, family, within, lattice)
@@ -176,6 +180,21 @@ def _chosen(
     return here
 
 
+def _warn_of_sides(
+    entry: RockInput, series: Series, data: SeriesData, sides: np.ndarray, family: Family
+) -> None:
+    """Warns of compartments of a family on a side of a fault where no contacts lie: by how much it displaces
+    rock there is not known. sides: of all data."""
+    structure = entry.divided()
+    dividing = [fault for fault in family.branches if not structure.faults.dies_out[fault]]
+    rows = structure.compartments[:, dividing]
+    of_contacts = sides[: len(data.contacts), dividing]
+    is_seen = (rows[:, None] == of_contacts[None]).any(axis=1) | (rows == 0)
+    if unseen := [structure.names[n] for n in np.flatnonzero(~is_seen.all(axis=1))]:
+        every = [entry.rock.surfaces[number].name for number in data.numbers]
+        warn_of_lacks(entry, series, every, unseen)
+
+
 class _Solved(NamedTuple):
     """The fields on the combinations of sides of slits; where: (N,) the combination that each datum is on."""
 
@@ -214,8 +233,9 @@ def _through_data(
     return made
 
 
-def _families(entry: RockInput, series: Series, numbers: list[int]) -> list[Family]:
-    """The compartments that share a field. Raises InputRefused for faults that it cannot have."""
+def _families(entry: RockInput, series: Series, numbers: list[int], count: int) -> list[Family]:
+    """The compartments that share a field: all of them where there are few data, so `count`, since then those
+    of each alone say little. Raises InputRefused for faults that it cannot have."""
     structure = entry.divided()
     faults = structure.faults
     active = faults.active(numbers[-1])
@@ -223,7 +243,13 @@ def _families(entry: RockInput, series: Series, numbers: list[int]) -> list[Fami
     for number in np.flatnonzero(faults.active(numbers[0]) & ~active):
         what = f"fault '{faults.names[number]}' displaces some of its surfaces, but not all"
         raise series.refused(what, "name", "divide it into two series, or change 'youngest'", item)
-    return sorted(families(structure, numbers[-1]), key=lambda family: family.key)
+    found = sorted(families(structure, numbers[-1]), key=lambda family: family.key)
+    if len(found) < 2 or len(structure.compartments) > _MOST_TOGETHER or count > _FEW:
+        return found
+    faulted = np.flatnonzero(active)
+    rows = structure.compartments[:, faulted].tolist()
+    key = tuple(DIES_OUT if each else 0 for each in active.tolist())
+    return [Family(key, dict(enumerate(map(tuple, rows))), tuple(faulted.tolist()))]
 
 
 def _lattice(entry: RockInput, series: Series, places: np.ndarray, top: float) -> Lattice:

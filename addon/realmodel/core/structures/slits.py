@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults that die out in a series: the coordinates by which its field differs on their two sides.
+"""Faults in a series: the coordinates by which its field differs on their two sides.
 
-A coordinate is half of a fault's `mouth`, with the sign of the side: the mouth is 0 on what continues the
-fault beyond its tips, and grows along the fault from there. On each combination of sides of the faults the
-field is made at all nodes as if they were not there, but around the continuation, where it is one function:
-these nodes are the same for both sides, to the bit, and so are the level sets between them.
+Each is half of a fault's `mouth`, with the sign of the side. The mouth of one that divides all rock is
+1. That of one that dies out is 0 on what continues it beyond its tips, and grows along it from there. On each
+combination of sides of the faults the field is made at all nodes as if they were not there, but around such
+a continuation, where it is one function: these nodes are the same for both sides, to the bit, and so are the
+level sets between them.
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ _STEP = 0.5  # of an edge of the lattice: over which slopes at dips are measured
 
 @dataclass(frozen=True, eq=False)
 class Slit:
-    """shape: of a fault that dies out. number: of the fault in the rock mass. pieces: (T, 3, 3) triangles of
-    what continues it in the rock that it displaces. cells: (x, y, z) bool, those of the lattice that these
+    """shape: of a fault. number: of the fault in the rock mass. pieces: (T, 3, 3) triangles of what continues
+    it in the rock that it displaces, where it dies out. cells: (x, y, z) bool, those of the lattice that they
     meet. reach: how far the fault goes from its tips. ends: the slits, by their places among all, at which it
     ends, and the side of each that it is on; beyond their tips it has no mouth either, as the way round these
     leads to where it is not: pieces and cells are those of these slits, too."""
@@ -60,7 +61,7 @@ class Slit:
 
 @dataclass(frozen=True, eq=False)
 class Slits:
-    """The faults that die out in a family of compartments, each after those at which it ends. combinations:
+    """The faults that part a family of compartments, each after those at which it ends. combinations:
     (S, F) int8 of their sides that there are, 0 beyond a fault at which it ends; members: of each the
     compartments. of_nodes: (S, nodes, F) int8: of each the sides of nodes: beyond tips their own ones."""
 
@@ -84,8 +85,8 @@ class Slits:
         slits: list[Slit] = []
         for number in order:
             branches = [n for n, own in enumerate(faults.ends) if number in [other for other, _ in own]]
-            dividing = [n for n in branches if n not in family.dying]
-            if dividing:
+            dividing = [n for n in branches if not faults.dies_out[n]]
+            if dividing and faults.dies_out[number]:
                 raise InputRefused(
                     f"it dies out in a series with a field, and fault '{faults.names[dividing[0]]}', which "
                     "does not, ends at it",
@@ -137,7 +138,17 @@ class Slits:
         positions = self.lattice.positions()
         mouths = self._columns([slit.mouth(work, positions) for slit in self.slits], len(positions))
         nodes = 0.5 * self.of_nodes * mouths
-        return SlitData(contacts, dips, bounds, slopes, nodes, self._same, of_bounds.astype(np.int32))
+        of_bounds = of_bounds.astype(np.int32)
+        return SlitData(contacts, dips, bounds, slopes, self._normals(), nodes, self._same, of_bounds)
+
+    def _normals(self) -> np.ndarray:
+        """(F, 3) the normals of the faults, in the mean over their areas."""
+        found = np.empty((len(self.slits), 3))
+        for n, slit in enumerate(self.slits):
+            a, b, c = slit.shape.vertices[slit.shape.triangles].transpose(1, 0, 2)
+            found[n] = np.cross(b - a, c - a).sum(axis=0)
+        size = norm(found)[:, None]
+        return np.where(size > 0, found / np.where(size > 0, size, 1.0), [0.0, 0.0, 1.0])
 
     def _beside(self, work: Work, points: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """(N, F) the coordinates at points beside places on combinations (N,): beyond tips by their own
@@ -183,7 +194,7 @@ def _slit(
     box = np.ascontiguousarray(np.stack(lattice.corners))
     beyond = native_module().structure_continuation(shape.native(), box).reshape(-1, 3, 3)
     size = _PIECE * lattice.spacing[0]
-    pieces = _divided(beyond, size, box)
+    pieces = _divided(beyond if structure.faults.dies_out[number] else beyond[:0], size, box)
     pieces = pieces[_in_rock(entry, number, within, pieces, size)]
     for _, side, other in ends:
         pieces = pieces[fault_sides(within.work, pieces.mean(axis=1), other.shape) != -side]

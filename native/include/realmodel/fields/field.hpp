@@ -12,14 +12,15 @@
 
 namespace realmodel::fields {
 
-/// Faults that die out within: f is one function around their tips, and differs on their two sides.
-/// Each gives places a further coordinate, which jumps across it. Of each datum these come one
-/// after another.
+/// Faults on whose two sides f differs. Around the tips of those that die out within it is one
+/// function. Each gives places a further coordinate, which jumps across it. Of each datum these
+/// come one after another.
 struct Slits {
     std::size_t count = 0;  ///< of faults
     std::span<const double> contacts, dips, bounds;
     std::span<const double> dip_slopes;  ///< by how much they rise there, three for each
-    std::size_t sides = 1;               ///< combinations of sides of them
+    std::span<const std::array<double, 3>> normals;  ///< of the faults, in the mean, of length 1
+    std::size_t sides = 1;                           ///< combinations of sides of them
     /// Of the lattice's nodes, on one combination of sides after another, each continued as if the
     /// faults were not there.
     std::span<const double> nodes;
@@ -55,12 +56,13 @@ struct Anisotropy {
 struct FunctionKind {
     Anisotropy anisotropy;
     int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough
-    double value_error = 0, slope_error = 0;  ///< variances of errors, in units of the kernel
-    double lift = 1;                          ///< by how much further coordinates are scaled
-    double scale = 0;                         ///< variance per unit of the kernel
-    std::vector<double> gaps;                 ///< differences of the levels; none: they are free
-    std::vector<std::uint8_t> centers;        ///< (contacts) which of them carry the field
-    std::vector<std::uint8_t> left_out;       ///< inequalities that contradict other data
+    double value_error = 0, slope_error = 0;    ///< variances of errors, in units of the kernel
+    double lift = 1;                            ///< by how much further coordinates are scaled
+    std::vector<std::array<double, 3>> throws;  ///< by how much places move for each unit of them
+    double scale = 0;                           ///< variance per unit of the kernel
+    std::vector<double> gaps;                   ///< differences of the levels; none: they are free
+    std::vector<std::uint8_t> centers;          ///< (contacts) which of them carry the field
+    std::vector<std::uint8_t> left_out;         ///< inequalities that contradict other data
 };
 
 /// Independent normal numbers that a random function is made of: on lines in random directions a
@@ -116,7 +118,8 @@ struct Field {
 ///
 /// Space is scaled along the fold axis, which dips have in common, and across it in the axial
 /// plane, so that f bends less there: by those ratios under which the data are most likely
-/// (restricted likelihood; Patterson and Thompson 1971, Kitanidis 1983).
+/// (restricted likelihood; Patterson and Thompson 1971, Kitanidis 1983). So is by how much each
+/// fault has moved the rock on one side, along it: f is the smoothest where the rock was before.
 ///
 /// Of more contacts than the options allow those carry the field that it would miss most (Carr et
 /// al. 2001, "Reconstruction and representation of 3D objects with radial basis functions").

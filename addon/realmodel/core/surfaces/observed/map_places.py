@@ -60,21 +60,23 @@ def observed_on_map(
     z = frame.heights(plan) if len(plan) else np.empty(0)
     known = np.isfinite(z)
     if not known.all():
-        missing = len(np.unique(plan[~known], axis=0))
-        warnings.append(f"{missing} places of the map are where the ground is not known, and are left out")
+        missing = np.unique(plan[~known], axis=0)
+        text = f"{len(missing)} places of the map are where the ground is not known, and are left out"
+        warnings.append(f"{text}: one is at {place_text(missing[0].tolist())}")
     places = np.column_stack([plan, z])[known]
     return Observations(places, np.array([*names, ""])[of_class[known]]), left_out, warnings
 
 
 def _blocks(polygons: list[UnitPolygon], units: UnitNames) -> tuple[list[str], list[LeftOut]]:
-    """The block of each polygon, by the name that UnitNames gives it; "" for none."""
-    found, left_out = [], []
+    """The block of each polygon, by the name that UnitNames gives it; "" for none. A feature of several
+    polygons is left out once."""
+    found, left_out = [], dict[str, LeftOut]()
     for each in polygons:
         block = "" if units.says_nothing(each.unit) else units.block(each.unit)
         if block is None:
-            left_out.append(unknown_block(f"{each.item}, '{each.unit}'", each.unit))
+            left_out[each.item] = unknown_block(f"{each.item}, '{each.unit}'", each.unit)
         found.append(block or "")
-    return found, left_out
+    return found, list(left_out.values())
 
 
 def _gaps(polygons: list[UnitPolygon], classes: np.ndarray, apart: list[Apart]) -> list[str]:
