@@ -350,3 +350,17 @@ def test_a_second_structure_is_drawn_and_written_as_a_sum():
     for h in (2.0, 5.0, 15.0):
         assert variogram.semivariance(h) == pytest.approx(truth.semivariance(h), rel=0.4)
     assert len(variogram.settings()["structures"]) == 2
+
+
+def test_contacts_along_lines_of_a_map_do_not_follow_the_ground():
+    """Lines are drawn within some meters: near each, contacts lie on the ground, whose slope is another."""
+    ground = lambda x, y: 300 + 80 * np.sin(x / 900) * np.cos(y / 700) + 40 * np.sin(x / 311 + y / 417)  # noqa: E731
+    contact = lambda x: 200 + 0.03 * x  # noqa: E731
+    x, y = np.random.default_rng(3).uniform(0, 7000, (2, 40000))
+    near = np.abs(ground(x, y) - contact(x)) < 2
+    points = np.column_stack([x, y, ground(x, y)])[near]
+    _, one = np.unique(np.floor(points[:, :2] / 60), axis=0, return_index=True)
+    nodes = np.column_stack([each.ravel() for each in np.mgrid[500:6500:20j, 500:6500:20j]])
+    for method, most in (("kriging", 5.0), ("universal_kriging", 1.0), ("auto", 1.0)):
+        found = interpolate(points[one], nodes, method=method)
+        assert np.median(np.abs(found.z - contact(nodes[:, 0]))) < most, method

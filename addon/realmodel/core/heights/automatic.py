@@ -57,15 +57,11 @@ class Trial:
             return from_neighbours.krige(task, self.known)
         return run_method(self.candidate.method, task)
 
-    def error(self, task: Task, points: np.ndarray) -> float:
-        """The root mean square error at points that are left out, the same points for every candidate."""
-        folds = len(points) if len(points) < _FEW else _FOLDS
-        step = max(folds, len(points) // _LEFT_OUT)
+    def error(self, task: Task, points: np.ndarray, left_out: list[np.ndarray]) -> float:
+        """The root mean square error at points that are left out. left_out: (P,) bool, which at a time."""
         errors = []
-        for fold in range(1 if step > folds else folds):
+        for out in left_out:
             task.work.check()
-            out = np.zeros(len(points), bool)
-            out[fold::step] = True
             others, places = np.ascontiguousarray(points[~out]), np.ascontiguousarray(points[out, :2])
             errors.append(self.run(task, others, places).z - points[out, 2])
         return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
@@ -100,7 +96,8 @@ def choose(task: Task) -> tuple[Trial, str]:
     if len(able) == 1:
         return _trial(task, able[0]), "there are few points, and it uses dips"
     trials = [_trial(task, candidate) for candidate in able]
-    errors = [trial.error(task, points) for trial in trials]
+    left_out = _left_out(task, points)
+    errors = [trial.error(task, points, left_out) for trial in trials]
     significant = np.maximum(errors, _ROUNDING * np.abs(points[:, 2]).max())
     least = significant.min()
     best = next(
@@ -113,6 +110,20 @@ def choose(task: Task) -> tuple[Trial, str]:
     )
     said = [f"{trial.candidate.name} {error:.4g}" for trial, error in zip(trials, errors, strict=True)]
     return best, f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"
+
+
+def _left_out(task: Task, points: np.ndarray) -> list[np.ndarray]:
+    """(P,) bool, which points are left out at a time: every tenth, or one of few; of clustered points all in
+    every tenth square, so that they are estimated from as far as nodes are."""
+    buffer = task.run(native_module().buffer_of_clusters, points)
+    if buffer > 0.0:
+        _, order = np.unique(np.floor(points[:, :2] / buffer), axis=0, return_inverse=True)
+        order, folds, step = order.ravel(), _FOLDS, _FOLDS
+    else:
+        order, folds = np.arange(len(points)), len(points) if len(points) < _FEW else _FOLDS
+        step = max(folds, len(points) // _LEFT_OUT)
+    left_out = [order % step == fold for fold in range(1 if step > folds else folds)]
+    return [out for out in left_out if out.any() and not out.all()]
 
 
 def _is_able(candidate: Candidate, task: Task) -> bool:

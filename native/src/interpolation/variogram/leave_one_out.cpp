@@ -42,8 +42,8 @@ LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::s
         point = index_among(kept, points.size(), point);
 }
 
-/// Of each point left out, and of the `asked` nearest to it: itself, and its nearest others beyond a
-/// distance, or the farthest where there are too few beyond.
+/// Of each point left out, and of the `asked` nearest to it: itself, and its nearest others beyond
+/// a distance, or the farthest where there are too few beyond.
 std::vector<spatial::Neighbor> LeaveOneOut::beyond(std::span<const spatial::Neighbor> near,
                                                    std::size_t asked, double buffer) const {
     std::vector<spatial::Neighbor> out;

@@ -22,7 +22,7 @@ TEST(LeaveOneOut, TheErrorsOfCrossValidation) {
     for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
         const Kriged expected = krige_left_out(points, v, {{12}, drift}, {1});
         for (const int threads : {1, 3}) {
-            const LeaveOneOut some(data, 12, 100, {threads, nullptr});
+            const LeaveOneOut some(data, 12, 100, 0, {threads, nullptr});
             ASSERT_EQ(some.size(), 100U);
             const PredictionErrors found = some.errors(Covariance(v), drift);
             for (std::size_t k = 0; k < 100; ++k) {
@@ -37,7 +37,7 @@ TEST(LeaveOneOut, FewPointsAndCancelling) {
     const Points two{{0, 0, 1}, {1, 0, 4}};
     const ManyPoints data(two);
     Progress progress;
-    const LeaveOneOut both(data, 32, 1000, {1, &progress});
+    const LeaveOneOut both(data, 32, 1000, 0, {1, &progress});
     EXPECT_EQ(both.neighbors(), 1U);
     const Covariance covariance({VariogramModel::kSpherical, 2, 1, 0, {}, {}});
     const PredictionErrors found = both.errors(covariance);
@@ -92,7 +92,7 @@ TEST(AnisotropySearch, FindsTheDirectionInWhichHeightsChangeLeast) {
     for (auto& p : points)
         p[2] = std::sin(p[0] / 6) + std::sin(p[1] / 18);  // longest toward north
     const ManyPoints data(points);
-    const LeaveOneOut all(data, 16, 400, {0, nullptr});
+    const LeaveOneOut all(data, 16, 400, 0, {0, nullptr});
     CurveFit fit;
     fit.curve = {.model = VariogramModel::kMatern52, .range = 40};
     fit.partial_sill = 1;

@@ -71,7 +71,8 @@ TEST(ManyPoints, APartOfThemGivesTheSame) {
             EXPECT_EQ(a.pairs, b.pairs);
         }
         if (kSanitized && drift == Drift::kConstant) continue;
-        const LeaveOneOut of_all(all, 16, 60, {1, nullptr}), of_few(few, 16, 60, {1, nullptr});
+        const LeaveOneOut of_all(all, 16, 60, 0, {1, nullptr}),
+            of_few(few, 16, 60, 0, {1, nullptr});
         const PredictionErrors a = of_all.errors(Covariance(v), drift);
         const PredictionErrors b = of_few.errors(Covariance(v), drift);
         EXPECT_EQ(a.errors, b.errors);
