@@ -35,6 +35,9 @@ endif()
 if(REALMODEL_SANITIZE)
     target_compile_options(realmodel_settings INTERFACE
         -fsanitize=${REALMODEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    # What is inlined with its checks takes most of clang++'s time: two thirds of it this way.
+    target_compile_options(realmodel_settings INTERFACE
+        $<$<CXX_COMPILER_ID:Clang>:SHELL:-mllvm -inline-threshold=30>)
     target_link_options(realmodel_settings INTERFACE -fsanitize=${REALMODEL_SANITIZE})
     if(REALMODEL_SANITIZE MATCHES "address")
         target_sources(realmodel_settings INTERFACE "${CMAKE_CURRENT_LIST_DIR}/leak_suppressions.cpp")
