@@ -127,10 +127,19 @@ private:
     AlignedNumbers rows_, x_, y_, estimates_, variances_;
 };
 
+/// Points that one thread predicts in a row, of so many neighbors. A fit calls this some hundred
+/// times: below about a millisecond the threads of OpenMP would use more time waiting for the next
+/// call than they save.
+std::size_t points_in_chunk(std::size_t neighbors) {
+    return neighbors <= 16 ? 2048 : neighbors <= 32 ? 256 : kChunk;
+}
+static_assert(2048 % kLanes == 0 && 256 % kLanes == 0);
+
 }  // namespace
 
 void LeaveOneOut::predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const {
-    const NodeLoop loop{left_out_.size(), kChunk, {execution_.threads, nullptr}};
+    const NodeLoop loop{
+        left_out_.size(), points_in_chunk(neighbors_), {execution_.threads, nullptr}};
     loop.over_chunks([&] { return PredictionLanes(data_, covariance, neighbors_); },
                      [&](PredictionLanes& own, std::size_t begin, std::size_t end) {
                          for (std::size_t k = begin; k < end; k += kLanes) {
