@@ -36,9 +36,13 @@ constexpr double kLittle = 1e-3;  // gains that end the refinement
 constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
                              VariogramModel::kMatern52, VariogramModel::kMatern32};
 
-std::span<const VariogramModel> models_for(bool has_dips) {
-    if (has_dips) return kSmooth;
-    return kRisingModels;
+/// Bounds that count become data beside the points, where a Gaussian model, which is much smoother
+/// than the others, has hardly any freedom left: heights are sums of large numbers then.
+std::vector<VariogramModel> models_for(bool has_dips, bool has_bounds) {
+    std::vector<VariogramModel> found(kRisingModels.begin(), kRisingModels.end());
+    if (has_dips) found.assign(kSmooth.begin(), kSmooth.end());
+    if (has_bounds) std::erase(found, VariogramModel::kGaussian);
+    return found;
 }
 
 /// By how much the logarithm has to be larger with `more` parameters than with `few` of them, as so
@@ -243,18 +247,18 @@ public:
     }
 
     /// All steps, for a surface or for sheets.
-    void run(bool has_dips, const Anisotropy& given, bool finds_anisotropy) {
-        const std::span<const VariogramModel> models = models_for(has_dips);
+    void run(bool has_dips, const Anisotropy& given, const FitOptions& options) {
+        const std::vector<VariogramModel> models = models_for(has_dips, options.has_bounds);
         ranges_of(models, given);
         if (!has_found()) return;
         thicknesses();
         refine(false);
         thickness_ = shape_.thickness;
         const bool is_rich = free_ >= kFewestFree;
-        if (is_rich && finds_anisotropy) anisotropies(models);
+        if (is_rich && options.finds_anisotropy) anisotropies(models);
         if (is_rich) nuggets();
         // limbs of folds are seen in dips; points alone may look like waves by chance
-        if (has_dips && finds_anisotropy && free_ >= kFewestOfWave) waves();
+        if (has_dips && options.finds_anisotropy && free_ >= kFewestOfWave) waves();
     }
 
 private:
@@ -335,7 +339,7 @@ std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 
     const Likelihood likelihood(points, options.dips, options.drift);
     if (!is_enough(likelihood)) return std::nullopt;
     LikelihoodSearch search({likelihood}, progress);
-    search.run(!options.dips.positions.empty(), given, options.finds_anisotropy);
+    search.run(!options.dips.positions.empty(), given, options);
     if (!search.has_found()) return std::nullopt;
     return search.variogram();
 }
@@ -353,7 +357,7 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
     }
     if (enough.empty()) return {};
     LikelihoodSearch search(std::move(enough), execution.progress);
-    search.run(has_dips, anisotropy, options.finds_anisotropy);
+    search.run(has_dips, anisotropy, options);
     if (!search.has_found()) return {};
     const Variogram shared = search.variogram();
     std::vector<FittedVariogram> found;
@@ -378,7 +382,7 @@ std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> po
     if (given) {
         search.thicknesses_of(*given);
     } else {
-        search.run(!options.dips.positions.empty(), anisotropy, options.finds_anisotropy);
+        search.run(!options.dips.positions.empty(), anisotropy, options);
     }
     if (!search.has_found()) return std::nullopt;
     FittedSheets found = given ? search.sheets_of(*given) : search.sheets();

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "../dense_kriging.hpp"
+#include "interpolation/variogram/leave_one_out.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 
 namespace realmodel::interpolation {

@@ -51,6 +51,16 @@ TEST(Likelihood, OfTwoPointsByHand) {
     EXPECT_NEAR(found->logarithm(), expected, 1e-9);
 }
 
+TEST(Likelihood, NoGaussianModelWhereThereAreBounds) {
+    Points points = hills(14, 1000, {0, 0}, 3);
+    for (auto& point : points)
+        point[2] = fold(point[0] / 4);
+    FitOptions options;
+    EXPECT_EQ(likeliest_variogram(points, {}, options, nullptr)->model, VariogramModel::kGaussian);
+    options.has_bounds = true;
+    EXPECT_NE(likeliest_variogram(points, {}, options, nullptr)->model, VariogramModel::kGaussian);
+}
+
 TEST(Likelihood, DoesNotDependOnTheUnitOfHeights) {
     Folded feet;
     const Folded meters;
