@@ -9,10 +9,11 @@ import pytest
 from faulted.case import CORPUS, BodyCase, load_case, save_case
 from faulted.contract import FaultSides, is_inside, levels
 from faulted.generate import random_case
-from faulted.judge import failures_of
+from faulted.judge import failures_of, topology
 from faulted.located import distances
 from faulted.minimize import minimize
 from faulted.shapes import box, together
+from realmodel.core import build
 
 FILES = sorted(CORPUS.glob("*.json"))
 
@@ -34,6 +35,26 @@ def test_file_is_small_and_survives_rewriting(path, tmp_path):
 @pytest.mark.parametrize("seed", range(100, 112))
 def test_random_ones_are_built_right(seed):
     assert failures_of(random_case(seed)) == []
+
+
+def assert_cut_right(case, point, normal):
+    model = build(case.project(), cells=case.cells)
+    cut, section = model.cut_by_plane(point, normal), model.section(point, normal)
+    assert topology(cut.above) == topology(cut.below) == []
+    parts = [[block.volume for block in half.blocks] for half in (cut.above, cut.below)]
+    wanted = [block.volume for block in model.blocks]
+    assert np.sum(parts, axis=0) == pytest.approx(wanted, abs=1e-9 * sum(wanted))
+    assert cut.section.area == pytest.approx(section.area, rel=1e-9)
+
+
+def test_a_block_that_touches_itself_has_no_flap_where_it_is_cut():
+    """The section passes one place by two nodes: on a wall, and on the edge of a body that stands there."""
+    case = load_case(CORPUS / "body_touches_wall.json")
+    assert_cut_right(
+        case,
+        (2.1420722654611994, 2.3992919169943203, 0.26062240319661667),
+        (-1.035160660959793, -0.38041307686270903, -1.2624809504826022),
+    )
 
 
 def test_a_case_is_the_same_for_a_seed():

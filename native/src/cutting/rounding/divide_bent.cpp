@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 
+#include "arrangement/triangulate.hpp"
 #include "base/parallel.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 
@@ -77,9 +79,9 @@ bool is_bent(const RoundedParts& parts, std::size_t piece,
 
 /// Whether triangles about a middle would include one of what may be a wall that has no extent in
 /// plan.
-bool lacks_extent(const RoundedParts& parts, std::size_t piece, const Position& middle) {
+bool lacks_extent(const RoundedParts& parts, std::size_t piece, std::span<const NodeId> nodes,
+                  const Position& middle) {
     if (!parts.may_be_wall(piece)) return false;
-    const auto nodes = parts.pieces.polygons[piece];
     const auto is_below = [&](NodeId node) {
         return parts.at(node)[0] == middle[0] && parts.at(node)[1] == middle[1];
     };
@@ -89,9 +91,8 @@ bool lacks_extent(const RoundedParts& parts, std::size_t piece, const Position& 
     return false;
 }
 
-/// A new node in the middle of a polygon.
-NodeId add_middle(RoundedParts& parts, std::size_t piece) {
-    const auto nodes = parts.pieces.polygons[piece];
+/// A new node in the middle of some nodes of a piece.
+NodeId add_middle(RoundedParts& parts, std::size_t piece, std::span<const NodeId> nodes) {
     const Position first = parts.at(nodes[0]);
     Position middle = first;
     for (const NodeId node : nodes) {
@@ -99,11 +100,61 @@ NodeId add_middle(RoundedParts& parts, std::size_t piece) {
             middle[k] += (parts.at(node)[k] - first[k]) / static_cast<double>(nodes.size());
     }
     const bool is_base = parts.surface_of(piece, kCutFace) == kBase;
-    const NodeId center = parts.add_node(middle, is_base ? Freedom::kLevel : Freedom::kAny);
-    while (lacks_extent(parts, piece, parts.at(center))) {
-        parts.moving(center) = free_position_beside(parts.at(center), Freedom::kLevel, parts.taken);
+    return parts.add_node(middle, is_base ? Freedom::kLevel : Freedom::kAny);
+}
+
+/// Whether the middle of a polygon sees all of its edges from their left, but for rounding.
+bool middle_sees_all(const arrangement::Loop& loop, const PlanePosition& rounding) {
+    PlanePosition middle{0, 0};
+    for (const arrangement::LoopCorner& corner : loop) {
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            middle[axis] += (corner.at[axis] - loop[0].at[axis]) / static_cast<double>(loop.size());
     }
-    return center;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        middle[axis] += loop[0].at[axis];
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const PlanePosition &a = loop[i].at, &b = loop[(i + 1) % loop.size()].at;
+        if (twice_area(a, b, middle) < -arrangement::slack(a, b, middle, rounding)) return false;
+    }
+    return true;
+}
+
+/// A piece in polygons whose middles see all of their edges: itself, or convex parts. Between two
+/// parts there is a node of their own, as about a middle.
+std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::size_t piece) {
+    const auto given = parts.pieces.polygons[piece];
+    const std::vector<NodeId> nodes(given.begin(), given.end());
+    std::vector<Position> corners;
+    for (const NodeId node : nodes)
+        corners.push_back(parts.at(node));
+    const View seen(polygon_normal(corners));
+    const PlanePosition rounding = seen.rounding(corners);
+    arrangement::Loop loop;
+    std::vector<std::array<NodeId, 2>> sides;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        loop.push_back({nodes[i], seen(corners[i])});
+        const NodeId next = nodes[(i + 1) % nodes.size()];
+        sides.push_back({std::min(nodes[i], next), std::max(nodes[i], next)});
+    }
+    if (middle_sees_all(loop, rounding)) return {nodes};
+    arrangement::Polygons convex;  // a loop that crosses itself, but for rounding, has some, too
+    arrangement::divide_convex({&loop, 1}, rounding, {}, convex);
+    std::sort(sides.begin(), sides.end());
+    std::map<std::array<NodeId, 2>, NodeId> between;
+    std::vector<std::vector<NodeId>> found(convex.size());
+    for (std::size_t k = 0; k < convex.size(); ++k) {
+        const auto polygon = convex[k];
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
+            found[k].push_back(ends[0]);
+            const std::array edge{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
+            if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
+            const auto [at, is_new] = between.try_emplace(edge, NodeId{});
+            if (is_new) at->second = add_middle(parts, piece, ends);
+            found[k].push_back(at->second);
+        }
+    }
+    return found;
 }
 
 }  // namespace
@@ -132,11 +183,16 @@ void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
             ++p;
         divided.add(parts.pieces, first, p);
         if (p == is_whole.size()) break;
-        const auto nodes = parts.pieces.polygons[p];
-        const NodeId center = add_middle(parts, p);
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center},
-                        parts.pieces[p]);
+        for (const std::vector<NodeId>& nodes : parts_with_middles(parts, p)) {
+            const NodeId center = add_middle(parts, p, nodes);
+            while (lacks_extent(parts, p, nodes, parts.at(center))) {
+                parts.moving(center) =
+                    free_position_beside(parts.at(center), Freedom::kLevel, parts.taken);
+            }
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+                divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center},
+                            parts.pieces[p]);
+        }
     }
     parts.pieces = std::move(divided);
 }

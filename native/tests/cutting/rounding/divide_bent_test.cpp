@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "../halved_box.hpp"
 
 namespace realmodel::cutting {
@@ -19,10 +21,24 @@ protected:
 };
 
 TEST_F(DivideBent, ACapThatIsNoLongerConvexIsDividedRoundANodeInItsMiddle) {
-    new_[3] = {0.25, 0.25, 0.5};  // beyond the diagonal of the others
+    new_[3] = {0.375, 0.375, 0.5};  // beyond the diagonal of the others
     EXPECT_EQ(pieces_after(), 14U);
     EXPECT_EQ(nodes(kCap), node_loop({8, 9, 12}));
-    EXPECT_EQ(new_.at(4), (Position{0.3125, 0.3125, 0.5}));
+    EXPECT_EQ(new_.at(4), (Position{0.34375, 0.34375, 0.5}));
+}
+
+TEST_F(DivideBent, ACapWhoseMiddleDoesNotSeeAllOfItIsDividedInConvexPartsFirst) {
+    new_[3] = {0.25, 0.25, 0.5};  // the middle of all, at 0.3125, lies outside
+    EXPECT_EQ(pieces_after(), 18U);
+    EXPECT_EQ(new_.at(4), (Position{0.125, 0.125, 0.5})) << "of the edge between both parts";
+    const RoundedParts parts = rounded_parts();
+    double twice = 0;
+    for (std::size_t p = kCap; p < kCap + 8; ++p) {
+        const auto corners = parts.pieces.polygons[p];
+        const Position a = parts.at(corners[0]), b = parts.at(corners[1]), c = parts.at(corners[2]);
+        twice += std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    }
+    EXPECT_DOUBLE_EQ(twice, 0.5) << "they do not overlap";
 }
 
 TEST_F(DivideBent, ACapBentByNoMoreThanRoundingStaysWhole) {
