@@ -48,7 +48,7 @@ def assert_cut_right(case, point, normal):
 
 
 def test_a_block_that_touches_itself_has_no_flap_where_it_is_cut():
-    """The section passes one place by two nodes: on a wall, and on the edge of a body that stands there."""
+    """Its section passes one place by two nodes, so that a polygon of it runs to a corner and back."""
     case = load_case(CORPUS / "body_touches_wall.json")
     assert_cut_right(
         case,

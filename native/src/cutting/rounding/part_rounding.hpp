@@ -44,7 +44,8 @@ std::vector<std::uint8_t> glue_doubled(RoundedParts& parts);
 
 /// Divides polygons that rounding has bent, walls that have no extent in plan still, and those that
 /// are there already, in triangles about a node of their own: an edge between two others may be one
-/// already. What is known of nodes and parts is not updated.
+/// already. Where this node would not see all of a polygon, the same is done with its convex parts,
+/// between two of which there is such a node, too. What is known of nodes and parts is not updated.
 /// @param is_bent_too  more that are to be divided, of at least four corners; nullptr: none
 void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
                  bool (*is_bent_too)(std::span<const Position> corners) = nullptr);
