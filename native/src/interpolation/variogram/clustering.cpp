@@ -16,9 +16,9 @@ constexpr std::size_t kAsked = 4000;  // an even part shows it
 constexpr double kClustered = 0.5;    // of the distance that is expected of random points
 
 double area_of_hull(const ManyPoints& points) {
-    std::vector<Position> positions(points.size());
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        positions[i] = points.local(i);
+    std::vector<Position> positions;
+    for (const std::int32_t point : even_part(points.size(), kMostInMemory))
+        positions.push_back(points.local(static_cast<std::size_t>(point)));
     const std::vector<std::int32_t> border = hull_border(positions);
     double twice = 0;
     for (std::size_t i = 0; i < border.size(); ++i) {
