@@ -38,7 +38,7 @@ using SlitsTuple =
                Array<double>, Array<double>, Array<std::int64_t>, Indices>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
-/// Anisotropy, order, errors of values and of slopes, lift, scale; gaps, centers, left out.
+/// Anisotropy, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left out.
 using KindTuple =
     std::tuple<AnisotropyTuple, int, double, double, double, std::vector<std::array<double, 3>>,
                double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
@@ -167,8 +167,8 @@ draw: None, or of a field that is drawn at random its kind, as it is returned of
 (lines, 3 + F), (lines, steps) and (M, 2).
 Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
 each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
-(axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of half of the lattice's diagonal, variance, gaps, centers,
-inequalities that are left out. Raises InputError.)");
+(axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of
+half of the lattice's diagonal, variance, gaps, centers, inequalities that are left out. Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),
         py::arg("execution") = py::none(),
