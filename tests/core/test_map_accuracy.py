@@ -2,6 +2,7 @@
 """Lines of a map, and heights of observations, that are not exact."""
 
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -57,7 +58,7 @@ def map_of(tmp_path):
             at = number * np.pi + (-1) ** number * angle - 0.4
             lines.append(np.clip(at * WAVE / (2 * np.pi) + off * np.cos(y / 37 + number), 0, WIDTH))
         areas = []
-        for number, (west, east) in enumerate(zip(lines, lines[1:], strict=False)):
+        for number, (west, east) in enumerate(pairwise(lines)):
             ring = np.concatenate([np.column_stack([west, y]), np.column_stack([east, y])[::-1]])
             if (east - west).max() > 0:
                 areas.append(("old" if number % 2 == 0 else "young", [*ring.tolist(), ring[0].tolist()]))
