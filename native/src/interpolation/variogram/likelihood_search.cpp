@@ -242,9 +242,11 @@ public:
 
     /// Of some of the data alone, with the shape that was found for all.
     double sill_of(const Likelihood& part) const {
-        const std::optional<Likelihood::Found> own =
+        std::optional<Likelihood::Found> own =
             part.free() < kFewestFree ? std::nullopt : part.of(shape_);
-        return own && own->squares > 0 ? own->sill() : best_->sill();
+        if (!own || !(own->squares > 0)) return best_->sill();
+        own->least_sill = best_->least_sill;
+        return own->sill();
     }
 
     Variogram variogram() const {
