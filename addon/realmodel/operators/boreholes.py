@@ -364,7 +364,7 @@ def _summary(found, of):
         said.append(f"{counted(len(found.series_dips), 'dip')} of series '{of}'")
     columns = dict.fromkeys(name for values in found.values for name in values.columns)
     if columns:
-        said.append(f"the columns {', '.join(columns)} of intervals")
+        said.append(f"{'column' if len(columns) == 1 else 'columns'} {', '.join(columns)} to color by")
     if found.rock_dips is not None:
         said.append(f"{counted(len(found.rock_dips), 'dip')} of the rock mass")
     text = ", ".join(said) or "nothing that could be used"
