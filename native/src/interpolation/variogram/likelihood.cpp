@@ -196,7 +196,8 @@ double Likelihood::Found::sill() const {
 
 double Likelihood::Found::logarithm() const {
     const auto count = static_cast<double>(free);
-    const double beyond = squares / sill() - count;  // 0 with the sill that is most likely
+    const bool is_likeliest = sill() == squares / count;
+    const double beyond = is_likeliest ? 0 : squares / sill() - count;
     return density - 0.5 * (count * elementary::log(sill()) + beyond);
 }
 
