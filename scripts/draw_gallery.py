@@ -38,6 +38,7 @@ from gallery_picture import (
     blocks_of,
     board,
     box,
+    desert,
     generator,
     legend_band,
     meadow,
@@ -52,6 +53,7 @@ from gallery_picture import (
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
 FRAME = (600, 300)  # of a film strip
+ARCH = 4.0  # meters: a unit of the sculpted arch
 BASE = 3  # the rock mass of Haut-Barr around the others
 
 
@@ -360,8 +362,8 @@ def quarry(folder):
     picture.finish(
         "quarry",
         "Quarry",
-        "Benches of twelve meters, cut exactly; on the board what they remove of each layer. The trucks are "
-        "nine meters long.",
+        "Benches of twelve meters, cut exactly; on the board what they remove from each layer. The trucks "
+        "are nine meters long.",
         exposure=0.15,
     )
 
@@ -384,31 +386,42 @@ def island(folder):
 
 
 def overturned(folder):
-    """A sculpted arch filled with folds that lie on their side."""
+    """A sculpted arch filled with folds that lie on their side, weathered, in a desert."""
     import bpy
     import numpy as np
-    from realmodel.bl.jobs.fill_job import FilledShape
-    from realmodel.core import Strata, fill_with_strata
 
     item = sculptures.arch()
-    vertices, triangles = FilledShape.of(item, bpy.context.evaluated_depsgraph_get()).closed(0.0)
-    bpy.data.objects.remove(item)
-    height, width = np.ptp(vertices[:, 2]), np.ptp(vertices[:, 0])
-    folds = {"fold_amplitude": 0.22 * height, "fold_wavelength": 0.62 * width, "fold_axis": 175.0}
-    strata = Strata(beds=18, dip=5.0, axial_dip=24.0, palette="cliff", seed=2, **folds)
-    model = fill_with_strata(vertices, triangles, strata)
+    item.scale = 3 * (ARCH,)
+    bpy.ops.realmodel.fill_with_strata(
+        preset="OVERTURNED",
+        palette="CANYON",
+        beds=18,
+        dip=math.radians(5.0),
+        axial_dip=math.radians(24.0),
+        fold_amplitude=0.22,
+        fold_wavelength=0.62,
+        fold_axis=math.radians(175.0),
+        seed=2,
+    )
+    beds = list(bpy.context.selected_objects)
+    bpy.ops.realmodel.weathering(
+        strength=0.4, rounding=0.2, detail=1, plants=0.0, grass_slope=0.0, scree_slope=0.0
+    )
+    corners = np.array([bed.matrix_world @ corner.co for bed in beds for corner in bed.data.vertices])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    desert(low[2] + 0.06 * (high[2] - low[2]), 400.0 * ARCH)
     picture = Picture((0.0, 0.0, 0.0), folder)
-    picture.show(model, blocks_of(model, picture), only_outside=True)
-    apply_looks(model, 0.5)
-    picture.sun = math.radians(120.0), math.radians(36.0)
-    picture.draw(
+    picture.points = [corners]
+    picture.landscape(sun=(math.radians(118.0), math.radians(30.0)), haze=250.0 * ARCH)
+    aim(bpy.context.scene.camera, corners, SIZE, 162.0, 7.0, (0.0, 0.13))
+    foot = np.array([high[0] + 0.6 * ARCH, low[1] + 0.6 * ARCH, low[2] + 0.1 * ARCH])
+    picture.finish(
         "overturned",
-        166.0,
-        15.0,
         "Overturned Folds",
-        "A sculpted arch, filled with recumbent folds by Fill with Strata. Each bed is a closed solid.",
-        legend=False,
-        room=(0.0, 0.12),
+        "A sculpted arch, filled with recumbent folds by Fill with Strata, and weathered. Each bed is a "
+        "closed solid.",
+        exposure=0.1,
+        labels=[("5 m", (foot, foot + np.array([0.0, 0.0, 5.0])), None)],
     )
 
 

@@ -609,6 +609,33 @@ def ground(name, points, triangles, like):
     return item
 
 
+def desert(height, reach):
+    """A plain of sand around the origin with low dunes, an object. height: of the plain."""
+    import bpy
+    import numpy as np
+    from realmodel.bl.objects import materials, meshes
+    from realmodel.bl.shading import looks
+
+    away = np.geomspace(reach / 1e3, reach, 90)
+    x, y = (a.ravel() for a in np.meshgrid(*2 * [np.concatenate([-away[::-1], [0.0], away])]))
+    wave = reach / 60.0
+    dunes = np.sin(x / wave + 1.7 * np.sin(y / (1.7 * wave))) * np.cos(0.3 * x / wave - 0.8 * y / wave)
+    z = height + 0.1 * wave * dunes * (1.0 - np.exp(-((np.hypot(x, y) / (4.0 * wave)) ** 2)))
+    count = 2 * len(away) + 1
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(count - 1), np.arange(count - 1)))
+    a = row * count + column
+    triangles = np.concatenate(
+        [np.stack([a, a + 1, a + count + 1], 1), np.stack([a, a + count + 1, a + count], 1)]
+    )
+    mesh = meshes.triangle_mesh("Desert", np.column_stack([x, y, z]), triangles, smooth=True)
+    material = materials.new_material("Desert sand", 1, "#c99b6e")
+    looks.apply(material, "SAND", 1.0, 1, looks.UNITS)
+    mesh.materials.append(material)
+    item = bpy.data.objects.new("Desert", mesh)
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
 def wall_corners(shape):
     """The vertices of the polygons where the model ends, but for its floor, as often as they are corners."""
     import numpy as np

@@ -236,11 +236,11 @@ interpolation::Anisotropy anisotropy_of(const std::optional<std::pair<double, do
 py::dict fit_variogram(const Array<double>& points,
                        const std::optional<std::pair<double, double>>& anisotropy,
                        const std::string& drift, int neighbours, bool are_apart,
-                       const std::optional<DipsTuple>& dips, bool has_bounds,
+                       const std::optional<DipsTuple>& dips, bool has_bounds, double error,
                        WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours,    !anisotropy,
-                                            are_apart,       dips_of(dips), has_bounds};
+    const interpolation::FitOptions options{drift_of(drift), neighbours, !anisotropy, are_apart,
+                                            dips_of(dips),   has_bounds, error};
     const interpolation::Anisotropy along = anisotropy_of(anisotropy);
     interpolation::FittedVariogram fitted;
     {
@@ -257,13 +257,14 @@ using SurfaceTuple = std::tuple<Array<double>, std::optional<DipsTuple>>;
 
 py::list fit_alike(const std::vector<SurfaceTuple>& surfaces,
                    const std::optional<std::pair<double, double>>& anisotropy,
-                   const std::string& drift, WatchedExecution* execution) {
+                   const std::string& drift, double error, WatchedExecution* execution) {
     std::vector<interpolation::SurfaceData> data;
     for (const auto& [points, dips] : surfaces)
         data.push_back({rows<3>(points, "points"), dips_of(dips)});
     interpolation::FitOptions options;
     options.drift = drift_of(drift);
     options.finds_anisotropy = !anisotropy;
+    options.error = error;
     const interpolation::Anisotropy along = anisotropy_of(anisotropy);
     std::vector<interpolation::FittedVariogram> fitted;
     {
@@ -285,7 +286,7 @@ using SheetNumbersTuple = std::tuple<Array<std::int32_t>, Array<std::int32_t>, s
 std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbersTuple& sheets,
                                    const std::optional<std::pair<double, double>>& anisotropy,
                                    const std::string& drift, const std::optional<DipsTuple>& dips,
-                                   const std::optional<py::dict>& variogram,
+                                   const std::optional<py::dict>& variogram, double error,
                                    WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto& [of_points, of_dips, count] = sheets;
@@ -295,6 +296,7 @@ std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbe
     options.drift = drift_of(drift);
     options.finds_anisotropy = !anisotropy;
     options.dips = dips_of(dips);
+    options.error = error;
     std::optional<interpolation::Variogram> given;
     if (variogram) given = variogram_of(*variogram);
     std::optional<interpolation::FittedSheets> fitted;
@@ -426,7 +428,7 @@ Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.
     module.def("fit_variogram", &fit_variogram, arg("points"),
                arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
                arg("neighbours") = 32, arg("are_apart") = false, arg("dips") = py::none(),
-               arg("has_bounds") = false, arg("execution") = py::none(),
+               arg("has_bounds") = false, arg("error") = 0.0, arg("execution") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
 anisotropy  (ratio, azimuth), as a variogram has them; None: the best is found
@@ -434,21 +436,23 @@ neighbours  with which points that are left out are predicted, at most 64
 are_apart   no two points have one place, and all are finite: of many only some are copied
 dips        as krige; the baseline is the mean spacing of points and dips
 has_bounds  bounds of heights are known, which hold beside the points
+error       the mean variance of the errors of the heights: the nugget is no less
 
 Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as
 krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
 Cancelled.)");
     module.def("fits_by_likelihood", &interpolation::fits_by_likelihood, arg("points"),
-               arg("has_dips"), arg("has_bounds"),
+               arg("has_dips"), arg("has_bounds"), arg("error"),
                "Whether fit_variogram finds the variogram of so many points by likelihood.");
     module.def(
         "fit_alike", &fit_alike, arg("surfaces"), arg("anisotropy") = py::make_tuple(1.0, 0.0),
-        arg("drift") = "constant", arg("execution") = py::none(),
+        arg("drift") = "constant", arg("error") = 0.0, arg("execution") = py::none(),
         R"(Fits variograms of one shape to surfaces of which heights vary alike, by likelihood.
 
 surfaces    (points (P, 3) float64, dips) of each, as fit_variogram
 anisotropy, drift  as fit_variogram
+error       as fit_variogram, of all surfaces
 
 Returns a list of dicts as of fit_variogram, one for each surface; empty where there is none, or the
 data are too few.
@@ -456,11 +460,12 @@ Raises InputError as fit_variogram; Cancelled.)");
     module.def(
         "fit_sheets", &fit_sheets, arg("points"), arg("sheets"),
         arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
-        arg("dips") = py::none(), arg("variogram") = py::none(), arg("execution") = py::none(),
+        arg("dips") = py::none(), arg("variogram") = py::none(), arg("error") = 0.0,
+        arg("execution") = py::none(),
         R"(Fits what sheets have in common to their points (P, 3) float64, or an even part of them, and dips.
 
 sheets      (sheet of each point (P,), of each dip (D,) int32, their number)
-anisotropy, drift, dips  as fit_variogram
+anisotropy, drift, dips, error  as fit_variogram
 variogram   one that is not to be changed, as krige takes it; None: the likeliest
 
 Returns a dict: the variogram of the field that they share, as fit_variogram; thickness, the

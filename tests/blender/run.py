@@ -18,6 +18,8 @@ import bpy
 FOLDER = Path(__file__).resolve().parent
 sys.path[:0] = [str(FOLDER.parents[1] / "addon"), str(FOLDER)]
 
+from realmodel.bl.host import versions  # noqa: E402
+
 
 def _words():
     if "--" in sys.argv:
@@ -37,7 +39,13 @@ def _flat(suite):
             yield test
 
 
+def _not_denoised(scene):
+    scene.cycles.use_denoising = False
+
+
 def main():
+    # Three quarters of a small picture's time. What build_model.py renders in test_build_model is denoised.
+    versions.denoise = _not_denoised
     found = _flat(unittest.defaultTestLoader.discover(str(FOLDER), "test_*.py"))
     words = _words()
     chosen = unittest.TestSuite(t for t in found if not words or any(w in t.id() for w in words))

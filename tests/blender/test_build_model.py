@@ -16,9 +16,14 @@ from realmodel.bl.project import compartments
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "two_layers" / "project.toml"
+# Pictures are small: at their size, as many rays and the denoiser take a minute.
+SMALL = (
+    f"import sys; sys.path.insert(0, {str(ROOT / 'addon')!r}); from realmodel.bl.pictures import batch; "
+    "batch.render.__defaults__ = ((160, 100), 4, 30.0)"
+)
 # The module bpy has no program of its own: the script is run as Blender would, by this interpreter.
 AS_MODULE = (
-    "import bpy, runpy, sys; sys.argv = ['build_model.py', '--', *sys.argv[1:]]; "
+    f"import bpy, runpy; {SMALL}; sys.argv = ['build_model.py', '--', *sys.argv[1:]]; "
     f"runpy.run_path({str(ROOT / 'build_model.py')!r}, run_name='__main__')"
 )
 
@@ -27,7 +32,7 @@ def build_model(*arguments):
     """Runs build_model.py in a new process of the Blender that these tests run in."""
     if Path(bpy.app.binary_path).name.startswith("blender"):
         start = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
-        start += ["-P", str(ROOT / "build_model.py"), "--"]
+        start += ["--python-expr", SMALL, "-P", str(ROOT / "build_model.py"), "--"]
     else:
         start = [sys.executable, "-c", AS_MODULE]
     command = [*start, *(str(argument) for argument in arguments)]
@@ -51,12 +56,15 @@ class BuildModel(unittest.TestCase):
         self.assertIn("Sand", done.stdout)
         self.assertNotIn("Fra:", done.stdout, "Blender's chatter")
         self.assertEqual(self.left(), ["m.blend", "m.png"])
-        self.assertEqual(pixels(picture).shape, (1000, 1600, 3))
+        self.assertEqual(pixels(picture).shape, (100, 160, 3))
         empty_file()
         bpy.ops.wm.open_mainfile(filepath=str(blend))
         blocks = model_tree.model_objects(bpy.context.scene, "block")
         self.assertEqual([block.name for block in blocks][-1], "Sand")
         self.assertEqual([open_edges(block.data) for block in blocks], [0, 0])
+
+    def test_a_picture_is_large(self):
+        self.assertEqual(batch.render.__defaults__[0], (1600, 1000))
 
     def test_faults_and_bodies(self):
         """Written, and rendered, as any other; the .blend builds again what it has."""

@@ -12,7 +12,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from panel_case import PanelCase, ops, select, sheet
 from realmodel.bl.jobs.fill_job import FilledShape, FillJob
-from realmodel.bl.jobs.fill_preview import FillPreview
+from realmodel.bl.jobs.fill_preview import FillPreview, divided
 from realmodel.core import Cancelled, Strata
 
 
@@ -164,6 +164,15 @@ class Filling(PanelCase):
         self.assertEqual(inventory(), before)
         self.assertFalse(item.hide_get())
         self.assertTrue(item.select_get())
+
+    def test_the_preview_divides_the_tall_triangles_of_walls(self):
+        wall = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 40.0]])
+        ground = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        vertices = np.concatenate([wall, *[ground] * 30_000])
+        vertices, triangles = divided(vertices, np.arange(len(vertices)).reshape(-1, 3))
+        edges = np.roll(vertices[triangles], -1, axis=1) - vertices[triangles]
+        self.assertLess(np.linalg.norm(edges, axis=2).max(), 3.0)
+        self.assertLessEqual(len(triangles), 100_000)
 
     def test_cancelled_and_refused_work_leaves_everything_as_it_was(self):
         item = ball("A", n=64)

@@ -28,6 +28,15 @@ class MapImport(PanelCase):
         (item,) = [item for item in self.scene.objects if item.get("realmodel_view") == "map"]
         return item
 
+    def test_its_lines_may_be_off(self):
+        """The errors of contacts are kept in the scene, by the accuracy that the dialog gives."""
+        self.read(map_accuracy=2.0)
+        near = observed_blocks.of_rock(self.rock).errors
+        self.read(map_accuracy=20.0)
+        far = observed_blocks.of_rock(self.rock).errors
+        self.assertGreater(near.max(), 0.0)
+        self.assertLess(3.0 * np.median(near[near > 0.0]), np.median(far[far > 0.0]))
+
     def test_a_map_gives_surfaces_observations_and_a_ground(self):
         self.read()
         self.assertEqual(sorted(s.name for s in self.rock.surfaces), sorted(ORDER))

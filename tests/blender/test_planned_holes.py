@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 from blender_state import coordinates
-from panel_case import SAMPLES, PanelCase, ops, raise_by, stack
+from panel_case import SAMPLES, PanelCase, ops, raise_by, select, sheet, stack
 from realmodel.bl.objects import built_models
 from realmodel.bl.scene import planned_holes
 
@@ -35,6 +35,16 @@ class PlannedHoles(PanelCase):
         self.assertEqual(used, {0, 1, 2}, "the axis and two blocks")
         materials = {m.name for r in self.model.results for m in r.object.data.materials}
         self.assertTrue({m.name for m in item.data.materials[1:]} <= materials)
+
+    def test_it_begins_in_the_middle_or_where_the_cursor_was_put(self):
+        select(sheet("low", 0.0, at=(-10.0, -10.0)), sheet("high", 20.0, at=(-10.0, -10.0)))
+        ops.from_selected()
+        ops.build()
+        for cursor, wanted in (((0, 0, 0), ("40.000", "40.000")), ((1, 2, 0), ("1.000", "2.000"))):
+            self.scene.cursor.location = cursor
+            ops.planned_hole_add()
+            row = self.model.planned_holes[self.model.active_planned_hole]
+            self.assertEqual((row.east, row.north), wanted)
 
     def test_it_follows_its_settings(self):
         row = self.a_model()

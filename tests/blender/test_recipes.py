@@ -215,7 +215,7 @@ class ForGeologists(Recipe):
         select(path)
         ops.fence()
         self.assertTrue(bpy.context.active_object.name.startswith("Fence"))
-        self.model.view.section_holes = "GP01, GP07, GP03"
+        self.model.view.section_holes = "GP02, GP20, GP09"
         ops.fence_holes()
         self.assertTrue(bpy.context.active_object.name.startswith("Holes"))
         for ending in ("svg", "dxf", "png"):

@@ -101,6 +101,18 @@ class Fences(Case):
         at = blender_state.coordinates(item.data)
         self.assertTrue(((abs(at[:, 1] - 10) < 1e-4) | (abs(at[:, 0] - 60) < 1e-4)).all())
 
+    def test_again_along_the_line_of_the_fence_that_was_made(self):
+        line("Line", *self.LINE)
+        bpy.ops.realmodel.fence()
+        first = bpy.context.view_layer.objects.active
+        bpy.ops.realmodel.fence()
+        again = bpy.context.view_layer.objects.active
+        self.assertNotEqual(again, first)
+        self.assertTrue(np.array_equal(*(blender_state.coordinates(item.data) for item in (first, again))))
+        bpy.data.objects.remove(bpy.data.objects["Line"])
+        with self.assertRaisesRegex(RuntimeError, "it is not one line"):
+            bpy.ops.realmodel.fence()
+
     def test_flat_beside_the_model(self):
         line("Line", *self.LINE)
         heights = []

@@ -154,12 +154,17 @@ class Series(PanelCase):
         ops.boreholes_read(filepath=str(FOLDER / "dips.csv"))  # of the active surface's series
         self.assertIn("50 dips", draw_tab(bpy.context).labels)
         self.refused(ops.build, "has no region")
-        self.assertIn("has no region", " ".join(draw_tab(bpy.context).labels))
+        needs = "give that a base and a region"
+        self.assertIn(needs, " ".join(draw_tab(bpy.context).labels))
+        self.assertNotIn("has no end", " ".join(draw_tab(bpy.context).labels), "the hint says it")
         ops.region_around()
         self.refused(ops.build, "base_elevation")
         drawn = draw_tab(bpy.context)
-        self.assertIn("has no Base Elevation", " ".join(drawn.labels))
+        self.assertIn(needs, " ".join(drawn.labels))
         rock.base_elevation = -600.0
+        drawn = draw_tab(bpy.context)
+        self.assertNotIn(needs, " ".join(drawn.labels))
+        self.assertIn("RealModelRock.base_elevation", drawn.properties)
         row.resolution = 40.0
         rock.edge_length = 60.0
         ops.build()

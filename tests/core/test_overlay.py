@@ -99,6 +99,16 @@ def test_the_scale_bar_is_as_long_as_it_says():
     assert "vertical exaggeration 3\u00d7" in shown_texts
 
 
+def test_what_is_covered_below_is_left_free_by_legend_and_scale():
+    entries = [("Sand", (0.9, 0.8, 0.4))]
+    key = ColorKey("Property", entries)
+    drawing = draw_overlay(eye(152, 27), shown(), [key], ["scale"], (0.0, 0.0, 40.0))
+    assert (
+        min(ring[:, 1].min() for item in drawing.items if isinstance(item, Polygon) for ring in item.rings)
+        > 40
+    )
+
+
 def test_the_arrow_points_north():
     for azimuth, expected in ((180, (0, 1)), (90, (1, 0)), (270, (-1, 0)), (0, (0, -1))):
         drawing = draw_overlay(eye(azimuth, 50), shown(), (), ["north"])

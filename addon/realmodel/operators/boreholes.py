@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..bl.field import field_tables, interval_values, map_settings
 from ..bl.host import caches
@@ -42,7 +42,7 @@ from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, r
 from .rocks import add_rock
 
 _SHOWN = ("collars", "survey", "downward_dip", "columns", "names", "units", "layer", "add_surfaces")
-_OF_MAPS = ("map_layer", "map_block", "map_ground")
+_OF_MAPS = ("map_layer", "map_block", "map_ground", "map_accuracy")
 _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
 _ICON = 5  # letters that are as wide as an icon
@@ -79,6 +79,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         description="Surface of the list that is the ground of the map, or a file of it beside the map or "
         "anywhere: a raster, points or a mesh; empty: the youngest surface",
         search=lambda self, context, _text: [*self.surfaces(context), *self.rasters()],
+    )
+    map_accuracy: FloatProperty(
+        name="Accuracy",
+        description="How far lines of the map may lie from where they should be, as a standard deviation; "
+        "0: a two-hundredth of the diagonal of the region",
+        min=0.0,
+        subtype="DISTANCE",
     )
     layer: StringProperty(
         name="Layer",
@@ -244,6 +251,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             "block": block,
             "layer": self.map_layer.strip() or None,
             "ground": ground or None,
+            "accuracy": self.map_accuracy or None,
         }
 
     def draw(self, context):
@@ -356,7 +364,7 @@ def _summary(found, of):
         said.append(f"{counted(len(found.series_dips), 'dip')} of series '{of}'")
     columns = dict.fromkeys(name for values in found.values for name in values.columns)
     if columns:
-        said.append(f"the columns {', '.join(columns)} of intervals")
+        said.append(f"{'column' if len(columns) == 1 else 'columns'} {', '.join(columns)} to color by")
     if found.rock_dips is not None:
         said.append(f"{counted(len(found.rock_dips), 'dip')} of the rock mass")
     text = ", ".join(said) or "nothing that could be used"

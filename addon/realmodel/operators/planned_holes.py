@@ -30,8 +30,8 @@ def an_ensemble(context):
 
 
 class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
-    """Plan a hole that goes straight down through the middle of the model, or at the 3D cursor where that is
-    over the model; its collar, azimuth, dip and length can be changed then"""
+    """Plan a hole that goes straight down through the middle of the model, or at the 3D cursor where you have
+    put it over the model; its collar, azimuth, dip and length can be changed then"""
 
     bl_label = "Plan Hole"
     needs = (a_model,)
@@ -40,7 +40,8 @@ class REALMODEL_OT_planned_hole_add(Reporting, bpy.types.Operator):
         scene = context.scene
         low, high = (np.asarray(corner, np.float64) for corner in explosion.bounds(scene))
         at = _cursor(scene)
-        if not ((at[:2] > low[:2]) & (at[:2] < high[:2])).all():
+        is_placed = any(scene.cursor.location)  # else it is where a new file has it
+        if not (is_placed and ((at[:2] > low[:2]) & (at[:2] < high[:2])).all()):
             at = (low + high) / 2
         rows = scene.realmodel.planned_holes
         with settings.filling():

@@ -100,7 +100,8 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
-    """Make vertical sections of the model along the active curve, or a mesh of edges, as a mesh object"""
+    """Make vertical sections of the model along the active curve, or a mesh of edges, as a mesh object; along
+    that of a fence where one is active"""
 
     bl_label = "Make Fence"
     needs = (a_model, an_outline_object)
@@ -108,9 +109,11 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
     flat: BoolProperty(name="Flat", description=_FLAT)
 
     def act(self, context):
-        item = context.active_object
-        found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
-        _show(self, context, sections.add(context.scene, found, "Fence", self.flat))
+        line = sections.line_of(context.active_object)
+        found = sections.along(context.scene, line, context.evaluated_depsgraph_get())
+        made = sections.add(context.scene, found, "Fence", self.flat)
+        made[sections.LINE] = line
+        _show(self, context, made)
 
 
 def some_holes(context):
@@ -136,7 +139,8 @@ class REALMODEL_OT_pick_holes(InViewport, bpy.types.Operator):
 
     def begin(self, context):
         self._names, self._lines = [], section_holes.paths(context.scene)
-        context.scene.realmodel.show_data = True
+        view = context.scene.realmodel.view
+        view.show_boreholes = view.show_hole_names = True
 
     def clicked(self, context, area, at, is_held):
         if is_held:
@@ -255,8 +259,8 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             reason = an_outline_object(context)
             if reason:
                 raise InputRefused(reason)
-            item = context.active_object
-            found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
+            line = sections.line_of(context.active_object)
+            found = sections.along(context.scene, line, context.evaluated_depsgraph_get())
         found.save(path, self.exaggeration, width)
 
 

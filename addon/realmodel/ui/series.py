@@ -63,9 +63,8 @@ def _draw_series(layout, rock, row):
         if not row.resolution:
             hint(layout, "0: by the size of the rock mass")
     _draw_dips(layout, row)
-    if row.kind == FIELD:
-        _draw_needs(layout, rock)
-    _draw_refusal(layout, rock, row)
+    if not (row.kind == FIELD and _draw_needs(layout, rock)):
+        _draw_refusal(layout, rock, row)
 
 
 def _draw_dips(layout, row):
@@ -84,11 +83,16 @@ def _draw_dips(layout, row):
 
 
 def _draw_needs(layout, rock):
-    """What a field needs of its rock mass and has not yet: here, as the panel of rock masses is folded."""
-    if not rock.use_base:
-        setting_rows.draw(layout, rock, "base_elevation", ROCK)
-    if rock.region is None and not (rock.region_file or rock.region_stored):
+    """What a field needs of its rock mass: here, too, as the panel of rock masses is folded. Returns whether
+    something is lacking."""
+    lacks_region = rock.region is None and not (rock.region_file or rock.region_stored)
+    is_lacking = lacks_region or not rock.use_base
+    if is_lacking:
+        hint(layout, "The field ends where the rock mass does: give that a base and a region.")
+    setting_rows.draw(layout, rock, "base_elevation", ROCK)
+    if lacks_region:
         layout.operator("realmodel.region_around", icon="SHADING_BBOX")
+    return is_lacking
 
 
 def _draw_refusal(layout, rock, row):

@@ -210,9 +210,9 @@ class REALMODEL_PT_view_picture(OfABuiltModel, FoldedPanel, bpy.types.Panel):
             hint(layout, "F12 would not show the model: its camera looks elsewhere, or there is none.")
         layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
         layout.operator("realmodel.render_picture", icon="RENDER_STILL")
-        row = layout.row(align=True)
-        row.operator("realmodel.turntable", icon="CON_FOLLOWPATH")
-        row.operator("realmodel.animate_stages", icon="KEYFRAME_HLT")
+        column = layout.column(align=True)  # side by side their names would be cut
+        column.operator("realmodel.turntable", icon="CON_FOLLOWPATH")
+        column.operator("realmodel.animate_stages", icon="KEYFRAME_HLT")
 
 
 class REALMODEL_PT_view_coordinates(OfABuiltModel, FoldedPanel, bpy.types.Panel):

@@ -13,6 +13,7 @@ from ..project import library_rows, project_settings
 from . import bodies, explosion, shown_models
 
 FLAT = "realmodel_flat"  # on the object of a section that lies beside the model
+LINE = "realmodel_line"  # on the object of a fence: the object of its line
 BLOCK_ATTRIBUTE = "realmodel_block"  # of each face: the number of its block, as in the results
 
 
@@ -32,6 +33,11 @@ def along(scene, item, depsgraph):
     """The core's Fence of a scene's model, at its stage, along the line of a curve or mesh object. Raises
     InputRefused, BuildFailed."""
     return through(scene, shapes.polyline(item, depsgraph) + project_settings.model_origin(scene)[:2])
+
+
+def line_of(item):
+    """The object of the line of a fence; of another object itself."""
+    return item.get(LINE) or item
 
 
 def through(scene, line):

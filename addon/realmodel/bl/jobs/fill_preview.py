@@ -9,20 +9,25 @@ from ...core.filling import PALETTES, lay_beds, rocks_of_beds
 from ..objects import materials, meshes, placing, viewports
 
 _NAME = "Strata Preview"
-_MOST = 100_000  # triangles that coarser ones are divided into: each has one color
+_MOST = 100_000  # triangles that larger ones are divided into: each has one color
+_LONG = 0.7  # of the longest edge: the edges beyond it are divided together
 
 
 def divided(vertices, triangles):
-    """Vertices (V, 3) and triangles (T, 3), each of which is divided into four as often as there are no more
-    than 100,000; edges stay straight."""
-    if 4 * len(triangles) > _MOST:
-        return vertices, triangles
+    """Vertices (V, 3) and triangles (T, 3), the longest edges of which are halved as often as there are no
+    more than 100,000, so that walls are not of tall triangles; edges stay straight."""
     corners = vertices[triangles]
-    while 4 * len(corners) <= _MOST:
-        a, b, c = corners.transpose(1, 0, 2)
-        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-        parts = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
-        corners = np.concatenate([np.stack(part, axis=1) for part in parts])
+    while True:
+        lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        longest = lengths.max(axis=1)
+        chosen = longest > _LONG * longest.max()
+        if len(corners) + np.count_nonzero(chosen) > _MOST:
+            break
+        turn = (lengths[chosen].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(corners[chosen], turn[:, :, None], axis=1).transpose(1, 0, 2)
+        middle = (a + b) / 2
+        halves = [np.stack(half, axis=1) for half in ((a, middle, c), (middle, b, c))]
+        corners = np.concatenate([corners[~chosen], *halves])
     return corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
 
 

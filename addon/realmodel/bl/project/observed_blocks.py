@@ -13,7 +13,7 @@ from ..objects import stored_arrays
 from . import settings
 
 _shown = caches.new(most=8)  # by text
-NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on")
+NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors")
 
 
 def keep(row, observations):

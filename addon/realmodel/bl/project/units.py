@@ -23,7 +23,7 @@ _LENGTH_UNITS = {
 _IMPERIAL = frozenset(("in", "ft", "us-ft", "yd", "mi"))
 _SYMBOLS = {"us-ft": "ft (US)"}
 _POWERS = ("", "", "²", "³")
-_LARGE = 1e11  # cubic meters
+_LARGE = 1e10  # cubic meters: the list of blocks has no room for ten thousand millions
 
 
 def set_up(scene, unit):

@@ -100,17 +100,18 @@ def draw_overlay(
     labels: Sequence[tuple[str, tuple[float, float, float]]] = (),
 ) -> Drawing:
     """A Drawing as large as the picture. keys: its legends. parts: those of "north", "scale" and "axes" that
-    it has. margins: what is covered at the left and right, and below the legends, in points. labels: texts
-    and their places in model coordinates; of those in each other's way the first is drawn."""
+    it has. margins: what is covered at the left, at the right, and below legends and scale bar, in points.
+    labels: texts and their places in model coordinates; of those in each other's way the first is drawn."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
+    low = margins[2] + _MARGIN
     if "axes" in parts:
         _axes(drawing, eye, shown)
     _labels(drawing, eye, shown, labels)
     for key in keys:
-        left = _legend(drawing, key, left, margins[2] + _MARGIN)
+        left = _legend(drawing, key, left, low)
     if "scale" in parts:
-        _scale_bar(drawing, eye, shown, left, right)
+        _scale_bar(drawing, eye, shown, (left, right), low)
     if "north" in parts:
         _north_arrow(drawing, eye, right)
     return drawing
@@ -169,9 +170,10 @@ def _legend(drawing: Drawing, key: ColorKey, left: float, below: float) -> float
     return left + width + _MARGIN
 
 
-def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: float) -> None:
-    """Draws the scale bar at the bottom. In perspective it is valid for the center of the model, and labeled
-    so."""
+def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, ends: tuple[float, float], low: float) -> None:
+    """Draws the scale bar at the bottom, between the ends. In perspective it is valid for the center of the
+    model, and labeled so."""
+    left, right = ends
     middle = shown.world((shown.low + shown.high) / 2)[0]
     step = 1e-3 * float(np.linalg.norm(shown.high - shown.low)) or 1.0
     here, there = eye.at([middle, middle + step * eye.right])
@@ -183,13 +185,13 @@ def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: flo
     if shown.exaggeration != 1.0:
         notes.append(f"vertical exaggeration {shown.exaggeration:g}\u00d7")
     length = round_length(most / scale)
-    ends = text_width(f"{tick_texts(np.array([length]))[0]} {shown.unit}", SIZE) / 2
+    end = text_width(f"{tick_texts(np.array([length]))[0]} {shown.unit}", SIZE) / 2
     pad = 0.8 * SIZE
-    width = max(length * scale + 2 * ends, *(text_width(note, 0.85 * SIZE) for note in notes), 0.0) + 2 * pad
+    width = max(length * scale + 2 * end, *(text_width(note, 0.85 * SIZE) for note in notes), 0.0) + 2 * pad
     height = 2.2 * SIZE + 1.3 * SIZE * len(notes) + 1.2 * pad
-    _paper(drawing, left, _MARGIN, width, height)
-    base = _MARGIN + height - 2.6 * SIZE
-    scale_bar(drawing, (left + pad + ends, base), most, scale, shown.unit, SIZE)
+    _paper(drawing, left, low, width, height)
+    base = low + height - 2.6 * SIZE
+    scale_bar(drawing, (left + pad + end, base), most, scale, shown.unit, SIZE)
     for number, note in enumerate(notes):
         drawing.text(left + pad, base - (number + 1.2) * 1.3 * SIZE, note, 0.85 * SIZE)
 

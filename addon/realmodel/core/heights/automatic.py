@@ -127,7 +127,9 @@ def _left_out(task: Task, points: np.ndarray) -> list[np.ndarray]:
 
 
 def _is_able(candidate: Candidate, task: Task) -> bool:
-    return task.dips is None or METHODS[candidate.method].is_constrained
+    """Whether a candidate uses all that is known: dips, and how far heights may be off."""
+    method = METHODS[candidate.method]
+    return (task.dips is None or method.is_constrained) and (not task.error or "variogram" in method.options)
 
 
 def _trial(task: Task, candidate: Candidate) -> Trial:

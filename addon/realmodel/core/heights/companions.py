@@ -34,12 +34,14 @@ MOST_NEIGHBOURS = 64  # of all sheets together, by default
 class Alike:
     """Surfaces of which heights vary alike, oldest first, for a Task of one of them. own: its number. points:
     (P, 3) of each; dips: of each, or None; those of `own` are those of the Task. known: what was fitted to
-    such data before, filled as it comes: it is the same for each surface."""
+    such data before, filled as it comes: it is the same for each surface. error: the mean variance of the
+    errors of the heights of all points."""
 
     own: int
     points: Sequence[np.ndarray]
     dips: Sequence[Dips | None]
     known: dict[bytes, Any] = field(default_factory=dict)
+    error: float = 0.0
 
     def data(self, own: np.ndarray, own_dips: Dips | None) -> tuple[list[np.ndarray], list[Dips | None]]:
         """The points and dips of each surface, with those of the Task."""
@@ -125,6 +127,7 @@ def likeliest(
     too few. run, settings: of the Task. spacing: of points and dips."""
     along, given = settings["anisotropy"], settings["variogram"]
     variogram = None if given is None else Variogram.from_settings(given).native(along)
+    error = companions.error
     drift, anisotropy = settings.get("drift", "constant"), along and (along["ratio"], along["azimuth"])
     dips, of_dips, count = data.dips, data.of_dips, len(companions.points)
     arrays = [data.points, data.sheets]
@@ -136,9 +139,10 @@ def likeliest(
     def fit() -> dict | None:
         given_dips = None if dips is None else (dips.positions, dips.gradients, spacing, 0)
         sheets = (data.sheets, of_dips, count)
-        return run(native_module().fit_sheets, data.points, sheets, anisotropy, drift, given_dips, variogram)
+        fit_sheets = native_module().fit_sheets
+        return run(fit_sheets, data.points, sheets, anisotropy, drift, given_dips, variogram, error)
 
-    return companions.fitted((variogram, drift, anisotropy, count), arrays, fit)
+    return companions.fitted((variogram, drift, anisotropy, count, error), arrays, fit)
 
 
 def likeliest_model(fitted: dict, variogram: Variogram, base: int) -> SheetModel:

@@ -198,7 +198,9 @@ class Draw:
         """S at points (P, 2) and the nodes; at equal positions it is equal."""
         nodes = task.nodes
         at_points, at_nodes = (field.at(task.work, places) for places in (points, nodes))
-        if field.variogram.nugget > 0:
+        if field.variogram.nugget > 0 and task.error > 0:  # of the points, not of the surface
+            at_points = at_points + nugget_noise(self.noise, field.variogram, points)
+        elif field.variogram.nugget > 0:
             noise = nugget_noise(self.noise, field.variogram, points, len(nodes))
             of_points, of_nodes = noise[: len(points)], noise[len(points) :]
             number = {tuple(point): n for n, point in enumerate(points.tolist())}

@@ -46,6 +46,7 @@ class DipUse:
 
 
 _FEWEST_DIPS = 2
+_MOST_WITH_ERRORS = 600  # points with errors that all count at each node
 _BESIDE = 1e-12  # model units: from a point at 0; its square is no 0
 
 
@@ -100,7 +101,7 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
     has_bounds = task.bounds is not None and len(task.bounds) > 0
     fitted = None
-    if native_module().fits_by_likelihood(len(task.points), task.dips is not None, has_bounds):
+    if native_module().fits_by_likelihood(len(task.points), task.dips is not None, has_bounds, task.error):
         fitted = _fitted_alike(task, along)
     fitted = fitted or task.run(
         native_module().fit_variogram,
@@ -111,11 +112,21 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
         are_apart=are_apart,
         dips=None if task.dips is None else DipUse(_spacing(task.points, task.dips), 0).native(task.dips),
         has_bounds=has_bounds,
+        error=task.error,
     )
-    neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
-    variogram = Variogram.from_fit(fitted, anisotropy is None)
-    warnings = tuple(fit_warnings(variogram, task.points, "drift" in settings, task.dips is not None))
+    neighbours = _neighbours_of_fitted(task) if asked is None else asked
+    variogram = Variogram.from_fit(fitted, anisotropy is None).with_least_nugget(task.error)
+    has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
+    warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
     return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+
+
+def _neighbours_of_fitted(task: Task) -> int:
+    """How many points count at a node. Errors of near ones may be alike, as those along a line of a map: all
+    points count, or more of them."""
+    if not task.error:
+        return NEIGHBOURS_OF_FITTED
+    return 0 if len(task.points) <= _MOST_WITH_ERRORS else MOST_NEIGHBOURS
 
 
 def _fitted_alike(task: Task, along: tuple[float, float] | None) -> dict | None:
@@ -130,10 +141,11 @@ def _fitted_alike(task: Task, along: tuple[float, float] | None) -> dict | None:
         for own, slopes in zip(points, dips, strict=True)
     ]
     arrays = [*points, *(each for _, of_dips in surfaces if of_dips is not None for each in of_dips[:2])]
+    error = task.alike.error
     found = task.alike.fitted(
-        (along, drift, [of_dips is not None for _, of_dips in surfaces]),
+        (along, drift, error, [of_dips is not None for _, of_dips in surfaces]),
         arrays,
-        lambda: task.run(native_module().fit_alike, surfaces, along, drift),
+        lambda: task.run(native_module().fit_alike, surfaces, along, drift, error),
     )
     return found[task.alike.own] if found else None
 
@@ -170,7 +182,9 @@ def _of_model(
     """The structure of sheets with a variogram and a model. count: of all data."""
     together = replace(task, points=pooled(points, model.offsets))
     asked, fitted = task.settings["neighbours"], task.settings["variogram"] is None
-    neighbours = (NEIGHBOURS_OF_FITTED if fitted else DEFAULT_NEIGHBOURS) if asked is None else asked
+    neighbours = (
+        (_neighbours_of_fitted(together) if fitted else DEFAULT_NEIGHBOURS) if asked is None else asked
+    )
     found = Structure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
     return _of_all_sheets(found, task, len(points), count)
 
@@ -229,7 +243,13 @@ def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.n
         z, variance, alone = task.run(native.krige_left_out, data.points, *arguments)
         return z[: len(task.points)] + offset, variance[: len(task.points)], alone
     z, variance, alone = task.run(native.krige, data.points, _free_nodes(task), *arguments)
-    return z + offset, variance, alone
+    return z + offset, _of_surface(task, variance, known), alone
+
+
+def _of_surface(task: Task, variance: np.ndarray, known: Structure) -> np.ndarray:
+    """(N,) variances of the surface, of those of points at nodes: where points have errors, the nugget is
+    theirs, and no part of the surface."""
+    return np.maximum(variance - known.variogram.nugget, 0.0) if task.error > 0 else variance
 
 
 def _free_nodes(task: Task) -> np.ndarray:
@@ -268,6 +288,7 @@ def krige(task: Task, known: Structure | None = None) -> Result:
         warnings += without_near_points(alone, len(z))
     else:
         z, variance, _ = task.run(native.krige, task.points, _free_nodes(task), *arguments)
+        variance = _of_surface(task, variance, known)
         warnings += _beyond_radius(task)
     return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
 

@@ -50,7 +50,7 @@ class Task:
     companions: the sheets of its series, with which it is interpolated together, or None. alike: the surfaces
     whose heights vary as its own do, which count for its variogram, or None. true_thickness: the
     thickness above the surface that it is parallel to is measured perpendicular to that. ties: it is tied to
-    its points afterwards."""
+    its points afterwards. error: the mean variance of the errors of the points' heights."""
 
     work: Work
     points: np.ndarray
@@ -65,6 +65,7 @@ class Task:
     alike: Alike | None = None
     true_thickness: bool = False
     ties: bool = False
+    error: float = 0.0
 
     def run(
         self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs

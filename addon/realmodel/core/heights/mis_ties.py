@@ -145,8 +145,22 @@ def first_at_each_place(points: np.ndarray) -> np.ndarray:
 
 def mean_heights(points: np.ndarray) -> np.ndarray:
     """Points (P, 3) with the mean of the heights at each place: a rough surface where they contradict."""
-    place, first, _ = _places(points)
-    return np.column_stack([points[first, :2], _means(points, place)])
+    return SortedPoints(points).mean_heights()
+
+
+class SortedPoints:
+    """Points (P, 3) in the order of their positions in plan, for means of some of them and then of others."""
+
+    def __init__(self, points: np.ndarray):
+        self._order, new = _sorted(points)
+        self._points, self._place = points[self._order], np.cumsum(new)
+
+    def mean_heights(self, some: np.ndarray | None = None) -> np.ndarray:
+        """As mean_heights of the points of a mask (P,)."""
+        chosen = slice(None) if some is None else some[self._order]
+        points, place = self._points[chosen], self._place[chosen]
+        new = np.diff(place, prepend=0) != 0
+        return np.column_stack([points[new, :2], _means(points, np.cumsum(new) - 1)])
 
 
 def contradictions(points: np.ndarray) -> np.ndarray:
@@ -167,9 +181,7 @@ def heights_apart(points: np.ndarray) -> np.ndarray:
 def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """For each point (P,) its position in plan; for each position its first point, and the range of the
     heights there."""
-    keys = np.delete(points, 2, axis=1)
-    order = np.lexsort(keys.T[::-1])
-    new = begins_run(keys[order])
+    order, new = _sorted(points)
     first = order[new]  # the point with the least number: the sort is stable
     place = np.empty(len(points), np.int64)
     place[order] = np.cumsum(new) - 1
@@ -179,6 +191,13 @@ def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     np.minimum.at(low, place, points[:, 2])
     np.maximum.at(high, place, points[:, 2])
     return place, first, high - low
+
+
+def _sorted(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The order (P,) of points by position, then number; which in it are at another one than that before."""
+    keys = np.delete(points, 2, axis=1)
+    order = np.lexsort(keys.T[::-1])
+    return order, begins_run(keys[order])
 
 
 def _means(points: np.ndarray, place: np.ndarray) -> np.ndarray:

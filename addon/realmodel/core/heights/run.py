@@ -10,8 +10,7 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
-from ..base.work import NativeError, Work, refused_as
-from ..settings.dips import Dips
+from ..base.work import NativeError, refused_as
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
 from . import automatic, bounded
 from .from_triangulation import outside_hull, replace_extrapolated
@@ -64,18 +63,18 @@ def with_dips(method: str, task: Task) -> tuple[Task, list[str]]:
     return replace(task, dips=dips), [warning] if warning else []
 
 
-def chosen(work: Work, points: np.ndarray, settings: dict, dips: Dips | None = None) -> tuple[str, dict]:
-    """The method that "auto" with these settings takes for points and dips, and its options: they give the
-    same heights. Raises InputRefused."""
-    if not len(points):
+def chosen(task: Task) -> tuple[str, dict]:
+    """The method that "auto" takes for a task without nodes, and its options: they give the same heights.
+    Raises InputRefused."""
+    if not len(task.points):
         raise InputRefused("there are no points", item="points")
-    points, _ = without_mis_ties(points)
+    points, _ = without_mis_ties(task.points)
     with refused_as(refused_points):
-        task, _ = with_dips("auto", Task(work, points, np.empty((0, 2)), settings, dips=dips))
-        trial, _ = automatic.choose(task)
+        with_own, _ = with_dips("auto", replace(task, points=points))
+        trial, _ = automatic.choose(with_own)
     method, options = trial.candidate.method, trial.candidate.options
     if "extrapolate" in METHODS[method].options:
-        options = {**options, "extrapolate": settings["extrapolate"]}
+        options = {**options, "extrapolate": task.settings["extrapolate"]}
     return method, options
 
 

@@ -65,7 +65,8 @@ class Surface(Shaped):
     the block deposited beneath it (0: none), `block` that block's name.
     `rock_dips` are dips of its rock mass that count for it, and
     `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
-    heights that it lies at or above, or at or below; all are found when a project is read, and no input.
+    heights that it lies at or above, or at or below; `error` is the mean variance of the errors of the
+    heights of its points; all are found when a project is read, and no input.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -90,6 +91,7 @@ class Surface(Shaped):
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
+    error: float = field(default=0.0, repr=False, compare=False)
     is_level_set: bool = field(default=False, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)

@@ -228,8 +228,10 @@ def _read_map(table: Table, folder: Path) -> MapFile | None:
         )
     keys = _inner(table, "map", given)
     said = ("where", "units")
-    keys.allow_only(("file", "layer", "block", "ground", "faults", *said))
+    keys.allow_only(("file", "layer", "block", "ground", "faults", "accuracy", *said))
     values = {name: given[name] for name in said if name in given}
+    if "accuracy" in given:
+        values["accuracy"] = keys.number("accuracy")
     if "faults" in given:
         values["faults"] = _read_layer(keys, "faults", given["faults"], folder)
     names = [entry.get("name") for entry in table.content.get("surface", []) if isinstance(entry, dict)]

@@ -325,6 +325,8 @@ def observations_text(rock: Rock) -> bytes:
         more["use"] = given.in_use.astype(int).tolist()
     if (given.seen_on != "").any():
         more["seen_on"] = given.on.tolist()
+    if given.errors.any():
+        more["height_error"] = given.errors.tolist()
     table.writerow(("x", "y", "z", "block", "hole", "depth", *more))
     for place, block, hole, depth, *others in zip(
         given.places.tolist(),

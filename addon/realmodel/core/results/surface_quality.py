@@ -98,6 +98,7 @@ def _cross_validation(work: Work, model: ModelData, number: int) -> tuple[CrossV
         triangles if on_mesh else None,
         dips=surface.known_dips(),
         bounds=surface.bounds,
+        error=surface.error,
         companions=_of_rock(model, number, companions_of),
         alike=_of_rock(model, number, alike_of),
     )

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -113,6 +113,11 @@ class Variogram:
         first = sill - nugget - sum(part.sill for part in further)
         structures = (Structure(fit["model"], fit["range"], first, found), *further)
         return cls("nested", _longest(structures), sill, nugget, structures, found, **experimental)
+
+    def with_least_nugget(self, least: float) -> Variogram:
+        """The same with a nugget no smaller than the least one; the sill grows with it."""
+        more = max(least - self.nugget, 0.0)
+        return replace(self, nugget=self.nugget + more, sill=self.sill + more) if more else self
 
     @property
     def fitted(self) -> bool:

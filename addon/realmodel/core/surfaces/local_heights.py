@@ -218,8 +218,9 @@ def is_local(surface: Surface) -> bool:
     if surface.true_thickness:
         return False  # the other surface counts around each node
     method, settings = surface.method_options()
-    if METHODS[method].is_constrained and (surface.known_dips() is not None or surface.has_bounds):
-        return False  # how dips and bounds count depends on all of them
+    is_more_known = surface.known_dips() is not None or surface.has_bounds or surface.error > 0
+    if METHODS[method].is_constrained and is_more_known:
+        return False  # how dips, bounds and errors count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if surface.ties and surface.is_along_bounds:

@@ -107,7 +107,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             task = replace(task, dips=surface.known_dips(), companions=companions, ties=surface.ties)
             task = replace(task, alike=alike_of(rock, number, entry.joint_fits))
             bounds = bounds_beside(surface, companions)
-            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness)
+            task = replace(task, bounds=bounds, true_thickness=surface.true_thickness, error=surface.error)
             result, free = _tied(task, give(method, task), surface)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
@@ -191,7 +191,9 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     if method != "auto":
         return
     with naming(surface_item(rock, surface), surface.shape_source):
-        method, options = chosen(work, surface.point_array(), settings, surface.known_dips())
+        nowhere = np.empty((0, 2))
+        task = Task(work, surface.point_array(), nowhere, settings, dips=surface.known_dips())
+        method, options = chosen(replace(task, error=surface.error))
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 

@@ -49,6 +49,7 @@ struct FitOptions {
     bool are_apart = false;         ///< no two points lie at one position, and all are finite
     Dips dips{};                    ///< their baseline is the mean spacing of points and dips
     bool has_bounds = false;        ///< bounds of heights are known, which hold beside the points
+    double error = 0;  ///< mean variance of the errors of the heights: the nugget is no less
 };
 
 struct FittedVariogram {
@@ -79,6 +80,10 @@ struct FittedVariogram {
 /// and by those that are left out: where fits_by_likelihood, the variogram is the one with which
 /// points and dips are most likely (restricted maximum likelihood).
 ///
+/// Heights with errors, such as those of contacts along the lines of a map, must not be taken for
+/// exact: then the variogram is the likeliest of those whose nugget is no less than the variance of
+/// the errors.
+///
 /// With a drift all this is done with the residuals of the polynomial that fits best, or that fits
 /// a fixed part of more than 20,000 points best.
 ///
@@ -94,9 +99,10 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
                               const Execution& execution = {});
 
 /// Whether the variogram of so many points is found by likelihood: with bounds of fewer than 30
-/// points, with dips of fewer than 150.
-constexpr bool fits_by_likelihood(std::size_t points, bool has_dips, bool has_bounds) {
-    return points < (has_dips ? 150U : has_bounds ? 30U : 0U);
+/// points, with dips of fewer than 150, with an error of their heights always.
+constexpr bool fits_by_likelihood(std::size_t points, bool has_dips, bool has_bounds,
+                                  double error) {
+    return error > 0 || points < (has_dips ? 150U : has_bounds ? 30U : 0U);
 }
 
 /// What is known of one surface. Its dips' baseline is the mean spacing of its points and dips.

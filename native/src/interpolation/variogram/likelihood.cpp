@@ -190,8 +190,14 @@ Eigen::MatrixXd Likelihood::drift_of(const LinearData& data) const {
     return drift;
 }
 
+double Likelihood::Found::sill() const {
+    return std::max(squares / static_cast<double>(free), least_sill);
+}
+
 double Likelihood::Found::logarithm() const {
-    return density - 0.5 * static_cast<double>(free) * elementary::log(sill());
+    const auto count = static_cast<double>(free);
+    const double beyond = squares / sill() - count;  // 0 with the sill that is most likely
+    return density - 0.5 * (count * elementary::log(sill()) + beyond);
 }
 
 void Likelihood::Found::add(const Found& other) {
@@ -243,7 +249,7 @@ std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    Found found{sum, values.squaredNorm(), free_, {}};
+    Found found{sum, values.squaredNorm(), free_, {}, 0};
     if (!std::isfinite(found.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
         found.constants.push_back(column < 0 ? 0 : coefficients(column));

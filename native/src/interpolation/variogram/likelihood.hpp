@@ -54,9 +54,10 @@ public:
         double squares;                 ///< of what shape and drift do not explain
         std::size_t free;               ///< as of free()
         std::vector<double> constants;  ///< of each sheet, above the first point; 0 without points
+        double least_sill = 0;          ///< no sill below it is possible
 
         /// With which the data are most likely.
-        double sill() const { return squares / static_cast<double>(free); }
+        double sill() const;
         /// How likely they are with this sill.
         double logarithm() const;
         /// Of data that do not depend on these, with the same sill.

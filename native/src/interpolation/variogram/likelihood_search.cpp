@@ -23,6 +23,8 @@ constexpr double kAzimuthStep = 15;
 constexpr double kMostAnisotropic = 20;
 constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};                      // of the sill
 constexpr double kThicknesses[] = {1e-5, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};  // of the sill
+// Of the sill, where the nugget is at least that of known errors.
+constexpr double kNuggetsOfErrors[] = {1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1}, kMostOfErrors = 0.5;
 constexpr double kOfNugget = 2;            // a gain of the logarithm, at least
 constexpr std::size_t kFewestFree = 8;     // data that show an anisotropy or a nugget
 constexpr std::size_t kFewestOfWave = 24;  // data that show a wave
@@ -69,8 +71,10 @@ public:
     using Shape = Likelihood::Shape;
 
     /// @param parts  data that do not depend on one another; they need not be of one place
-    LikelihoodSearch(std::vector<Likelihood> parts, Progress* progress)
+    /// @param error  the variance of the errors of their heights: a nugget is no less
+    LikelihoodSearch(std::vector<Likelihood> parts, double error, Progress* progress)
         : parts_(std::move(parts)),
+          error_(error),
           progress_(progress),
           has_sheets_(parts_.front().has_sheets()),
           thickness_(has_sheets_ ? kThicknesses[2] : 0) {
@@ -92,8 +96,10 @@ public:
 
     void ranges_of(std::span<const VariogramModel> models, const Anisotropy& anisotropy) {
         for (const VariogramModel model : models) {
-            for (int k = 0; k < kRanges; ++k)
-                attempt({{model, range(k), 1, 0, anisotropy, {}}, thickness_});
+            for (int k = 0; k < kRanges; ++k) {
+                for (const double nugget : nuggets_to_begin_with())
+                    attempt({{model, range(k), 1, nugget, anisotropy, {}}, thickness_});
+            }
         }
     }
 
@@ -107,13 +113,14 @@ public:
     }
 
     void anisotropies(std::span<const VariogramModel> models) {
-        LikelihoodSearch with(parts_, progress_);
+        LikelihoodSearch with(parts_, error_, progress_);
+        const double nugget = shape_.variogram.nugget;
         with.thickness_ = thickness_;
         for (const double ratio : kRatios) {
             for (double azimuth = 0; azimuth < 180; azimuth += kAzimuthStep) {
                 for (int k = 0; k < kRanges; k += 2) {
                     const VariogramModel model = shape_.variogram.model;
-                    with.attempt({{model, range(k), 1, 0, {ratio, azimuth}, {}}, thickness_});
+                    with.attempt({{model, range(k), 1, nugget, {ratio, azimuth}, {}}, thickness_});
                 }
             }
         }
@@ -137,7 +144,7 @@ public:
     /// A wave and what it leaves, in no direction more than in others, where they make the data far
     /// more likely than the best shape: folds that come again and again.
     void waves() {
-        LikelihoodSearch with(parts_, progress_);
+        LikelihoodSearch with(parts_, error_, progress_);
         const double nugget = shape_.variogram.nugget, range = kWaveRange * diagonal_;
         const Variogram rest{VariogramModel::kMatern52, shape_.variogram.range, 1, nugget, {}, {}};
         for (double azimuth = 0; azimuth < 180; azimuth += kAzimuthStep) {
@@ -203,6 +210,13 @@ public:
                                                  kThicknesses[0], *(std::end(kThicknesses) - 1));
                     attempt(shape);
                 }
+                if (error_ > 0) {
+                    shape = shape_;
+                    shape.variogram.nugget =
+                        std::clamp(shape.variogram.nugget * elementary::exp(4 * up * step),
+                                   kNuggetsOfErrors[0], kMostOfErrors);
+                    attempt(shape);
+                }
                 if (!turns) continue;
                 shape = shape_;
                 Anisotropy& anisotropy = shape.variogram.anisotropy;
@@ -228,9 +242,11 @@ public:
 
     /// Of some of the data alone, with the shape that was found for all.
     double sill_of(const Likelihood& part) const {
-        const std::optional<Likelihood::Found> own =
+        std::optional<Likelihood::Found> own =
             part.free() < kFewestFree ? std::nullopt : part.of(shape_);
-        return own && own->squares > 0 ? own->sill() : best_->sill();
+        if (!own || !(own->squares > 0)) return best_->sill();
+        own->least_sill = best_->least_sill;
+        return own->sill();
     }
 
     Variogram variogram() const {
@@ -256,7 +272,7 @@ public:
         thickness_ = shape_.thickness;
         const bool is_rich = free_ >= kFewestFree;
         if (is_rich && options.finds_anisotropy) anisotropies(models);
-        if (is_rich) nuggets();
+        if (is_rich && error_ == 0) nuggets();
         // limbs of folds are seen in dips; points alone may look like waves by chance
         if (has_dips && options.finds_anisotropy && free_ >= kFewestOfWave) waves();
     }
@@ -274,6 +290,7 @@ private:
             }
         }
         if (!(all->squares > 0)) return std::nullopt;
+        if (error_ > 0) all->least_sill = error_ / shape.variogram.nugget;
         return all;
     }
 
@@ -302,7 +319,14 @@ private:
 
     double range(int k) const { return diagonal_ * between(kShortest, kLongest, k, kRanges); }
 
+    std::span<const double> nuggets_to_begin_with() const {
+        static constexpr double kNone[] = {0};
+        if (error_ > 0) return kNuggetsOfErrors;
+        return kNone;
+    }
+
     std::vector<Likelihood> parts_;
+    double error_;
     Progress* progress_;
     bool has_sheets_;
     double diagonal_ = 0;   // the longest of the parts
@@ -338,7 +362,7 @@ std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 
                                              Progress* progress) {
     const Likelihood likelihood(points, options.dips, options.drift);
     if (!is_enough(likelihood)) return std::nullopt;
-    LikelihoodSearch search({likelihood}, progress);
+    LikelihoodSearch search({likelihood}, options.error, progress);
     search.run(!options.dips.positions.empty(), given, options);
     if (!search.has_found()) return std::nullopt;
     return search.variogram();
@@ -356,7 +380,7 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
         has_dips |= !surface.dips.positions.empty();
     }
     if (enough.empty()) return {};
-    LikelihoodSearch search(std::move(enough), execution.progress);
+    LikelihoodSearch search(std::move(enough), options.error, execution.progress);
     search.run(has_dips, anisotropy, options);
     if (!search.has_found()) return {};
     const Variogram shared = search.variogram();
@@ -378,7 +402,7 @@ std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> po
     check_sheets(sheets, points.size(), options.dips.positions.size());
     const Likelihood likelihood(points, options.dips, options.drift, sheets);
     if (!is_enough(likelihood)) return std::nullopt;
-    LikelihoodSearch search({likelihood}, execution.progress);
+    LikelihoodSearch search({likelihood}, options.error, execution.progress);
     if (given) {
         search.thicknesses_of(*given);
     } else {

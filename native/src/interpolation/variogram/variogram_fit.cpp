@@ -256,7 +256,8 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
     const bool varies = !e.gamma.empty() && *std::max_element(e.gamma.begin(), e.gamma.end()) >
                                                 1e-12 * out.variogram.sill;
     const bool has_dips = !options.dips.positions.empty();
-    if (fits_by_likelihood(all.size(), has_dips, options.has_bounds) && (varies || has_dips)) {
+    if (fits_by_likelihood(all.size(), has_dips, options.has_bounds, options.error) &&
+        (varies || has_dips)) {
         const auto likeliest = likeliest_variogram(points, anisotropy, options, execution.progress);
         if (likeliest) {
             out.variogram = *likeliest;

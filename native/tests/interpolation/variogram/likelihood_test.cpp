@@ -51,6 +51,52 @@ TEST(Likelihood, OfTwoPointsByHand) {
     EXPECT_NEAR(found->logarithm(), expected, 1e-9);
 }
 
+TEST(Likelihood, OfALeastSillByHand) {
+    // The same two values: log N(d; 0, 2 s (1 - c)) for a sill s beside the one that is most
+    // likely.
+    const Points points{{0, 0, 3}, {100, 0, 7}};
+    const Likelihood likelihood(points, {}, Drift::kConstant);
+    auto found = likelihood.of({{VariogramModel::kSpherical, 400, 1, 0, {}, {}}});
+    ASSERT_TRUE(found);
+    const double best = found->logarithm(), sill = found->sill();
+    found->least_sill = sill / 2;
+    EXPECT_EQ(found->logarithm(), best);
+    found->least_sill = 3 * sill;
+    EXPECT_EQ(found->sill(), 3 * sill);
+    EXPECT_NEAR(found->logarithm(), best - 0.5 * (std::log(3.0) + 1.0 / 3 - 1), 1e-12);
+}
+
+TEST(Likelihood, ANuggetIsNoLessThanTheErrorOfHeights) {
+    // Along lines where hills of height 60 cut a plane: exact heights are those of the hills, too.
+    Points points;
+    const auto hill = [](double x) { return 60 * std::sin(x / 159); };
+    for (double y = 0; y < 2000; y += 100) {
+        const double height = -20 + 0.02 * y, angle = std::asin(height / 60);
+        for (const double x : {angle, 3.141592653589793 - angle, angle + 6.283185307179586})
+            points.push_back({159 * x, y, height});
+    }
+    FitOptions options{Drift::kConstant, 32, false};
+    options.has_bounds = true;
+    const Nodes between{{250, 300}, {250, 1700}, {700, 1000}, {800, 400}};
+    const auto worst = [&](const Variogram& variogram) {
+        const Kriged found = krige(points, between, variogram, {0});
+        double off = 0;
+        for (std::size_t i = 0; i < between.size(); ++i)
+            off = std::max(off, std::abs(found.z[i] - (-20 + 0.02 * between[i][1])));
+        return off;
+    };
+    const Variogram exact = fit_variogram(points, {}, options).variogram;
+    options.error = 4;
+    const Variogram allowed = fit_variogram(points, {}, options).variogram;
+    EXPECT_GE(allowed.nugget, 4 * (1 - 1e-12));
+    EXPECT_LT(worst(allowed), 1.5);
+    EXPECT_GT(std::abs(hill(250) - (-20 + 0.02 * 300)), 60);  // the hills are far off there
+    EXPECT_GT(allowed.range, exact.range);
+    const auto alike = fit_alike(std::vector<SurfaceData>{{points}}, {}, options);
+    ASSERT_EQ(alike.size(), 1U);
+    EXPECT_GE(alike[0].variogram.nugget, 4 * (1 - 1e-12));
+}
+
 TEST(Likelihood, NoGaussianModelWhereThereAreBounds) {
     Points points = hills(14, 1000, {0, 0}, 3);
     for (auto& point : points)

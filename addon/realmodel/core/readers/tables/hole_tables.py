@@ -86,6 +86,7 @@ OBSERVED = {
     "depth": ("depth", "md"),
     "use": ("use",),
     "on": ("seen_on",),
+    "error": ("height_error",),
 }
 _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows that are switched off
 # What stands in a column where there is no value; in small letters.

@@ -16,7 +16,7 @@ from ...notebook import ShortRepr
 # Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
 # rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
 BESIDE_BOUND = 1e-6
-_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on")
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +31,8 @@ class Observations(ShortRepr):
     between them are two; without them places of one block that follow one another in a hole are one interval.
     used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
     on: (N,) texts, the surface on which each was seen, as the ground of a map, by its name, "" for none: it
-    passes through the place, too.
+    passes through the place, too. height_errors: (N,) float64, how far the height of each may be off, as a
+    standard deviation in model units; without it heights are exact.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -46,6 +47,7 @@ class Observations(ShortRepr):
     intervals: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
     used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
     on: np.ndarray = field(default_factory=lambda: np.empty(0, str))
+    height_errors: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         try:
@@ -68,11 +70,16 @@ class Observations(ShortRepr):
         intervals = np.asarray(self.intervals, np.int64).reshape(-1)
         used = np.asarray(self.used, bool).reshape(-1)
         on = np.asarray(self.on, str).reshape(-1)
-        for what, given in (("numbers of intervals", intervals), ("of 'used'", used), ("of 'on'", on)):
+        errors = np.asarray(self.height_errors, np.float64).reshape(-1)
+        optional = {"numbers of intervals": intervals, "of 'used'": used, "of 'on'": on, "errors": errors}
+        for what, given in optional.items():
             if len(given) not in (0, count):
                 text = f"{count} places have {len(given)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
-        for name, value in zip(_ARRAYS, (places, blocks, holes, depths, intervals, used, on), strict=True):
+        if not (np.isfinite(errors) & (errors >= 0)).all():
+            raise InputRefused("an error of a height is negative, or not finite", item="observations")
+        arrays = places, blocks, holes, depths, intervals, used, on, errors
+        for name, value in zip(_ARRAYS, arrays, strict=True):
             object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
@@ -92,6 +99,11 @@ class Observations(ShortRepr):
     def seen_on(self) -> np.ndarray:
         """(N,) texts: the surface on which each was seen, "" for none."""
         return self.on if len(self.on) else np.full(len(self), "")
+
+    @property
+    def errors(self) -> np.ndarray:
+        """(N,) how far the height of each may be off."""
+        return self.height_errors if len(self.height_errors) else np.zeros(len(self))
 
     def along_holes(self) -> Observations:
         """The same with the places of each hole one after another downward along it: by their depths, or by
@@ -134,7 +146,7 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        *arrays, intervals, used, on = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        *arrays, intervals, used, on, errors = ([getattr(part, name) for part in parts] for name in _ARRAYS)
         if any(map(len, intervals)):
             intervals = [np.cumsum(~part.goes_on) for part in parts]
             firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
@@ -143,7 +155,9 @@ class Observations(ShortRepr):
             used = [part.in_use for part in parts]
         if any(map(len, on)):
             on = [part.seen_on for part in parts]
-        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used, on)))
+        if any(map(len, errors)):
+            errors = [part.errors for part in parts]
+        return cls(*(np.concatenate(array) for array in (*arrays, intervals, used, on, errors)))
 
 
 def in_one_interval(given: Observations, used: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ def read_observed_places(
     InputRefused naming file and line."""
     plan, height = factors(given.units, model_unit)
     scale = np.array([plan, plan, height])
-    places, blocks, holes, depths, used, on = [], [], [], [], [], []
+    places, blocks, holes, depths, used, on, errors = [], [], [], [], [], [], []
     left_out: list[LeftOut] = []
     count = 0
     for row in rows(given, Path(given.file), OBSERVED, ("x", "y", "z", "block"), step):
@@ -49,15 +49,28 @@ def read_observed_places(
         depths.append(depth)
         used.append(row.is_used)
         on.append(_surface(row, units))
+        errors.append(_height_error(row) * height)
     if not count:
         raise InputRefused("there are no observations in it", file=given.file)
     texts = np.array(blocks, str), np.array(holes, str)
     in_use = np.array([] if all(used) else used, bool)
     seen_on = np.array(on if any(on) else [], str)
     observed = Observations(
-        np.array(places).reshape(-1, 3), *texts, np.array(depths), used=in_use, on=seen_on
+        np.array(places).reshape(-1, 3),
+        *texts,
+        np.array(depths),
+        used=in_use,
+        on=seen_on,
+        height_errors=np.array(errors if any(errors) else []),
     )
     return observed, left_out
+
+
+def _height_error(row: Row) -> float:
+    error = row.number("error") if row.has("error") else 0.0
+    if error < 0:
+        raise row.refuse(f"the error of the height, {error:g}, is negative", "leave it empty where it is 0")
+    return error
 
 
 def _surface(row: Row, units: UnitNames) -> str:

@@ -17,7 +17,7 @@ from ...base.algebra import are_among
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.work import Work, native_module, on_threads
-from ...heights.mis_ties import first_at_each_place, mean_heights
+from ...heights.mis_ties import SortedPoints, first_at_each_place
 from ...project.project import Surface
 from ...settings.dips import Dips
 from ...surfaces.rock_input import RockInput
@@ -108,6 +108,9 @@ class _Agreement:
     counts: np.ndarray
     reach: float
 
+    def __post_init__(self) -> None:
+        self._sorted = SortedPoints(self.points)
+
     def place(self, near: np.ndarray, beside: np.ndarray) -> None:
         """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
         not count where they agree with another: a horizon may reach beyond its fault. near, beside: (P, F)
@@ -172,9 +175,8 @@ class _Agreement:
         off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
         least = _LEAST * float(np.ptp(self.points[:, 2]))
         asked = choice.possible & ~self.counts[choice.points, None]
-        rows = np.where(choice.matters, self.rows, 0)
-        for number in np.flatnonzero(asked.any(axis=0)):
-            group = mean_heights(self.points[self.counts & (rows == choice.rows[number]).all(axis=1)])
+        for number in np.flatnonzero(asked.any(axis=0)).tolist():
+            group = self._sorted.mean_heights(self._that_count(choice, number))
             if len(group):
                 some = asked[:, number]
                 plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
@@ -186,6 +188,13 @@ class _Agreement:
                 off[some, number] = np.abs(expected - z)
                 tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
         return off, tolerated
+
+    def _that_count(self, choice: _Choice, number: int) -> np.ndarray:
+        """(P,) bool: those that count, on these sides of the faults that matter."""
+        found = self.counts.copy()
+        for fault in np.flatnonzero(choice.matters):
+            found &= self.rows[:, fault] == choice.rows[number, fault]
+        return found
 
 
 def _are_sure(off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:

@@ -39,11 +39,12 @@ class _Compared:
 @dataclass(frozen=True)
 class _Part:
     """The data of two surfaces in a part of space: of each its points (P, 3), its dips, and what says how its
-    heights vary."""
+    heights vary; error: as of Alike, of both."""
 
     points: list[np.ndarray]
     dips: list[Dips | None]
     alike: list[Alike | None]
+    error: float
 
 
 def conformable_run(rock: Rock, number: int) -> list[int]:
@@ -85,7 +86,15 @@ def alike_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Alike | None:
         return None
     surfaces = [rock.surfaces[each] for each in run]
     points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
-    return Alike(run.index(number), points, [each.known_dips() for each in surfaces], known)
+    dips = [each.known_dips() for each in surfaces]
+    return Alike(run.index(number), points, dips, known, mean_error(surfaces))
+
+
+def mean_error(surfaces: Sequence[Surface]) -> float:
+    """The mean variance of the errors of the heights of all points of surfaces that are read."""
+    counts = [len(each.point_array()) for each in surfaces]
+    squares = sum(count * each.error for count, each in zip(counts, surfaces, strict=True))
+    return squares / max(sum(counts), 1)
 
 
 def proposals(
@@ -128,13 +137,13 @@ def _parts(
     points = [np.ascontiguousarray(each.point_array()) for each in surfaces]
     if sides is None:
         alike = [alike_of(rock, number, known) for number in pair]
-        return [_Part(points, [each.known_dips() for each in surfaces], alike)]
+        return [_Part(points, [each.known_dips() for each in surfaces], alike, mean_error(surfaces))]
     of_points = [sides[number] for number in pair]
     found = []
     for key in np.unique(of_points[0], axis=0):
         own = [each[(rows == key).all(axis=1)] for each, rows in zip(points, of_points, strict=True)]
         if min(map(len, own)) >= _LEAST:
-            found.append(_Part(own, [None, None], [None, None]))
+            found.append(_Part(own, [None, None], [None, None], mean_error(surfaces)))
     return found
 
 
@@ -144,9 +153,10 @@ def _compared(work: Work, parts: Sequence[_Part]) -> _Compared | None:
     settings, nodes = checked_options("kriging", {}), np.empty((0, 2))
     try:
         for part, own in product(parts, range(2)):
-            for which, companions in enumerate((None, Companions(own, part.points, part.dips))):
+            both = Companions(own, part.points, part.dips, error=part.error)
+            for which, companions in enumerate((None, both)):
                 task = Task(work, part.points[own], nodes, settings, dips=part.dips[own])
-                task = replace(task, companions=companions, alike=part.alike[own])
+                task = replace(task, companions=companions, alike=part.alike[own], error=part.error)
                 error = validate("kriging", task, 2).errors
                 squares[which].append(error[np.isfinite(error)] ** 2)
     except InputRefused:  # it is said where the surface itself is interpolated

@@ -41,11 +41,12 @@ class Situation:
 
 @dataclass
 class Derived:
-    """What observations say of each surface of a rock mass. contacts: (C, 3) places on it. bounds: heights
-    that it lies at or above, or at or below, at other places. used: (N,) bool, the observations that these
-    follow from; left_out: those that are not used."""
+    """What observations say of each surface of a rock mass. contacts: (C, 3) places on it; errors: (C,) how
+    far the height of each may be off. bounds: heights that it lies at or above, or at or below, at other
+    places. used: (N,) bool, the observations that these follow from; left_out: those that are not used."""
 
     contacts: list[np.ndarray]
+    errors: list[np.ndarray]
     bounds: list[Bounds]
     used: np.ndarray
     left_out: list[LeftOut]
@@ -105,10 +106,12 @@ def derive(rock: Rock, observations: Observations, situation: Situation | None =
     is_wrong = np.isin(np.arange(len(observations)), wrong)
     left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
     used &= ~is_wrong
-    contacts, bounds, not_adjacent = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    contacts, errors, bounds, not_adjacent = _of_used(
+        rock, observations, situation, blocks, np.flatnonzero(used)
+    )
     text = "it meets a block here that is not next to it in its series: no surface is known to be here"
     left_out.add(np.isin(np.arange(len(observations)), not_adjacent), "not_adjacent", text)
-    return Derived(contacts, bounds, used, left_out.entries)
+    return Derived(contacts, errors, bounds, used, left_out.entries)
 
 
 class _Listed:
@@ -190,9 +193,9 @@ def _of_used(
     situation: Situation,
     blocks: np.ndarray,
     used: np.ndarray,
-) -> tuple[list[np.ndarray], list[Bounds], np.ndarray]:
-    """The contacts and bounds of each surface from the observations that are used, their rows; and the rows
-    at places where blocks meet that no surface of their series divides."""
+) -> tuple[list[np.ndarray], list[np.ndarray], list[Bounds], np.ndarray]:
+    """The contacts of each surface, their errors, and its bounds from the observations that are used, their
+    rows; and the rows at places where blocks meet that no surface of their series divides."""
     places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
     above, below = _statements(rock, situation, blocks, used)
     first, place = _numbered(np.column_stack([places, sides]))
@@ -203,16 +206,18 @@ def _of_used(
         np.logical_or.at(found, place, said)
     meets = at_place[0] & at_place[1]
     _, column = _numbered(np.column_stack([places[:, :2], sides]))
-    seen_on = observations.seen_on[used]
+    seen_on, errors_of = observations.seen_on[used], observations.errors[used]
     fields = FieldStatements(rock, observations, used, (above, below), (place, first_rows))
-    contacts, bounds = [], []
+    contacts, errors, bounds = [], [], []
     for number, surface in enumerate(rock.surfaces):
         if surface.is_level_set:
             contacts.append(places[fields.contacts[number]])
+            errors.append(np.zeros(len(contacts[-1])))
             bounds.append(fields.bounds(number))
             continue
         on = np.sort(first_rows[meets[:, number]])
         contacts.append(places[on])
+        errors.append(errors_of[on])
         # bounds from both sides, not a contact: the points of a grid are only those of the grid
         is_on = seen_on == surface.name
         lower, upper = (
@@ -232,7 +237,7 @@ def _of_used(
                 observations.depths[rows],
             )
         )
-    return contacts, bounds, used[fields.not_adjacent]
+    return contacts, errors, bounds, used[fields.not_adjacent]
 
 
 def _statements(
@@ -336,4 +341,7 @@ def with_contacts(rock: Rock, derived: Derived) -> Rock:
         if not np.array_equal(contacts, surface.contact_array()):
             known = contacts if own is None else np.concatenate([own, contacts])
             surfaces[number] = replace(surfaces[number], points=known, contacts=contacts)
+        count = len(surfaces[number].point_array())
+        error = float(np.sum(derived.errors[number] ** 2)) / count if count else 0.0
+        surfaces[number] = replace(surfaces[number], error=error)
     return replace(rock, surfaces=surfaces)

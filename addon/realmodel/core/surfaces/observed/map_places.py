@@ -28,12 +28,24 @@ Heights = Callable[[np.ndarray], np.ndarray]  # of places (N, 2), (N,), NaN wher
 @dataclass(frozen=True)
 class MapFrame:
     """Where and how densely a map is read. box: (2, 2) low and high corners in plan; spacing: of places;
-    faults: (N, 2) lines that no contact lies on; heights: of the ground."""
+    faults: (N, 2) lines that no contact lies on; heights: of the ground; accuracy: how far other lines may be
+    off."""
 
     box: np.ndarray
     spacing: float
     faults: Sequence[np.ndarray]
     heights: Heights
+    accuracy: float
+
+    def height_errors(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) how far the ground is above or below places (N, 2) on lines that are as far off as they may
+        be, across the contours; 0 where it is not known."""
+        squares = np.zeros(len(plan))
+        if self.accuracy > 0 and len(plan):
+            for axis in np.eye(2) * self.accuracy:
+                rise = 0.5 * (self.heights(plan + axis) - self.heights(plan - axis))
+                squares += np.where(np.isfinite(rise), rise, 0.0) ** 2
+        return np.sqrt(squares)
 
     def covers(self, plan: np.ndarray) -> np.ndarray:
         """(N,) bool: which places (N, 2) lie in the box."""
@@ -58,13 +70,15 @@ def observed_on_map(
     plan = np.concatenate([np.repeat(on_lines[0], 2, axis=0), within[0]])
     of_class = np.concatenate([on_lines[1].ravel(), within[1]])
     z = frame.heights(plan) if len(plan) else np.empty(0)
+    errors = np.concatenate([np.repeat(frame.height_errors(on_lines[0]), 2), np.zeros(len(within[0]))])
     known = np.isfinite(z)
     if not known.all():
         missing = np.unique(plan[~known], axis=0)
         text = f"{len(missing)} places of the map are where the ground is not known, and are left out"
         warnings.append(f"{text}: one is at {place_text(missing[0].tolist())}")
     places = np.column_stack([plan, z])[known]
-    return Observations(places, np.array([*names, ""])[of_class[known]]), left_out, warnings
+    blocks_there = np.array([*names, ""])[of_class[known]]
+    return Observations(places, blocks_there, height_errors=errors[known]), left_out, warnings
 
 
 def _blocks(polygons: list[UnitPolygon], units: UnitNames) -> tuple[list[str], list[LeftOut]]:

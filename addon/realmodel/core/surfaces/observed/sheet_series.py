@@ -12,6 +12,7 @@ from ...heights.companions import Companions
 from ...project.project import Rock, Surface
 from ...readers.tables.observations import Bounds
 from ...settings.series import SHEETS
+from .conformable import mean_error
 
 
 def sheets_beside(rock: Rock, number: int) -> list[int]:
@@ -42,7 +43,8 @@ def companions_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Companion
     if not any(len(own) for each, own in zip(beside, points, strict=True) if each != number):
         return None
     dips = [rock.surfaces[each].known_dips() for each in beside]
-    return Companions(beside.index(number), points, dips, known)
+    error = mean_error([rock.surfaces[each] for each in beside])
+    return Companions(beside.index(number), points, dips, known, error)
 
 
 def bounds_beside(surface: Surface, companions: Companions | None) -> Bounds | None:

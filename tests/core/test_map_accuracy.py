@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines of a map, and heights of observations, that are not exact."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from realmodel.core import InputRefused, Observations, build, load_project
+from realmodel.core.ensembles import Realizer
+from realmodel.core.project.project_writer import save_project
+from realmodel.core.surfaces.field_data import read_field_data
+from structure_cases import heights_at
+
+WIDTH, LENGTH, RELIEF, WAVE = 3000.0, 2000.0, 60.0, 1000.0
+PROJECT = """format = 1
+name = "map"
+
+[[rock]]
+name = "r"
+region = [[0, 0], [3000, 0], [3000, 2000], [0, 2000]]
+edge_length = 100
+base_elevation = -300
+map = {{ file = "map.geojson", block = "unit", ground = "ground.asc"{more} }}
+
+[[rock.surface]]
+name = "contact"
+block = "old"
+method = "{method}"
+
+[[rock.surface]]
+name = "ground"
+block = "young"
+method = "grid"
+"""
+
+
+def ground(x):
+    """Hills whose axes run north."""
+    return RELIEF * np.sin(2 * np.pi * x / WAVE + 0.4)
+
+
+def contact(y):
+    """A plane that they cut."""
+    return -20 + 0.02 * y
+
+
+@pytest.fixture
+def map_of(tmp_path):
+    """map_of(off, more, method): the project of a map whose lines are so far off, now to one side and now to
+    the other."""
+
+    def write(off=0.0, more="", method="kriging"):
+        y = np.linspace(0, LENGTH, 81)
+        angle = np.arcsin(contact(y) / RELIEF)
+        lines = []
+        for number in range(-1, 7):
+            at = number * np.pi + (-1) ** number * angle - 0.4
+            lines.append(np.clip(at * WAVE / (2 * np.pi) + off * np.cos(y / 37 + number), 0, WIDTH))
+        areas = []
+        for number, (west, east) in enumerate(pairwise(lines)):
+            ring = np.concatenate([np.column_stack([west, y]), np.column_stack([east, y])[::-1]])
+            if (east - west).max() > 0:
+                areas.append(("old" if number % 2 == 0 else "young", [*ring.tolist(), ring[0].tolist()]))
+        features = [
+            {
+                "type": "Feature",
+                "properties": {"unit": unit},
+                "geometry": {"type": "Polygon", "coordinates": [ring]},
+            }
+            for unit, ring in areas
+        ]
+        text = json.dumps({"type": "FeatureCollection", "features": features})
+        (tmp_path / "map.geojson").write_text(text)
+        heights = " ".join(f"{z:.6f}" for z in ground(np.arange(61) * 50.0))
+        head = "ncols 61\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 50\n"
+        (tmp_path / "ground.asc").write_text(head + "\n".join([heights] * 41) + "\n")
+        (tmp_path / "project.toml").write_text(PROJECT.format(more=more, method=method))
+        return load_project(tmp_path / "project.toml")
+
+    return write
+
+
+def errors(model):
+    """How far the surface is from the plane, in the order of its vertices."""
+    vertices, _ = model.surface(0)
+    return np.abs(vertices[:, 2] - contact(vertices[:, 1]))
+
+
+@pytest.mark.parametrize(
+    ("off", "method", "most"), [(0, "kriging", 0.3), (10, "kriging", 1.5), (10, "auto", 1.5)]
+)
+def test_a_surface_does_not_follow_the_ground_between_lines(map_of, off, method, most):
+    model = build(map_of(off, method=method))
+    assert np.median(errors(model)) < most
+    assert np.percentile(errors(model), 90) < 3 * most
+    seen = model.observed()
+    assert seen.share == 1.0
+    assert not seen.left_out
+    assert max(abs(each.residual) for each in seen.contacts) < 1e-9 * RELIEF
+    assert not [each for each in model.warnings if "range of the fitted" in each.text]
+
+
+def test_exact_lines(map_of):
+    model = build(map_of(more=", accuracy = 0"))
+    assert model.interpolations[0].variogram.nugget == 0
+    assert errors(model).max() > 5  # it follows the ground
+    assert errors(build(map_of())).max() < 2
+
+
+def test_contacts_are_off_by_what_the_ground_rises_over_the_accuracy(map_of):
+    field = read_field_data(*_of(map_of(more=", accuracy = 5")))
+    observed = field.rock.observations
+    on_line = observed.errors > 0
+    slope = RELIEF * 2 * np.pi / WAVE * np.cos(2 * np.pi * observed.places[on_line, 0] / WAVE + 0.4)
+    assert on_line.sum() > 100
+    assert observed.errors[on_line] == pytest.approx(5 * np.abs(slope), rel=0.05)
+    model = build(map_of(more=", accuracy = 5"))
+    variance = np.mean(observed.errors[on_line] ** 2)
+    assert model.project.rocks[0].surfaces[0].error == pytest.approx(variance)
+    assert model.interpolations[0].variogram.nugget >= variance * (1 - 1e-12)
+
+
+def _of(project):
+    return project, project.rocks[0]
+
+
+def test_the_accuracy_is_checked(map_of):
+    with pytest.raises(InputRefused, match="'accuracy' must be 0 or more, not -1"):
+        map_of(more=", accuracy = -1")
+
+
+def test_realizations_are_as_smooth_as_the_surface(map_of):
+    """Errors are those of the points: they make no realization rough."""
+    project = map_of()
+    x = np.arange(400.0, 2600.0, 10.0)
+    realizer = Realizer(build(project))
+    nodes = np.column_stack([x, np.full(len(x), 1030.0)])
+    for number in range(3):
+        heights = heights_at(nodes, *realizer.realization(number, threads=1).surface(0))
+        rough = np.diff(heights, 2)
+        assert np.median(np.abs(rough)) < 0.1  # the nugget is 44: nodes would differ by 6
+
+
+def test_errors_of_observations(tmp_path):
+    (tmp_path / "seen.csv").write_text(
+        "x,y,z,block,height_error\n0,0,10,old,2\n0,0,10,young,2\n50,60,4,old,\n"
+    )
+    text = PROJECT.format(more="", method="kriging").replace(
+        'map = { file = "map.geojson", block = "unit", ground = "ground.asc" }', 'observations = "seen.csv"'
+    )
+    (tmp_path / "project.toml").write_text(text.replace('"grid"', '"constant"\nvalue = 99'))
+    project = load_project(tmp_path / "project.toml")
+    observed = read_field_data(*_of(project)).rock.observations
+    assert observed.errors.tolist() == [2, 2, 0]
+    save_project(build(project).project, tmp_path / "again.toml")
+    again = load_project(tmp_path / "again.toml")
+    assert read_field_data(*_of(again)).rock.observations.errors.tolist() == [2, 2, 0]
+    (tmp_path / "seen.csv").write_text("x,y,z,block,height_error\n0,0,10,old,-2\n")
+    with pytest.raises(InputRefused, match=r"seen.csv:2.*the error of the height, -2, is negative"):
+        read_field_data(*_of(project))
+
+
+def test_errors_of_arrays():
+    one = Observations([[0, 0, 5]], ["sand"], height_errors=[2])
+    joined = Observations.joined([one, Observations([[1, 0, 5]], ["clay"])])
+    assert joined.errors.tolist() == [2, 0]
+    assert joined.some(np.array([True, False])).errors.tolist() == [2]
+    with pytest.raises(InputRefused, match="negative, or not finite"):
+        Observations([[0, 0, 5]], ["sand"], height_errors=[-1])
+    with pytest.raises(InputRefused, match="1 places have 2 errors"):
+        Observations([[0, 0, 5]], ["sand"], height_errors=[1, 1])
