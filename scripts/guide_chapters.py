@@ -114,7 +114,7 @@ def csv(walk):
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
     walk.area.spaces.active.overlay.show_floor = True  # beneath points that would hang in the air
-    fill_view(walk, guide_scenes.visible_meshes(), elevation=math.radians(32.0))
+    fill_view(walk, guide_scenes.visible_meshes(), 0.98, math.radians(48.0))
     yield from keep(walk, "csv_points", panels=["start", "surfaces"])
     walk.area.spaces.active.overlay.show_floor = False
     guide_scenes.settle_rock()
@@ -177,8 +177,7 @@ def section(walk):
     yield from plain_with_a_box(walk)
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
-    for item in bpy.context.selected_objects:
-        item.select_set(False)
+    bpy.context.scene.realmodel.view.plane.hide_set(True)  # its long edges would look like part of the model
     fill_view(walk, [bpy.data.objects[guide_scenes.BOX]])
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
 

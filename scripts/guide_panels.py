@@ -19,6 +19,8 @@ def choose_rows(group):
     """Makes the rows of the lists active that the pictures show."""
     group.active_result = len(group.results) - 4
     group.rocks[0].active_surface = 2
+    group.active_property = 3
+    group.library[3].look = "SANDSTONE"
 
 
 def shown(context, name):

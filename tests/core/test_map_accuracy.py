@@ -121,6 +121,14 @@ def test_contacts_are_off_by_what_the_ground_rises_over_the_accuracy(map_of):
     assert model.interpolations[0].variogram.nugget >= variance * (1 - 1e-12)
 
 
+def test_contacts_are_off_by_a_tenth_of_the_relief_at_most(map_of):
+    """Else a map of a large area would say nothing where the ground is steep."""
+    observed = read_field_data(*_of(map_of(more=""))).rock.observations
+    assert np.sqrt(np.mean(observed.errors[observed.errors > 0] ** 2)) == pytest.approx(
+        0.1 * RELIEF / np.sqrt(2), rel=0.1
+    )
+
+
 def _of(project):
     return project, project.rocks[0]
 

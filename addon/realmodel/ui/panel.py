@@ -64,7 +64,7 @@ def file_field(layout, row, key, text=""):
     field = line.row(align=True)
     field.label(text=re.split(r"[\\\\/]", path)[-1])
     button = field.row()
-    button.ui_units_x = 1.5  # with less the icon leaves the panel
+    button.ui_units_x = 2.0  # with less the icon leaves the panel
     button.prop(row, key, text="")
 
 

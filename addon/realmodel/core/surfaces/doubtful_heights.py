@@ -26,6 +26,7 @@ from .wrong_sides import heights_at
 _MOST = 20_000  # points or nodes at most at which other surfaces are looked at
 _NOTABLE = 0.25  # of the distance to the neighbors: an outlier below it is not reported
 _BEYOND_NORMAL = 1.5  # times the largest of so many normally distributed residuals, and more, is an outlier
+_DEVIATIONS = 3.0  # of the error of the heights of points, which let expect a residual
 _LEAST_SHARE = 0.01  # of the area: less is neither reported, nor taken as known from the points
 
 
@@ -63,9 +64,10 @@ def _missed(
     """The warning about the point that a surface misses by most, a tied one before it was. are_all: the
     points are all that it has, and have the numbers that users know.
 
-    It is given where the residual, less what the mesh does not show, is larger than the median distance to
-    the surfaces before and after it; or larger than a quarter of this, if it is an outlier: larger than any
-    that as many normally distributed residuals with the deviation of the other ones would have.
+    It is given where the residual, less what the mesh does not show and what errors of heights let expect, is
+    larger than the median distance to the surfaces before and after it; or larger than a quarter of this, if
+    it is an outlier: larger than any that as many normally distributed residuals with the deviation of the
+    other ones would have.
     """
     rock, shape = entry.rock, entry.surface(number)
     if not rock.surfaces[number].ties and _goes_through_points(entry, number):
@@ -82,7 +84,8 @@ def _missed(
     candidates = np.flatnonzero(sizes > _NOTABLE * apart)
     if not len(candidates):
         return None
-    beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates])
+    expected = _DEVIATIONS * np.sqrt(rock.surfaces[number].error)
+    beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates]) - expected
     worst = int(candidates[beyond_mesh.argmax()])
     largest = float(beyond_mesh.max())
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):

@@ -32,9 +32,6 @@ from .observed.polygon_borders import inside
 from .planar_mesh import mesh_region
 from .surface_input import SurfaceInput
 
-# Of the diagonal of the region: how far lines are taken to be off. A map half a meter wide, drawn to a
-# millimeter, is off by less than half of it, but along a line by as much for a good way.
-_ACCURACY = 1 / 200
 _PARTS = 100  # of the diagonal of the region: the spacing of places for an automatic edge length
 
 
@@ -84,10 +81,7 @@ def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
     def heights(plan: np.ndarray) -> np.ndarray:
         return _heights(rock, surface, plan, project.units)
 
-    accuracy = given.accuracy
-    if accuracy is None:
-        accuracy = _ACCURACY * float(norm(box[1] - box[0]))
-    frame = MapFrame(box, _spacing(rock, rings, box), faults, heights, accuracy)
+    frame = MapFrame(box, _spacing(rock, rings, box), faults, heights, given.accuracy)
     return MapOnGround(polygons, frame, warnings)
 
 

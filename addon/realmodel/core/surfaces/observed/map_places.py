@@ -19,6 +19,10 @@ from .polygon_borders import Apart, BorderLine, border_lines, inside, places_alo
 
 _NEAR_BORDER = 0.25  # of the spacing: places within polygons are farther from their borders
 _NEAR_FAULT = 0.25  # of the spacing: nearer to a fault, it may be this that divides two blocks
+# Of the diagonal of the box: how far lines are taken to be off. A map half a meter wide, drawn to a
+# millimeter, is off by less than half of it, but along a line by as much for a good way.
+_ACCURACY = 1 / 200
+_OF_RELIEF = 0.1**2  # of the variance of the ground's heights: contacts that are off by more say little
 _LISTED = 6
 _LINES = 3  # across a small polygon, the farthest from its corners first
 
@@ -29,23 +33,29 @@ Heights = Callable[[np.ndarray], np.ndarray]  # of places (N, 2), (N,), NaN wher
 class MapFrame:
     """Where and how densely a map is read. box: (2, 2) low and high corners in plan; spacing: of places;
     faults: (N, 2) lines that no contact lies on; heights: of the ground; accuracy: how far other lines may be
-    off."""
+    off, None where it is not said."""
 
     box: np.ndarray
     spacing: float
     faults: Sequence[np.ndarray]
     heights: Heights
-    accuracy: float
+    accuracy: float | None
 
-    def height_errors(self, plan: np.ndarray) -> np.ndarray:
-        """(N,) how far the ground is above or below places (N, 2) on lines that are as far off as they may
-        be, across the contours; 0 where it is not known."""
-        squares = np.zeros(len(plan))
-        if self.accuracy > 0 and len(plan):
-            for axis in np.eye(2) * self.accuracy:
-                rise = 0.5 * (self.heights(plan + axis) - self.heights(plan - axis))
-                squares += np.where(np.isfinite(rise), rise, 0.0) ** 2
-        return np.sqrt(squares)
+    def height_errors(self, plan: np.ndarray, relief: np.ndarray) -> np.ndarray:
+        """(N,) by how much contacts at places (N, 2) on lines are off where these are as far off as they may
+        be, across the contours; 0 where the ground is not known. relief: (P,) heights of the ground."""
+        accuracy, squares = self.accuracy, np.zeros(len(plan))
+        if accuracy is None:
+            accuracy = _ACCURACY * float(norm(self.box[1] - self.box[0]))
+        if not accuracy or not len(plan):
+            return squares
+        for axis in np.eye(2) * accuracy:
+            rise = 0.5 * (self.heights(plan + axis) - self.heights(plan - axis))
+            squares += np.where(np.isfinite(rise), rise, 0.0) ** 2
+        most = squares.mean()
+        if self.accuracy is None:
+            most = min(most, _OF_RELIEF * float(np.nanvar(relief)))
+        return np.sqrt(squares * (most / squares.mean())) if most > 0 else np.zeros(len(plan))
 
     def covers(self, plan: np.ndarray) -> np.ndarray:
         """(N,) bool: which places (N, 2) lie in the box."""
@@ -70,7 +80,8 @@ def observed_on_map(
     plan = np.concatenate([np.repeat(on_lines[0], 2, axis=0), within[0]])
     of_class = np.concatenate([on_lines[1].ravel(), within[1]])
     z = frame.heights(plan) if len(plan) else np.empty(0)
-    errors = np.concatenate([np.repeat(frame.height_errors(on_lines[0]), 2), np.zeros(len(within[0]))])
+    of_lines = frame.height_errors(on_lines[0], z)
+    errors = np.concatenate([np.repeat(of_lines, 2), np.zeros(len(within[0]))])
     known = np.isfinite(z)
     if not known.all():
         missing = np.unique(plan[~known], axis=0)
