@@ -25,6 +25,9 @@ public:
     /// Whether a region of the surface is a face between the parts of cells on its two sides; where
     /// it is not, they are one.
     virtual bool separates(std::size_t /*region*/) const { return true; }
+    /// The same of a component of undivided triangles; of these the region at the first of their
+    /// borders tells the rest.
+    virtual bool separates_undivided(std::size_t /*component*/) const { return true; }
     /// What stands for a model's face in pieces of a region of the surface, less than 0. Either
     /// cell may be -1.
     virtual std::int32_t cap_face(std::size_t /*region*/, std::int32_t /*low*/,

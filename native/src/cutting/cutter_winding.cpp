@@ -2,6 +2,7 @@
 #include "cutting/cutter_winding.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel.hpp"
 
@@ -36,6 +37,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
     number({});
     find_coinciding(progress);
     collect_uses(progress);
+    find_borders();
     find_fans(progress);
     winding_.assign(2 * overlay.size(), -1);
     std::vector<std::int32_t> open;
@@ -75,11 +77,33 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
     }
 }
 
-bool CutterWinding::is_edge(const std::array<NodeId, 2>& edge) const {
+/// The number of an edge of the regions that count, -1 where it is none.
+std::int32_t CutterWinding::edge_number(const std::array<NodeId, 2>& edge) const {
     for (std::size_t e = first_edge_[index(edge[0])]; e < first_edge_[index(edge[0]) + 1]; ++e) {
-        if (edges_.ends(e)[1] == edge[1]) return true;
+        if (edges_.ends(e)[1] == edge[1]) return static_cast<std::int32_t>(e);
     }
-    return false;
+    return -1;
+}
+
+/// Where undivided triangles end nothing meets them, so that one region is there, which is as long.
+void CutterWinding::find_borders() {
+    const UndividedTriangles& undivided = overlay_.undivided();
+    is_border_.assign(edge_count(), 0);
+    borders_ = bucketize<UndividedBorder>(undivided.components(), [&](const auto& put) {
+        for (std::size_t component = 0; component < undivided.components(); ++component) {
+            for (const auto& border : undivided.borders(component)) {
+                const NodeId a = overlay_.surface_node(border.edge[0]),
+                             b = overlay_.surface_node(border.edge[1]);
+                const auto e = index(edge_number(unordered(a, b)));
+                assert(edge(e).size() == 1 && overlay_.of_cutter(index(edge(e)[0].item)));
+                is_border_[e] = 1;
+                put(component,
+                    UndividedBorder{edge(e)[0].item,
+                                    {unordered(a, b), overlay_.undivided_item(border.triangle),
+                                     static_cast<std::int8_t>(a < b ? 1 : -1)}});
+            }
+        }
+    });
 }
 
 void CutterWinding::find_coinciding(Progress* progress) {

@@ -17,6 +17,13 @@ using arrangement::EdgeUse;
 /// out (-1 times), or leave gaps. Cells that do not go round it are left out.
 using Winding = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
+/// An edge at which a region of the surface meets triangles that are left undivided. What is on
+/// each side of the region there, is so all along those (UndividedTriangles).
+struct UndividedBorder {
+    std::int32_t region;
+    EdgeUse use;  ///< as the undivided triangle has the edge
+};
+
 /// Which regions of a surface count, which regions of faces lie on them, and how often each cell
 /// goes round either side of them.
 ///
@@ -73,12 +80,20 @@ public:
                 {windings_.data() + begin, is_known_[edge] != 0 ? blades : 0}};
     }
     /// Whether an edge is one of these.
-    bool is_edge(const std::array<NodeId, 2>& edge) const;
+    bool is_edge(const std::array<NodeId, 2>& edge) const { return edge_number(edge) >= 0; }
+    /// Of a component of undivided triangles: where it ends; one at least.
+    std::span<const UndividedBorder> borders(std::size_t component) const {
+        return borders_[component];
+    }
+    /// Of edges: whether they are one of those.
+    bool is_undivided_border(std::size_t edge) const { return is_border_[edge] != 0; }
 
 private:
     void find_coinciding(Progress* progress);
     void collect_uses(Progress* progress);
     void find_fans(Progress* progress);
+    void find_borders();
+    std::int32_t edge_number(const std::array<NodeId, 2>& edge) const;
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(const Winding& winding);
     void cross(Winding& winding, std::size_t region, std::size_t entered) const;
@@ -98,9 +113,11 @@ private:
     std::vector<std::uint8_t> is_known_;
     std::vector<std::int32_t> winding_;  ///< of both sides of regions, -1 not yet known
     std::vector<Winding> known_;
-    KeyTable number_;                 ///< of windings in `known_`
-    Buckets<std::int32_t> lying_on_;  ///< faces' regions on each of the surface's
-    Buckets<std::int32_t> edges_of_;  ///< of regions that count
+    KeyTable number_;                      ///< of windings in `known_`
+    Buckets<std::int32_t> lying_on_;       ///< faces' regions on each of the surface's
+    Buckets<std::int32_t> edges_of_;       ///< of regions that count
+    Buckets<UndividedBorder> borders_;     ///< of components of undivided triangles
+    std::vector<std::uint8_t> is_border_;  ///< of edges
 };
 
 }  // namespace realmodel::cutting

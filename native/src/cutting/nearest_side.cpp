@@ -77,12 +77,13 @@ std::vector<Box> boxes_of(const CutterSurface& surface) {
 
 }  // namespace
 
-NearestSide::NearestSide(const CutterSurface& surface)
-    : surface_(surface), tree_(boxes_of(surface)), border_(surface.triangles.size(), 0) {
+NearestSide::NearestSide(const CutterSurface& surface, const Execution& execution)
+    : surface_(surface), tree_(boxes_of(surface), execution), border_(surface.triangles.size(), 0) {
+    if (surface.is_closed) return;
     const auto edges = arrangement::edges_of(
         border_.size(),
         surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
-        {1, nullptr});
+        execution);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() != 1) continue;
         const auto t = index(edges[e][0].item);

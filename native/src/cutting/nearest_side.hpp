@@ -10,7 +10,7 @@ namespace realmodel::cutting {
 /// On which side of a surface positions are.
 class NearestSide {
 public:
-    explicit NearestSide(const CutterSurface& surface);
+    explicit NearestSide(const CutterSurface& surface, const Execution& execution = {1, nullptr});
 
     /// Of any surface: the side of the triangle that is nearest; of several that are, of the one
     /// seen most squarely. Exact with regard to that triangle; on its plane is above.

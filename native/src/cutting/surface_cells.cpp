@@ -35,10 +35,12 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
                            Progress* progress)
     : overlay_(overlay),
       items_(overlay.size() + overlay.model().face_count()),
-      cells_(items_ + overlay.size()) {
+      cells_(items_ + overlay.size() + 2 * overlay.undivided().components()) {
     join_beside(winding, reaches, progress);
     join_sectors(winding, rules, progress);
+    join_undivided(winding, rules);
     cells_.number([&](std::size_t side) {
+        if (side >= items_ + overlay.size()) return false;
         const std::size_t item = side >= items_ ? side - items_ : side;
         if (item >= overlay.size()) return !overlay.is_active(item - overlay.size());
         if (overlay.of_cutter(item)) return winding.counts(item) && winding.touches_model(item);
@@ -121,14 +123,14 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
 void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules,
                                 Progress* progress) {
     const auto side_of = [&](std::size_t item, std::size_t side) -> std::int32_t {
-        const auto number = static_cast<std::int32_t>(item);
-        if (!overlay_.of_cutter(item)) return winding.level(item) < 0 ? number : -1;
-        if (rules.is_left_out(item)) return -1;
-        return side == 0 ? number : static_cast<std::int32_t>(items_ + item);
+        if (!overlay_.of_cutter(item))
+            return winding.level(item) < 0 ? static_cast<std::int32_t>(item) : -1;
+        return rules.is_left_out(item) ? -1 : side_of_region(item, side);
     };
     parallel_ranges(winding.edge_count(), 1 << 10, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e) {
+                            if (winding.is_undivided_border(e)) continue;
                             const auto uses = winding.edge(e);
                             const auto sectors = winding.sectors(e);
                             const bool in_model_alone = rules.in_model_alone(uses);
@@ -138,6 +140,20 @@ void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules
                             }
                         }
                     });
+}
+
+/// Along undivided triangles the part on either side is the same, where the model is.
+void SurfaceCells::join_undivided(const CutterWinding& winding, const Rules& rules) {
+    for (std::size_t component = 0; component < overlay_.undivided().components(); ++component) {
+        for (const UndividedBorder& border : winding.borders(component)) {
+            const auto region = index(border.region);
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (winding.around(region, k).empty() || rules.is_left_out(region)) continue;
+                const std::size_t along = items_ + overlay_.size() + 2 * component + k;
+                cells_.join(side_of_region(region, k), static_cast<std::int32_t>(along));
+            }
+        }
+    }
 }
 
 }  // namespace realmodel::cutting

@@ -51,12 +51,17 @@ public:
     const arrangement::SpaceCells& cells() const { return cells_; }
 
 private:
+    std::int32_t side_of_region(std::size_t region, std::size_t side) const {
+        return static_cast<std::int32_t>(side == 0 ? region : items_ + region);
+    }
     void join_sectors(const CutterWinding& winding, const Rules& rules, Progress* progress);
     void join_beside(const CutterWinding& winding, std::span<const std::uint8_t> reaches,
                      Progress* progress);
+    void join_undivided(const CutterWinding& winding, const Rules& rules);
 
     SurfaceOverlay& overlay_;
-    std::size_t items_;  ///< regions and faces; sides 1 of regions come after them
+    std::size_t items_;  ///< regions and faces; sides 1 of regions come after them, and
+                         ///< then both sides of components of undivided triangles
     arrangement::SpaceCells cells_;
 };
 

@@ -26,13 +26,14 @@ double computed_ulps(double x) {
 }  // namespace
 
 SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
-                               const Execution& execution, double least_rounding)
+                               const Execution& execution, double least_rounding,
+                               std::span<const std::int32_t> groups)
     : model_(model),
       surface_(surface),
       execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {
-    find_active_faces();
+    find_active_faces(groups);
     divide_active_faces();
     overlay_all();
     name_nodes();
@@ -187,19 +188,66 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
 }
 
+namespace {
+
+/// Planes along the edges of a triangle, at right angles to it.
+class PlaneOutline {
+public:
+    /// @param margin  what its corners and others may be off by
+    PlaneOutline(const std::array<Position, 3>& triangle, double margin)
+        : corners_(triangle), margin_(4 * margin) {
+        const Position normal = polygon_normal(triangle);
+        for (std::size_t i = 0; i < 3; ++i)
+            outward_[i] = cross(minus(triangle[(i + 1) % 3], triangle[i]), normal);
+    }
+    /// Whether another triangle surely is beyond one of these planes.
+    bool is_surely_beside(const std::array<Position, 3>& other) const {
+        constexpr double kRounding = 0x1p-40;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Position& out = outward_[i];
+            const double size = std::abs(out[0]) + std::abs(out[1]) + std::abs(out[2]);
+            // rounding may have turned the plane itself, so that its own corners are beyond it
+            double reach = -HUGE_VAL, least = HUGE_VAL, farthest = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Position own = minus(corners_[k], corners_[i]);
+                const Position beyond = minus(other[k], corners_[i]);
+                reach = std::max(reach, dot(out, own));
+                least = std::min(least, dot(out, beyond));
+                farthest = std::max({farthest, length(own), length(beyond)});
+            }
+            if (least > reach + size * (margin_ + kRounding * farthest)) return true;
+        }
+        return false;
+    }
+
+private:
+    std::array<Position, 3> corners_, outward_{};
+    double margin_;
+};
+
+}  // namespace
+
 void SurfaceOverlay::overlay_all() {
     add_triangles();
     // Which intersect is found out on all threads; where they do is entered in order.
-    const auto count = index(first_cutter_) + surface_.triangles.size();
+    const auto count = index(first_cutter_) + divided_.size();
+    std::vector<std::int32_t> number_of(surface_.triangles.size(), -1);
+    for (std::size_t i = 0; i < divided_.size(); ++i)
+        number_of[index(divided_[i])] = first_cutter_ + static_cast<std::int32_t>(i);
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
                                                                       kChunk);
     if (execution_.progress != nullptr)
         execution_.progress->begin(0.08, 0.15, "finding where surface and faces meet");
-    const auto box_of = [this](std::int32_t t) {
+    const auto positions_of = [this](std::int32_t t) {
+        const auto& corners = arrangement_.corners(t);
+        return std::array{points_.rounded(corners[0]), points_.rounded(corners[1]),
+                          points_.rounded(corners[2])};
+    };
+    const auto box_of = [&](std::int32_t t) {
         Box box;
-        for (const SpacePointId p : arrangement_.corners(t))
-            box.include(points_.rounded(p));
+        for (const Position& p : positions_of(t))
+            box.include(p);
         return box;
     };
     // triangles of the surface that cross each other beyond the model are left alone, unless one of
@@ -210,9 +258,12 @@ void SurfaceOverlay::overlay_all() {
     parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
+            const PlaneOutline outline(positions_of(t), margin_);
             tree_->find(box_of(t), [&](std::int32_t c) {
-                const std::int32_t other = first_cutter_ + c;
-                if (other <= t || (is_beyond[i] != 0 && is_beyond[index(other)] != 0)) return;
+                const std::int32_t other = number_of[index(c)];  // -1 where nothing meets it
+                if (other <= t || (is_beyond[i] != 0 && is_beyond[index(other)] != 0) ||
+                    outline.is_surely_beside(positions_of(other)))
+                    return;
                 if (const auto intersection = arrangement_.intersection(t, other))
                     found[begin / kChunk].push_back(*intersection);
             });
@@ -235,21 +286,25 @@ void SurfaceOverlay::overlay_all() {
 /// The triangles of active faces, then those of the surface.
 void SurfaceOverlay::add_triangles() {
     std::vector<std::array<SpacePointId, 3>> corners;
-    corners.reserve(parts_.triangles.size() + surface_.triangles.size());
+    corners.reserve(parts_.triangles.size() + divided_.size());
     for (const auto& t : parts_.triangles) {
         corners.push_back(
             {vertex_point_[index(t[0])], vertex_point_[index(t[1])], vertex_point_[index(t[2])]});
     }
     parts_.triangles = {};
     first_cutter_ = checked_number(corners.size(), "triangles");
-    std::vector<SpacePointId> of_vertex(surface_.vertices.size(), kNone);
-    for (const auto& triangle : surface_.triangles) {
-        auto& own = corners.emplace_back();
+    surface_point_.assign(surface_.vertices.size(), kNone);
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+        std::array<SpacePointId, 3> own{};
         for (std::size_t i = 0; i < 3; ++i) {
-            SpacePointId& known = of_vertex[index(triangle[i])];
-            if (!known.has_value()) known = points_.add(surface_.vertices[index(triangle[i])]);
+            const std::int32_t vertex = surface_.triangles[t][i];
+            SpacePointId& known = surface_point_[index(vertex)];
+            if (!known.has_value()) known = points_.add(surface_.vertices[index(vertex)]);
             own[i] = known;
         }
+        if (undivided_.has(static_cast<std::int32_t>(t))) continue;
+        divided_.push_back(static_cast<std::int32_t>(t));
+        corners.push_back(own);
     }
     arrangement_.add_all(corners, execution_);
 }
@@ -273,6 +328,7 @@ void SurfaceOverlay::name_nodes() {
         }
         loops_.nodes[i] = node;
     }
+    name_undivided(out);
     sort_new_nodes();
     for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
         loops_.add_loop(parts_.beside[i]);
@@ -280,7 +336,26 @@ void SurfaceOverlay::name_nodes() {
     }
     parts_.beside = {};
     // edges and sides number regions and then faces in one row
-    checked_number(size() + model_.face_count(), "faces and their parts");
+    checked_number(size() + model_.face_count() + surface_.triangles.size(),
+                   "faces and their parts");
+}
+
+/// Gives the corners of undivided triangles nodes.
+void SurfaceOverlay::name_undivided(std::vector<NodeId>& node_of_point) {
+    surface_nodes_.assign(surface_.vertices.size(), -1);
+    for (std::size_t component = 0; component < undivided_.components(); ++component) {
+        for (const std::int32_t t : undivided_.triangles(component)) {
+            for (const std::int32_t vertex : surface_.triangles[index(t)]) {
+                const SpacePointId p = surface_point_[index(vertex)];
+                NodeId& node = node_of_point[index(p)];
+                if (node < 0) {
+                    node = add_node(points_.rounded(p));
+                    exact_of_new_.push_back(p);
+                }
+                surface_nodes_[index(vertex)] = node;
+            }
+        }
+    }
 }
 
 /// Numbers the new nodes in the order of their places: whatever else there is elsewhere, what is
@@ -299,9 +374,13 @@ void SurfaceOverlay::sort_new_nodes() {
         number[index(order[i].second)] = first + static_cast<NodeId>(i);
     }
     exact_of_new_ = std::move(exact);
-    for (NodeId& node : loops_.nodes) {
-        if (node >= first) node = number[index(node - first)];
-    }
+    const auto renumber = [&](auto& nodes) {
+        for (NodeId& node : nodes) {
+            if (node >= first) node = number[index(node - first)];
+        }
+    };
+    renumber(loops_.nodes);
+    renumber(surface_nodes_);
 }
 
 SpacePointId SurfaceOverlay::exact(NodeId node) {
@@ -342,7 +421,10 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
     items.clear();
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
-        if (item >= size()) {
+        if (item >= size() + model_.face_count()) {
+            const auto t = static_cast<std::int32_t>(item - size() - model_.face_count());
+            items.push_back({far_corner(undivided_nodes(t), use.edge), -1, use.direction});
+        } else if (item >= size()) {
             items.push_back({far_corner(model_.face(item - size()), use.edge), -1, use.direction});
         } else if (is_beside(item)) {
             items.push_back({far_corner(loops(item)[0], use.edge), -1, use.direction});

@@ -9,6 +9,7 @@
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/cutter_surface.hpp"
+#include "cutting/undivided_triangles.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -25,8 +26,11 @@ class SurfaceOverlay {
 public:
     /// @param least_rounding  what coordinates may be off by at least, where the model is a piece
     ///                        of one with larger coordinates
+    /// @param groups  of triangles of the surface: of one group those that meet nothing are left
+    ///                undivided, and are no regions; none at all: there are no such triangles
     SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
-                   const Execution& execution, double least_rounding = 0);
+                   const Execution& execution, double least_rounding = 0,
+                   std::span<const std::int32_t> groups = {});
 
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
@@ -37,7 +41,7 @@ public:
     }
     /// The triangle of the surface that a region is part of.
     std::int32_t cutter_triangle(std::size_t region) const {
-        return triangle(region) - first_cutter_;
+        return divided_[index(triangle(region) - first_cutter_)];
     }
     /// The face that a region is part of.
     std::size_t face_of(std::size_t region) const {
@@ -60,6 +64,20 @@ public:
     NodeId add_node(const Position& p) {
         new_positions_.push_back(p);
         return checked_number(model_.vertex_count() + new_positions_.size(), "nodes") - 1;
+    }
+
+    /// Triangles of the surface that have no regions.
+    const UndividedTriangles& undivided() const { return undivided_; }
+    std::array<NodeId, 3> undivided_nodes(std::int32_t triangle) const {
+        const auto& corners = surface_.triangles[index(triangle)];
+        return {surface_nodes_[index(corners[0])], surface_nodes_[index(corners[1])],
+                surface_nodes_[index(corners[2])]};
+    }
+    /// The node of a corner of such a triangle, by its number in the surface.
+    NodeId surface_node(std::int32_t vertex) const { return surface_nodes_[index(vertex)]; }
+    /// The number of such a triangle as the item of an edge's use: after all regions and faces.
+    std::int32_t undivided_item(std::int32_t triangle) const {
+        return static_cast<std::int32_t>(size() + model_.face_count()) + triangle;
     }
 
     /// The exact point of a node. Those of regions have one already: of them several threads may
@@ -114,8 +132,11 @@ private:
     std::int32_t triangle(std::size_t region) const {
         return arrangement_.regions().triangles[region];
     }
-    void find_active_faces();
+    class FacePlane;
+    void find_active_faces(std::span<const std::int32_t> groups);
     bool is_beside(std::span<const NodeId> polygon, std::int32_t triangle) const;
+    template <class Visit>
+    void each_near(std::span<const NodeId> polygon, const Visit& visit) const;
     std::int32_t first_passed(std::span<const NodeId> polygon) const;
     void divide(std::int32_t face, std::span<const NodeId> polygon, FaceParts& parts) const;
     template <class Which>
@@ -139,6 +160,7 @@ private:
     void add_triangles();
     void overlay_all();
     void name_nodes();
+    void name_undivided(std::vector<NodeId>& node_of_point);
     void sort_new_nodes();
 
     const ComplexView& model_;
@@ -156,8 +178,12 @@ private:
         vertex_point_;                    ///< of the model's vertices, none away from the surface
     std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     FaceParts parts_;                     ///< of active faces
-    std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
-    std::vector<SpacePointId> exact_of_new_;  ///< the exact point of each new node
+    UndividedTriangles undivided_;
+    std::vector<std::int32_t> divided_;        ///< the other triangles of the surface
+    std::vector<SpacePointId> surface_point_;  ///< of the surface's vertices that triangles have
+    std::vector<NodeId> surface_nodes_;        ///< of those of undivided triangles, the others -1
+    std::int32_t first_cutter_ = 0;            ///< the overlay's first triangle of the surface
+    std::vector<SpacePointId> exact_of_new_;   ///< the exact point of each new node
     std::vector<Position> new_positions_;
     arrangement::LoopTable<NodeId> loops_;  ///< of regions, in nodes
 };

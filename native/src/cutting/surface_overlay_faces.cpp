@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which faces of a model come near a surface, and what of them does.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -14,9 +15,47 @@ namespace realmodel::cutting {
 using spatial::Box;
 using spatial::BoxTree;
 
+/// The plane that a face lies in but for rounding.
+class SurfaceOverlay::FacePlane {
+public:
+    FacePlane(const ComplexView& model, std::span<const NodeId> polygon, double margin) {
+        std::vector<Position> corners;
+        for (const NodeId v : polygon)
+            corners.push_back(model.vertex(v));
+        origin_ = corners[0];
+        normal_ = polygon_normal(corners);
+        margin_ = 2 * margin;
+        for (const Position& p : corners)
+            reach_ = std::max(reach_, std::abs(distance(p)) + rounding(p));
+    }
+    /// Whether a triangle is surely beside it, farther than the face's corners are.
+    bool is_beside(const std::array<Position, 3>& triangle) const {
+        int above = 0, below = 0;
+        for (const Position& p : triangle) {
+            const double off = distance(p), allowed = reach_ + rounding(p);
+            above += off > allowed;
+            below += off < -allowed;
+        }
+        return above == 3 || below == 3;
+    }
+
+private:
+    double distance(const Position& p) const { return dot(normal_, minus(p, origin_)); }
+    double rounding(const Position& p) const {
+        constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
+        double allowed = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            allowed += std::abs(normal_[k]) * (margin_ + kRounding * std::abs(p[k] - origin_[k]));
+        return allowed;
+    }
+
+    Position origin_, normal_;
+    double margin_, reach_ = 0;
+};
+
 /// The faces that come near the surface: near the box of one of its triangles, and not all to one
-/// side of the triangle's plane.
-void SurfaceOverlay::find_active_faces() {
+/// side of the triangle's plane. And the triangles that nothing meets.
+void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
     margin_ = std::max(margin_, rounding_of(surface_.vertices));
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
@@ -31,13 +70,27 @@ void SurfaceOverlay::find_active_faces() {
             box.include(corner(t, i));
         box.widen(margin_);
     }
-    tree_ = std::make_unique<BoxTree>(std::move(boxes));
+    tree_ = std::make_unique<BoxTree>(std::move(boxes), execution_);
     active_.assign(model_.face_count(), 0);
+    std::vector<std::uint8_t> meets(groups.size(), 0);  // of triangles: whether a face may
     parallel_ranges(active_.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
-            if (first_passed(model_.face(f)) >= 0) active_[f] = 1;
+            if (groups.empty()) {
+                active_[f] = first_passed(model_.face(f)) >= 0 ? 1 : 0;
+                continue;
+            }
+            const FacePlane plane(model_, model_.face(f), margin_);
+            each_near(model_.face(f), [&](std::int32_t t) {
+                const std::array corners{corner(t, 0), corner(t, 1), corner(t, 2)};
+                if (is_beside(model_.face(f), t)) return;
+                active_[f] = 1;
+                if (!plane.is_beside(corners))
+                    std::atomic_ref(meets[index(t)]).store(1, std::memory_order_relaxed);
+            });
         }
     });
+    if (!groups.empty())
+        undivided_ = UndividedTriangles(surface_, *tree_, std::move(meets), groups, execution_);
     for (std::size_t f = 0; f < active_.size(); ++f) {
         if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
     }
@@ -64,13 +117,19 @@ bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) 
     return index(above) == polygon.size() || index(below) == polygon.size();
 }
 
-/// The first triangle of the surface that a polygon may pass, -1 none.
-std::int32_t SurfaceOverlay::first_passed(std::span<const NodeId> polygon) const {
+/// Calls visit(triangle) for those whose boxes a polygon's meets.
+template <class Visit>
+void SurfaceOverlay::each_near(std::span<const NodeId> polygon, const Visit& visit) const {
     Box box;
     for (const NodeId v : polygon)
         box.include(model_.vertex(v));
+    tree_->find(box, visit);
+}
+
+/// The first triangle of the surface that a polygon may pass, -1 none.
+std::int32_t SurfaceOverlay::first_passed(std::span<const NodeId> polygon) const {
     std::int32_t first = INT32_MAX;
-    tree_->find(box, [&](std::int32_t t) {
+    each_near(polygon, [&](std::int32_t t) {
         if (t < first && !is_beside(polygon, t)) first = t;
     });
     return first == INT32_MAX ? -1 : first;

@@ -207,6 +207,11 @@ void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
         for (const std::int32_t slot : of_side) {
             const Slot& own = slots_[index(slot)];
             if (!sides_.reaches(own.cell)) continue;
+            if (caps.component >= 0) {
+                for (const UndividedBorder& border : winding_.borders(index(caps.component)))
+                    visit(SlotUse{own.cell, own.half, border.use, slot});
+                continue;
+            }
             each_edge(overlay_.loops(index(caps.region)), caps.region, [&](const EdgeUse& use) {
                 visit(SlotUse{own.cell, own.half, use, slot});
             });
@@ -234,21 +239,60 @@ void SurfaceParts::collect_uses(Progress* progress) {
 }
 
 void SurfaceParts::make_caps() {
+    const UndividedTriangles& undivided = overlay_.undivided();
+    std::vector<std::int32_t> caps_of(undivided.components(), -1);
+    std::int32_t next = 0;  // triangle of the surface
+    const auto add_undivided_until = [&](std::int32_t end) {
+        for (; undivided.components() > 0 && next < end; ++next) {
+            if (undivided.has(next)) add_caps_of_undivided(next, caps_of);
+        }
+    };
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
-        Caps& caps = caps_.emplace_back(Caps{static_cast<std::int32_t>(r), {}, {}, {}});
-        for (std::size_t k = 0; k < 2; ++k) {
-            for (const auto& [cell, times] : winding_.around(r, k)) {
-                const std::int8_t half = sides_.of_cap(r, k, cell);
-                for (int i = 0; i < std::abs(times); ++i) {
-                    const std::int32_t slot =
-                        add_slot(cell, half, (times > 0) == (k == 0) ? 1 : -1);
-                    if (slot >= 0) caps.slots[k].push_back(slot);
-                }
+        add_undivided_until(overlay_.cutter_triangle(r));
+        add_caps(static_cast<std::int32_t>(r), -1);
+        cap_places_.push_back({caps_.size() - 1, -1});
+    }
+    add_undivided_until(static_cast<std::int32_t>(overlay_.surface().triangles.size()));
+}
+
+/// @param caps_of  of components, -1 none yet
+void SurfaceParts::add_caps_of_undivided(std::int32_t triangle,
+                                         std::vector<std::int32_t>& caps_of) {
+    const std::int32_t component = overlay_.undivided().component(triangle);
+    const std::int32_t region = winding_.borders(index(component))[0].region;
+    if (!winding_.touches_model(index(region))) return;
+    std::int32_t& caps = caps_of[index(component)];
+    if (caps < 0) {
+        caps = static_cast<std::int32_t>(caps_.size());
+        add_caps(region, component);
+    }
+    cap_places_.push_back({index(caps), triangle});
+}
+
+void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
+    Caps& caps = caps_.emplace_back(Caps{region, component, {}, {}, {}});
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const auto& [cell, times] : winding_.around(index(region), k)) {
+            const std::int8_t half = sides_.of_cap(index(region), k, cell);
+            for (int i = 0; i < std::abs(times); ++i) {
+                const std::int32_t slot = add_slot(cell, half, (times > 0) == (k == 0) ? 1 : -1);
+                if (slot >= 0) caps.slots[k].push_back(slot);
             }
         }
-        pair_caps(caps);
     }
+    pair_caps(caps);
+}
+
+/// Calls visit(loops) for the region of caps, or for each of the undivided triangles.
+template <class Visit>
+void SurfaceParts::visit_loops(const Caps& caps, const Visit& visit) const {
+    if (caps.component < 0) {
+        visit(overlay_.loops(index(caps.region)));
+        return;
+    }
+    for (const std::int32_t t : overlay_.undivided().triangles(index(caps.component)))
+        visit(std::array<std::array<NodeId, 3>, 1>{overlay_.undivided_nodes(t)});
 }
 
 /// Pairs what a region of the surface lies between.
@@ -282,7 +326,10 @@ void SurfaceParts::pair_caps(Caps& caps) {
 void SurfaceParts::join_across() {
     for (Caps& caps : caps_) {
         std::erase_if(caps.across, [&](const std::array<std::int32_t, 2>& pair) {
-            if (pair[1] < 0 || sides_.separates(index(caps.region))) return false;
+            const bool separates = caps.component < 0
+                                       ? sides_.separates(index(caps.region))
+                                       : sides_.separates_undivided(index(caps.component));
+            if (pair[1] < 0 || separates) return false;
             joined_->join(pair[0], pair[1]);
             has_joined_across_ = true;
             for (const std::int32_t slot : pair)
@@ -374,28 +421,28 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 void SurfaceParts::attach_hollows(Progress* progress) {
     // the slots of each cell that reaches the surface, and what has them
     struct Item {
-        std::int32_t slot, patch, region;  // one of the latter, the other -1
+        std::int32_t slot, patch, caps;  // one of the latter, the other -1
     };
     const auto items = bucketize<Item>(overlay_.model().cell_count(), [this](const auto& put) {
-        const auto add = [&](std::int32_t slot, std::int32_t patch, std::int32_t region) {
+        const auto add = [&](std::int32_t slot, std::int32_t patch, std::int32_t caps) {
             if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
-            put(index(slots_[index(slot)].cell), Item{slot, patch, region});
+            put(index(slots_[index(slot)].cell), Item{slot, patch, caps});
         };
         for (std::size_t p = 0; p < patches_.size(); ++p) {
             for (const std::int32_t slot : patches_[p].slots)
                 add(slot, static_cast<std::int32_t>(p), -1);
         }
-        for (const Caps& caps : caps_) {
-            for (const auto& own : caps.slots) {
+        for (std::size_t c = 0; c < caps_.size(); ++c) {
+            for (const auto& own : caps_[c].slots) {
                 for (const std::int32_t slot : own)
-                    add(slot, -1, caps.region);
+                    add(slot, -1, static_cast<std::int32_t>(c));
             }
         }
     });
     const auto at = [this](NodeId node) { return overlay_.position(node); };
-    const auto visit_loops = [&](const Item& item, const auto& visit) {
+    const auto visit_item = [&](const Item& item, const auto& visit) {
         if (item.patch < 0) {
-            visit(overlay_.loops(index(item.region)));
+            visit_loops(caps_[index(item.caps)], visit);
         } else if (const Patch& patch = patches_[index(item.patch)]; patch.divided == nullptr) {
             visit(std::array{overlay_.model().face(index(patch.face))});
         } else {
@@ -412,11 +459,11 @@ void SurfaceParts::attach_hollows(Progress* progress) {
         }
         if (shells.size() < 2) return;
         Position origin;
-        visit_loops(of_cell[0], [&](const auto& loops) { origin = at(loops[0][0]); });
+        visit_item(of_cell[0], [&](const auto& loops) { origin = at(loops[0][0]); });
         for (const Item& item : of_cell) {
             if (!is_of_half(item)) continue;
             Shell& shell = shells.at(joined_->find(item.slot));
-            visit_loops(item, [&](const auto& loops) {
+            visit_item(item, [&](const auto& loops) {
                 for (const auto& loop : loops)
                     shell.add(loop, slots_[index(item.slot)].sign, origin, at);
             });

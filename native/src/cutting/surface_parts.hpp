@@ -60,14 +60,22 @@ private:
         Loops<NodeId> loops() const { return divided->loops[number]; }
         std::span<const std::int32_t> regions() const { return divided->regions_of(number); }
     };
-    /// The slots of one region of the surface: what is below it, then what is above.
+    /// The slots of one region of the surface, or of a component of undivided triangles: what is
+    /// below it, then what is above.
     struct Caps {
-        std::int32_t region;
+        std::int32_t region;     ///< of a component that at its first border
+        std::int32_t component;  ///< -1: the region alone
         std::array<std::vector<std::int32_t>, 2> slots;
         /// Slots with the region between them, -1 nothing wanted: of cells that lie one below and
         /// one above it, and pairs of cells that overlap on one side, of which one
         /// is there as often too much as the other too little.
         std::vector<std::array<std::int32_t, 2>> across, beside;
+    };
+    /// What is one polygon, or several, between the slots of caps: their region, or one of the
+    /// undivided triangles.
+    struct CapPlace {
+        std::size_t caps;
+        std::int32_t triangle;  ///< -1: the region
     };
     /// A slot at one of its edges.
     struct SlotUse {
@@ -89,6 +97,11 @@ private:
 
     void make_patches(Progress* progress);
     void make_caps();
+    void add_caps(std::int32_t region, std::int32_t component);
+    void add_caps_of_undivided(std::int32_t triangle, std::vector<std::int32_t>& caps_of);
+    template <class Visit>
+    void visit_loops(const Caps& caps, const Visit& visit) const;
+    void divide(const CapPlace& place, Polygons& polygons);
     void leave_out(std::size_t face);
     void add_patch(Patch patch);
     std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
@@ -117,7 +130,8 @@ private:
     std::vector<DividedFaces> divided_;  ///< of chunks of active faces
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
-    Array<SlotUse> uses_;  ///< in order: those of one cell, half and edge side by side
+    std::vector<CapPlace> cap_places_;  ///< in the order of the surface's triangles
+    Array<SlotUse> uses_;               ///< in order: those of one cell, half and edge side by side
     std::optional<DisjointSets> joined_;  ///< slots of the same part
     std::vector<std::int32_t> part_;      ///< of slots
     bool has_joined_across_ = false;      ///< some parts are of several cells

@@ -186,6 +186,22 @@ void SurfaceParts::write_patches(Progress* progress) {
     }
 }
 
+/// A region of the surface, or an undivided triangle, in polygons, which are added.
+void SurfaceParts::divide(const CapPlace& place, Polygons& polygons) {
+    if (place.triangle >= 0) {
+        auto nodes = overlay_.undivided_nodes(place.triangle);
+        std::rotate(nodes.begin(), std::ranges::min_element(nodes), nodes.end());  // as above
+        polygons.add(nodes);
+        return;
+    }
+    const std::size_t region = index(caps_[place.caps].region);
+    const auto& triangle = overlay_.corners(region);
+    std::array<Position, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = overlay_.points().rounded(triangle[k]);
+    divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false, polygons);
+}
+
 /// Between what is on either side of the surface; where on one side two cells overlap, or one is
 /// inside out, the polygon is between these two.
 void SurfaceParts::write_caps(Progress* progress) {
@@ -197,20 +213,13 @@ void SurfaceParts::write_caps(Progress* progress) {
         if (model.cell(face, 1) < 0)
             outer_face[index(winding_.level(r))] = static_cast<std::int32_t>(face);
     }
-    const DividedInChunks in_polygons(caps_.size(),
-                                      [this](std::size_t i, Polygons& polygons) {
-                                          const std::size_t region = index(caps_[i].region);
-                                          const auto& triangle = overlay_.corners(region);
-                                          std::array<Position, 3> corners;
-                                          for (std::size_t k = 0; k < 3; ++k)
-                                              corners[k] = overlay_.points().rounded(triangle[k]);
-                                          divide_loops(overlay_, polygon_normal(corners),
-                                                       overlay_.loops(region), false, polygons);
-                                      },
-                                      {overlay_.threads(), progress});
+    const DividedInChunks in_polygons(
+        cap_places_.size(),
+        [this](std::size_t i, Polygons& polygons) { divide(cap_places_[i], polygons); },
+        {overlay_.threads(), progress});
     Polygons polygons;
-    for (std::size_t i = 0; i < caps_.size(); ++i) {
-        const Caps& caps = caps_[i];
+    for (std::size_t i = 0; i < cap_places_.size(); ++i) {
+        const Caps& caps = caps_[cap_places_[i].caps];
         polygons.clear();
         in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
             for (std::size_t p = first; p < end; ++p)

@@ -208,10 +208,26 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
     return complex;
 }
 
+/// On which side of each structure something is.
+std::vector<cutting::NearestSide> nearest_sides(const StructureSurface& surface,
+                                                const Execution& execution) {
+    std::vector<cutting::NearestSide> nearest;
+    nearest.reserve(surface.single.size());
+    for (const cutting::CutterSurface& single : surface.single)
+        nearest.emplace_back(single, execution);
+    return nearest;
+}
+
+/// The structures that models are joined at.
+struct StructuresHere {
+    const StructureSurface& surface;
+    std::span<const Structure> structures;
+    std::span<const cutting::NearestSide> nearest;  ///< of single ones
+};
+
 /// Joins the models where only the cells that are near structures take part in cutting; nothing
 /// where rounding went beyond them.
-std::optional<Joined> join(const Together& together, const StructureSurface& surface,
-                           std::span<const Structure> structures,
+std::optional<Joined> join(const Together& together, const StructuresHere& given,
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
     const ComplexView all = together.view();
@@ -221,10 +237,15 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
         model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
     begin(execution.progress, 0.1, 0.15, "finding faces near structures");
-    SurfaceOverlay overlay(near, surface.surface, execution, least_rounding);
+    // with what continues a structure nothing else is left undivided
+    std::vector<std::int32_t> groups;
+    for (std::size_t t = 0; t < given.surface.structure.size(); ++t)
+        groups.push_back(2 * given.surface.structure[t] + given.surface.is_continuation[t]);
+    SurfaceOverlay overlay(near, given.surface.surface, execution, least_rounding, groups);
     begin(execution.progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, execution.progress);
-    const StructureSides sides(overlay, winding, surface, structures, execution.progress);
+    const StructureSides sides(overlay, winding, given.surface, given.structures, given.nearest,
+                               execution.progress);
     assert(model_of_cell.size() == near.cell_count());
     const WantedParts wanted(overlay, winding, sides, model_of_cell, together.model_sides, acts);
     begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
@@ -272,7 +293,8 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
     const StructureSurface surface = structure_surface(structures, box_of(rock));
     SurfaceOverlay overlay(rock, surface.surface, execution);
     const CutterWinding winding(overlay, execution.progress);
-    const StructureSides sides(overlay, winding, surface, structures, execution.progress);
+    const auto nearest = nearest_sides(surface, execution);
+    const StructureSides sides(overlay, winding, surface, structures, nearest, execution.progress);
     std::map<Sides, Box> boxes;
     const auto include = [&](std::size_t part, const auto& loops) {
         Box& box = boxes[sides.sides(part)];
@@ -310,7 +332,7 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     }
     const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
                                                        : structure_surface(structures, continued);
-    const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
+    const auto nearest = nearest_sides(surface, execution);
     begin(execution.progress, 0, 0.1, "leaving out what is in other parts");
     std::vector<std::vector<CellPlace>> places;
     for (const PartModel& own : models) {
@@ -319,10 +341,10 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     Together together(models, places, execution);
     together.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    if (auto joined = join(together, surface, structures, acts, least, execution))
-        return *std::move(joined);
+    const StructuresHere given{surface, structures, nearest};
+    if (auto joined = join(together, given, acts, least, execution)) return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
-    return *join(together, surface, structures, acts, least, execution);
+    return *join(together, given, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
@@ -332,10 +354,10 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
     for (std::size_t i = 0; i + 2 < points.size(); i += 3)
         box.include(Position{points[i], points[i + 1], points[i + 2]});
     const StructureSurface surface = first_surface(structures, box);
-    const cutting::NearestSide nearest(surface.single[0]);
+    const cutting::NearestSide nearest(surface.single[0], execution);
     // what is beside the fault itself is on its side, wherever its continuation goes
     const cutting::CutterSurface own = checked_surface(structures[0], 0);
-    const cutting::NearestSide beside(own);
+    const cutting::NearestSide beside(own, execution);
     std::vector<std::int8_t> sides(points.size() / 3);
     parallel_ranges(sides.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

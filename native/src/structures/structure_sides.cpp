@@ -16,7 +16,8 @@ using cutting::kBelow;
 
 StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
                                const StructureSurface& surface,
-                               std::span<const Structure> structures, Progress* progress)
+                               std::span<const Structure> structures,
+                               std::span<const cutting::NearestSide> nearest, Progress* progress)
     : overlay_(overlay),
       winding_(winding),
       surface_(surface),
@@ -25,9 +26,8 @@ StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& win
       of_(named_structures()),
       parts_(overlay, winding, near_, rules(), progress),
       sides_(parts_.size(), Sides(structures.size(), 0)),
-      kept_(structures.size()) {
-    for (const cutting::CutterSurface& single : surface.single)
-        nearest_.emplace_back(single);
+      kept_(structures.size()),
+      nearest_(nearest) {
     // a fault that others end at comes before these
     std::vector<std::uint8_t> done(structures.size(), 0);
     for (std::size_t round = 0; round < structures.size(); ++round) {

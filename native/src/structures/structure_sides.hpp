@@ -29,10 +29,11 @@ struct RegionOf {
 /// nothing else. Sides are known at one region of each structure and change only with its regions.
 class StructureSides {
 public:
+    /// @param nearest  of the surfaces of single structures
     /// @throws InputError kinds does_not_meet, ends_inside
     StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
                    const StructureSurface& surface, std::span<const Structure> structures,
-                   Progress* progress);
+                   std::span<const cutting::NearestSide> nearest, Progress* progress);
 
     std::size_t parts() const { return parts_.size(); }
     const Sides& sides(std::size_t part) const { return sides_[part]; }
@@ -73,8 +74,8 @@ private:
     std::vector<std::vector<RegionOf>> of_;
     cutting::SurfaceCells parts_;
     std::vector<Sides> sides_;
-    std::vector<std::vector<std::int8_t>> kept_;  ///< of structures: the side of each it ends at
-    std::vector<cutting::NearestSide> nearest_;   ///< of structures
+    std::vector<std::vector<std::int8_t>> kept_;     ///< of structures: the side of each it ends at
+    std::span<const cutting::NearestSide> nearest_;  ///< of structures
 };
 
 }  // namespace realmodel::structures

@@ -3,12 +3,14 @@
 #include "structures/structure_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <span>
 
 #include "base/disjoint_sets.hpp"
+#include "base/key_table.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
 #include "structures/branch_sides.hpp"
@@ -23,6 +25,8 @@ using cutting::Position;
 using spatial::Box;
 
 namespace {
+
+constexpr double kBesideRock = 1e-6;  // of its size: what is farther away is beyond it
 
 /// How far a continuation goes on, in two steps, by the size of a box around the rock and all
 /// structures.
@@ -232,7 +236,7 @@ bool passes(const Box& box, const std::array<Position, 3>& triangle) {
 bool divides(const CutterSurface& fault, const Box& rock) {
     const Position extent = minus(rock.high, rock.low);
     Box near = rock;
-    near.widen(1e-6 * length(extent));
+    near.widen(kBesideRock * length(extent));
     const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
     return std::ranges::none_of(border_of(fault),
                                 [&](const CutterBorderEdge& edge) {
@@ -294,37 +298,46 @@ class SurfaceOfTriangles {
 public:
     void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
     void add(const std::array<Position, 3>& corners, bool is_continuation) {
-        const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
         if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
-        all_.surface.triangles.push_back(t);
+        all_.surface.triangles.push_back({node(corners[0]), node(corners[1]), node(corners[2])});
         all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
         all_.is_continuation.push_back(is_continuation ? 1 : 0);
+        add_to_single(corners);
+    }
+    /// One that is away from all rock, and cuts nothing.
+    void add_to_single(const std::array<Position, 3>& corners) {
         CutterSurface& single = all_.single.back();
-        std::array<NodeId, 3> own{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            own[i] = static_cast<NodeId>(single.vertices.size());
-            single.vertices.push_back(all_.surface.vertices[index(t[i])]);
-        }
-        single.triangles.push_back(own);
+        const auto first = static_cast<NodeId>(single.vertices.size());
+        single.vertices.insert(single.vertices.end(), corners.begin(), corners.end());
+        single.triangles.push_back({first, first + 1, first + 2});
     }
     StructureSurface surface() && { return std::move(all_); }
 
 private:
     NodeId node(const Position& p) {
+        auto& vertices = all_.surface.vertices;
+        const Position key = plus(p, Position{0, 0, 0});  // both zeros alike
         const auto [found, is_new] =
-            number_.try_emplace(p, static_cast<NodeId>(all_.surface.vertices.size()));
-        if (is_new) all_.surface.vertices.push_back(p);
-        return found->second;
+            number_.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(key)),
+                                static_cast<NodeId>(vertices.size()),
+                                [&](NodeId other) { return vertices[index(other)] == p; });
+        if (is_new) vertices.push_back(p);
+        return found;
     }
 
     StructureSurface all_;
-    std::map<Position, NodeId> number_;
+    KeyTable number_;  ///< of vertices
 };
 
 /// @param count  of structures, those that are taken
-/// @param continues_all  whether those are continued, too, that divide the rock by themselves
+/// Which triangles of structures there are.
+struct Extent {
+    bool continues_all = false;  ///< those are continued, too, that divide the rock by themselves
+    bool has_all_of_bodies = true;  ///< the surface of all has what of bodies is beyond the rock
+};
+
 StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
-                            const Box& rock, bool continues_all) {
+                            const Box& rock, const Extent& extent_of) {
     std::vector<CutterSurface> given;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
@@ -332,17 +345,26 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
         for (const Position& p : given.back().vertices)
             whole.include(p);
     }
-    const Position extent = minus(whole.high, whole.low);
-    const double size = length(extent);
+    const double size = length(minus(whole.high, whole.low));
+    Box near = rock;
+    near.widen(kBesideRock * length(minus(rock.high, rock.low)));
     SurfaceOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];
         all.begin(own.is_closed);
-        for (const auto& t : own.triangles)
-            all.add(
-                {own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
-                false);
-        if (!structures[index(s)].is_body && (continues_all || !divides(own, rock))) {
+        for (const auto& t : own.triangles) {
+            const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
+                                     own.vertices[index(t[2])]};
+            Box box;
+            for (const Position& p : corners)
+                box.include(p);
+            if (!own.is_closed || extent_of.has_all_of_bodies || box.meets(near)) {
+                all.add(corners, false);
+            } else {
+                all.add_to_single(corners);
+            }
+        }
+        if (!structures[index(s)].is_body && (extent_of.continues_all || !divides(own, rock))) {
             for (const auto& t : continuation(structures, given, s, size))
                 all.add(t, true);
         }
@@ -371,7 +393,7 @@ CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
 }
 
 StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
-    return surface_of(structures, structures.size(), rock, false);
+    return surface_of(structures, structures.size(), rock, {.has_all_of_bodies = false});
 }
 
 StructureSurface structure_surface(std::span<const Structure> structures,
@@ -394,7 +416,7 @@ std::vector<ContinuedStructure> continued_structures(
     Box rock;
     for (const Position& corner : corners)
         rock.include(corner);
-    const StructureSurface surface = structure_surface(structures, rock);
+    const StructureSurface surface = surface_of(structures, structures.size(), rock, {});
     std::vector<ContinuedStructure> found(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
@@ -411,7 +433,7 @@ std::vector<ContinuedStructure> continued_structures(
 }
 
 StructureSurface first_surface(std::span<const Structure> structures, const Box& rock) {
-    return surface_of(structures, 1, rock, true);
+    return surface_of(structures, 1, rock, {.continues_all = true});
 }
 
 }  // namespace realmodel::structures

@@ -36,6 +36,7 @@ namespace realmodel::structures {
 /// themselves are continued beyond their borders as far as it reaches: straight up or down where
 /// they end at a height, in their own plane where they end aside, along their mean plane where they
 /// die out. There they divide nothing, but every way from one side to the other crosses them.
+/// What of bodies is beyond the rock is in `single` alone.
 struct StructureSurface {
     cutting::CutterSurface surface;
     std::vector<std::int32_t> structure;         ///< of triangles

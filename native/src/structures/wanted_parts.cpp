@@ -47,7 +47,13 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                 static_cast<std::int32_t>(overlay.face_of(r)));
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
-        if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) find_same(r);
+        if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r))
+            is_same_[r] = are_same(r, true) ? 1 : 0;
+    }
+    for (std::size_t component = 0; component < overlay.undivided().components(); ++component) {
+        const auto region = index(winding.borders(component)[0].region);
+        is_same_undivided_.push_back(winding.touches_model(region) && are_same(region, false) ? 1
+                                                                                              : 0);
     }
 }
 
@@ -199,14 +205,15 @@ void WantedParts::refuse_unsaid_end(std::size_t region, std::int32_t cell) const
 /// Cells of one block that meet where nothing acts are one there: what a fault parts is connected
 /// beyond its tip, but not what lies elsewhere in the same cells. Where nothing acts but the rock
 /// differs by more than slivers, a fault ends in it.
-void WantedParts::find_same(std::size_t region) {
+bool WantedParts::are_same(std::size_t region, bool may_be_sliver) const {
     const std::int32_t low = wanted_at(region, 0), high = wanted_at(region, 1);
-    if ((low < 0 && high < 0) || acting(region, low, high) >= 0 || is_sliver(region)) return;
+    if ((low < 0 && high < 0) || acting(region, low, high) >= 0 ||
+        (may_be_sliver && is_sliver(region)))
+        return false;
     const ComplexView& model = overlay_.model();
     if (model.block(low) == model.block(high)) {
         refuse_unsaid_end(region, low);
-        is_same_[region] = 1;
-        return;
+        return true;
     }
     const auto& structures = sides_.structures_at(region);
     const auto parts_sides = [&](const RegionOf& of) {
@@ -221,7 +228,7 @@ void WantedParts::find_same(std::size_t region) {
         });
     if (ends_itself(low, region) && ends_itself(high, region) &&
         (!is_beyond_tip || is_there_without_structures(region, low, high)))
-        return;
+        return false;
     const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",

@@ -23,6 +23,9 @@ public:
     std::int8_t of_face(std::size_t face) const override;
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const override;
     bool separates(std::size_t region) const override { return is_same_[region] == 0; }
+    bool separates_undivided(std::size_t component) const override {
+        return is_same_undivided_[component] == 0;
+    }
     bool ends_at_outer_face(std::size_t region, std::int32_t cell) const override;
     std::int32_t cap_face(std::size_t region, std::int32_t low, std::int32_t high) const override;
 
@@ -37,7 +40,7 @@ private:
     bool is_there_without_structures(std::size_t region, std::int32_t low, std::int32_t high) const;
     bool is_sliver(std::size_t region) const;
     void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;
-    void find_same(std::size_t region);
+    bool are_same(std::size_t region, bool may_be_sliver) const;
     std::int32_t wanted_at(std::size_t region, std::size_t side) const;
     bool ends_itself(std::int32_t cell, std::size_t region) const;
 
@@ -49,6 +52,7 @@ private:
     std::vector<std::int32_t> model_of_part_;          ///< -1 none
     std::vector<std::vector<std::int32_t>> faces_on_;  ///< faces that lie on each region
     std::vector<std::uint8_t> is_same_;  ///< of regions: the cells below and above are one there
+    std::vector<std::uint8_t> is_same_undivided_;  ///< likewise of components
 };
 
 }  // namespace realmodel::structures

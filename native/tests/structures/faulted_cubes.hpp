@@ -58,7 +58,8 @@ struct FaultedCubes {
     StructureSurface surface = structure_surface(structures, around());
     SurfaceOverlay overlay{model, surface.surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
-    StructureSides sides{overlay, winding, surface, structures, nullptr};
+    std::vector<cutting::NearestSide> nearest{surface.single.begin(), surface.single.end()};
+    StructureSides sides{overlay, winding, surface, structures, nearest, nullptr};
 };
 
 }  // namespace realmodel::structures

@@ -15,7 +15,7 @@ from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
 from ..project.project_checks import check_project
 from ..settings.method_options import check_threads
-from ..structures.fields import lattices
+from ..structures.fields import MOST_TOGETHER, lattices
 from ..structures.setup import mesh_inputs
 from ..surfaces.prepare import read_rocks
 from ..surfaces.rock_input import RockInput
@@ -35,7 +35,10 @@ _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points ar
 # Of fields, measured of the samples and of Claudius: a level set has 11 to 26 triangles for each of the nodes
 # to the power of two thirds, that are in one layer of a lattice. The bytes are a third more than was taken.
 _TRIANGLES_IN_LAYER = 20
-_MOST_BYTES_OF_LEVEL_SET = {"columns": 5500, "blocks": 3000}
+_MOST_BYTES_OF_LEVEL_SET = {"columns": 5500, "blocks": 2000}
+# Of a node on each combination of sides of faults: values and numbers; for each fault its side and its
+# coordinate, which is there twice while it is made
+_BYTES_OF_SIDES, _BYTES_OF_FAULT = 40, 25
 _SECONDS_PER_LEVEL_TRIANGLE = {"columns": 3e-5, "blocks": 1.5e-5}
 _SECONDS_PER_CUBE = 2.5e-10  # of the data that carry a field: it is solved for in several rounds
 _SECONDS_PER_VALUE = 2e-9  # of a datum at a node
@@ -152,7 +155,7 @@ def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> in
 @dataclass(frozen=True)
 class _FieldSize:
     """Of the field of a series. nodes: of its lattice. triangles: of all its level sets, about. system: bytes
-    of what is solved. seconds: that the solution takes."""
+    of what is solved, and of what nodes have on the sides of faults. seconds: that the solution takes."""
 
     nodes: int
     triangles: int
@@ -164,12 +167,16 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
     """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
     part a field in two."""
     found = []
+    # where there are more combinations of sides, each compartment has a field of its own
+    combinations = min(2**structures, MOST_TOGETHER) if structures else 0
+    of_sides = combinations * (_BYTES_OF_SIDES + _BYTES_OF_FAULT * structures)
     for data, lattice in lattices(entry):
         rows = min(len(data.contacts), MOST_CENTERS) + 2 * len(data.dips)
         in_layer = _TRIANGLES_IN_LAYER * cube_root(float(lattice.nodes)) ** 2
         triangles = round(in_layer * len(data.numbers) * (1 + structures))
         seconds = _SECONDS_PER_CUBE * rows**3 + _SECONDS_PER_VALUE * rows * lattice.nodes
-        found.append(_FieldSize(lattice.nodes, triangles, 2 * 8 * rows**2, seconds))
+        system = 2 * 8 * rows**2 + of_sides * lattice.nodes
+        found.append(_FieldSize(lattice.nodes, triangles, system, seconds))
     return found
 
 

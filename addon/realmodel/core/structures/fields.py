@@ -50,7 +50,7 @@ _DIGITS = 20  # of an edge of the lattice
 _NEAR = 1e-12  # of the range of f: a bound so near holds
 _PLACES = 0.5  # of an edge of the lattice: how far places within intervals are apart at most
 _FEW = 1500  # contacts and dips: of more each compartment has a field of its own data
-_MOST_TOGETHER = 32  # compartments whose fields are one function
+MOST_TOGETHER = 32  # compartments whose fields are one function
 _ROUNDS = 4  # in which bounds that contacts have put off are held
 # By how much of a cell the lattice reaches beyond the rock at its low end: not by a simple fraction, so that
 # its planes do not lie in those of other meshes.
@@ -244,7 +244,7 @@ def _families(entry: RockInput, series: Series, numbers: list[int], count: int) 
         what = f"fault '{faults.names[number]}' displaces some of its surfaces, but not all"
         raise series.refused(what, "name", "divide it into two series, or change 'youngest'", item)
     found = sorted(families(structure, numbers[-1]), key=lambda family: family.key)
-    if len(found) < 2 or len(structure.compartments) > _MOST_TOGETHER or count > _FEW:
+    if len(found) < 2 or len(structure.compartments) > MOST_TOGETHER or count > _FEW:
         return found
     faulted = np.flatnonzero(active)
     rows = structure.compartments[:, faulted].tolist()
