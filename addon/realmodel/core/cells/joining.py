@@ -140,9 +140,15 @@ def _part(
     work.check()
     inputs = solids.inputs
     sides = structures.sides[part].tolist()
+    found = solids.of([compartment_of(structures, entry, part) for entry in inputs])
+    divides = np.array([len(triangles) > 0 for _, triangles, _ in found], bool)
     places = [
         PartPlace(structures, part, tuple(beneath)) for beneath in itertools.product(*map(_levels, inputs))
     ]
+    within = np.array([_sides_at(place) for place in places], np.int8).reshape(len(places), -1)
+    # nothing is beneath a surface of which the field has no level here
+    there = np.flatnonzero((within[:, ~divides] > 0).all(axis=1))
+    places = [places[number] for number in there.tolist()]
     stacks = [_stacks_at(inputs, place) for place in places]
     wanted, around = None, None
     if reach is not None:
@@ -157,9 +163,8 @@ def _part(
     ]
     if len(places) == 1:
         return sides, rocks[0], wanted, None
-    compartments = [compartment_of(structures, entry, part) for entry in inputs]
-    within = [_sides_at(place) for place in places]
-    return sides, [], wanted, (solids.of(compartments), list(zip(within, rocks, strict=True)))
+    between = list(zip(within[there][:, divides].tolist(), rocks, strict=True))
+    return sides, [], wanted, ([found[number] for number in np.flatnonzero(divides)], between)
 
 
 def _levels(entry: RockInput) -> list[dict[int, bool]]:
