@@ -225,6 +225,15 @@ def test_data_far_from_the_region_are_told(monkeypatch):
     )
 
 
+def test_a_base_that_is_too_high_is_named(monkeypatch):
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    younger = [sheet("base of B", lambda x, y: 5.0 + 0.3 * y)]
+    project = folded_project(younger=younger)
+    project.rocks[0].base_elevation = 6.0
+    with pytest.raises(InputRefused, match=r"^rock '.*': base_elevation 6 is not .*; choose one below 5$"):
+        build(project)
+
+
 def test_what_cannot_be_made_of_fields_is_refused(monkeypatch):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     project = folded_project()

@@ -29,6 +29,9 @@ def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused |
             place=place,
         )
     entry, number = _surface_at(inputs, error.surface)
+    if entry is None and error.kind == "base_not_below":  # of a floor or a lid, which are no surfaces
+        own = [each for each in inputs if f"base_elevation {each.rock.base_elevation or 0:f} " in str(error)]
+        entry = next(iter(own), None)
     if entry is None:
         return InputRefused(str(error), place=place)
     rock = entry.rock
