@@ -24,7 +24,7 @@ namespace realmodel::bindings {
 namespace {
 
 /// How many surfaces; positions, and the surface of each.
-using ContactsTuple = std::tuple<int, Array<double>, Indices>;
+using ContactsTuple = std::tuple<int, Array<double>, Indices, double>;
 using DipsAndNormals = std::tuple<Array<double>, Array<double>>;
 /// Positions, the surface below each and above it.
 using BoundsTuple = std::tuple<Array<double>, Indices, Indices>;
@@ -91,6 +91,7 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     data.surfaces = std::get<0>(contacts);
     data.contacts = rows<3>(std::get<1>(contacts), "contacts");
     data.contact_surfaces = view(std::get<2>(contacts));
+    data.error = std::get<3>(contacts);
     data.dips = rows<3>(std::get<0>(dips), "dips");
     data.normals = rows<3>(std::get<1>(dips), "normals");
     data.bounds = rows<3>(std::get<0>(bounds), "bounds");
@@ -156,7 +157,7 @@ void bind_fields(py::module_& module) {
                R"(The smoothest field in space that honors the data, and the level of each surface.
 
 lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), and the surface of
-each (N,), 0 the oldest. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
+each (N,), 0 the oldest, and how far they may be off, as a standard deviation. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
 (B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
 at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
 one. slits: of faults that part the field how many, and the combinations of their sides; the further coordinates that

@@ -6,13 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Observations, build, load_project
+from realmodel.core import InputRefused, Observations, Series, SpaceDips, Surface, build, load_project
 from realmodel.core.ensembles import Realizer
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.surfaces.field_data import read_field_data
-from structure_cases import heights_at
+from structure_cases import cells_at, heights_at
 
 WIDTH, LENGTH, RELIEF, WAVE = 3000.0, 2000.0, 60.0, 1000.0
+NORMAL = np.array([0.0, -0.02, 1.0]) / np.hypot(0.02, 1.0)  # of the plane that the hills cut
 PROJECT = """format = 1
 name = "map"
 
@@ -99,6 +100,23 @@ def test_a_surface_does_not_follow_the_ground_between_lines(map_of, off, method,
     assert not seen.left_out
     assert max(abs(each.residual) for each in seen.contacts) < 1e-9 * RELIEF
     assert not [each for each in model.warnings if "range of the fitted" in each.text]
+
+
+@pytest.mark.parametrize(("more", "least"), [("", 0.99), (", accuracy = 0", 0.0)])
+def test_a_level_set_does_not_follow_the_ground_between_lines(map_of, tmp_path, more, least):
+    project = map_of(10.0, more)
+    rock = project.rocks[0]
+    rock.series = [Series("S", dips=SpaceDips([[500.0, 500.0, -10.0], [2500.0, 1500.0, 10.0]], [NORMAL] * 2))]
+    rock.surfaces[0] = Surface("contact", block="old", series="S")
+    model = build(project)
+    draw = np.random.default_rng(1).uniform((100, 100, -80), (WIDTH - 100, LENGTH - 100, 60), (4000, 3))
+    points = draw[draw[:, 2] < ground(draw[:, 0]) - 2]
+    found = model.cell_block[cells_at(model, points)]
+    right = np.mean(found == (points[:, 2] > contact(points[:, 1])))
+    assert right > least
+    if not least:
+        assert right < 0.95  # it follows the ground
+    assert max(abs(each.residual) for each in model.observed().contacts) < 1e-9 * RELIEF
 
 
 def test_exact_lines(map_of):

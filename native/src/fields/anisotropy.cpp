@@ -30,6 +30,7 @@ constexpr std::size_t kLifts = 10;
 constexpr std::array kThrows{0.02, 0.05, 0.1, 0.16, 0.24};
 constexpr int kSweeps = 2;
 constexpr double kLeastThrow = 0.002;
+constexpr double kFirstError = 1e-6;  // of values, in units of the kernel, where they have some
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 struct Candidate {
@@ -40,15 +41,18 @@ struct Candidate {
 /// Compares anisotropies.
 class Search {
 public:
-    Search(std::span<const Functional> known, const Execution& execution)
-        : known_(known), execution_(execution) {}
+    Search(std::span<const Functional> known, double error, const Execution& execution)
+        : known_(known), error_(error), execution_(execution) {}
+
+    /// Whether values have errors in any case.
+    bool has_errors() const { return error_ > 0; }
 
     /// The best of some; the first of equal ones.
     Candidate best(std::span<const Likely> of) const {
         std::vector<double> found(of.size(), kNever);
         parallel_chunks(of.size(), execution_, [&](std::size_t n) {
             const Spline spline(known_, of[n].smoothness(), {1, nullptr});
-            found[n] = spline.log_likelihood().value_or(kNever);
+            found[n] = spline.log_likelihood(error_).value_or(kNever);
         });
         const auto at = std::max_element(found.begin(), found.end()) - found.begin();
         return {of[at], found[at]};
@@ -68,6 +72,7 @@ public:
 
 private:
     std::span<const Functional> known_;
+    double error_;
     Execution execution_;
 };
 
@@ -155,13 +160,15 @@ void search_second(const Search& search, Candidate& best) {
 /// Other errors with the anisotropy of the best.
 void search_errors(const Search& search, Candidate& best) {
     std::vector<Likely> tried;
-    for (const double value : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5}) {
+    std::vector<double> values{0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5};
+    if (search.has_errors()) values.insert(values.end(), {1e-4, 1e-3, 1e-2});
+    for (const double value : values) {
         for (const double slope : {0.0, 1e-4, 1e-3, 1e-2, 1e-1}) {
             tried.push_back(best.what);
             tried.back().errors = {value, slope};
         }
     }
-    Search::improve(best, search.best(tried), kWorth);
+    Search::improve(best, search.best(tried), search.has_errors() ? 0 : kWorth);
 }
 
 /// Other scales of further coordinates: the larger, the less one side says of the other.
@@ -229,8 +236,8 @@ Map3 map_of(const Anisotropy& anisotropy) {
 }
 
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
-                   std::span<const Vec3> faults, const Execution& execution) {
-    const Search search(known, execution);
+                   std::span<const Vec3> faults, double error, const Execution& execution) {
+    const Search search(known, error, execution);
     const auto climb = [&](Candidate best) {
         search_first(search, normals, best);
         search_second(search, best);
@@ -244,7 +251,9 @@ Likely most_likely(std::span<const Functional> known, std::span<const Vec3> norm
         search_errors(search, best);
         return best;
     };
-    const Candidate start = search.best(std::array{Likely{}});
+    Likely plain;
+    if (search.has_errors()) plain.errors.value = kFirstError;
+    const Candidate start = search.best(std::array{plain});
     Candidate rough = start;
     search_errors(search, rough);
     Candidate best = climb(start);

@@ -33,7 +33,8 @@ struct Likely {
 /// directions; then along a direction across it. Where faults give further coordinates, it is also
 /// sought by how much places on one side of each have been moved along it.
 /// @param faults  their normals
+/// @param error  of values, as of Spline::log_likelihood
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
-                   std::span<const Vec3> faults, const Execution& execution);
+                   std::span<const Vec3> faults, double error, const Execution& execution);
 
 }  // namespace realmodel::fields

@@ -42,6 +42,8 @@ public:
     const FieldData& data() const { return data_; }
     const std::vector<Vec3>& contacts() const { return contacts_; }
     std::int32_t surface_of(std::size_t contact) const { return data_.contact_surfaces[contact]; }
+    /// Of contacts, in the frame.
+    double error() const { return data_.error / frame_.unit; }
     /// The contact at which a surface has its level.
     std::size_t reference(std::int32_t surface) const { return references_[surface]; }
 

@@ -85,7 +85,7 @@ private:
 
     void look() {
         likely_ = most_likely(sampled(gaps_, 3), known_.data().normals, known_.data().slits.normals,
-                              execution_);
+                              known_.error(), execution_);
         choose_order();
     }
 
@@ -128,7 +128,8 @@ private:
     /// critical points. That whose second ones are least bends at contacts instead. It is taken
     /// where it has so many fewer of them that the data may be less likely.
     void choose_order() {
-        const Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
+        Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
+        if (known_.error() > 0) rough.errors.value = likely_.errors.value;
         if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
     }
 
@@ -140,7 +141,7 @@ private:
             if (n != known_.reference(known_.surface_of(n))) known.push_back(known_.on_surface(n));
         }
         const Spline spline(known, likely.smoothness(), execution_);
-        const std::optional<double> likelihood = spline.log_likelihood();
+        const std::optional<double> likelihood = spline.log_likelihood(known_.error());
         if (!likelihood) return -HUGE_VAL;
         const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
         const std::vector<double> values =

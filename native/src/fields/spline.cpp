@@ -97,7 +97,7 @@ void Spline::solve(const Execution& execution) {
     if (execution.progress != nullptr) execution.progress->check();
 }
 
-std::optional<double> Spline::log_likelihood() const {
+std::optional<double> Spline::log_likelihood(double error) const {
     const auto n = static_cast<Eigen::Index>(known_.size());
     double scales = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -105,9 +105,14 @@ std::optional<double> Spline::log_likelihood() const {
         scales += elementary::log(scales_(i));
     }
     const auto free = static_cast<double>(n - 3);
-    if (!(scale() > 0)) return std::nullopt;
-    return -0.5 * (free * elementary::log(scale()) + factor_->log_determinant() - 2 * scales +
-                   coordinates_log_determinant_);
+    if (!(scale() > 0) || (error > 0 && !(smoothness_.errors.value > 0))) return std::nullopt;
+    double largest = scale(), beyond = 0;
+    if (error > 0 && error * error > smoothness_.errors.value * largest) {
+        largest = error * error / smoothness_.errors.value;
+        beyond = energy() / largest - free;
+    }
+    return -0.5 * (free * elementary::log(largest) + beyond + factor_->log_determinant() -
+                   2 * scales + coordinates_log_determinant_);
 }
 
 double Spline::energy() const {

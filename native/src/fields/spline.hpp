@@ -47,7 +47,8 @@ public:
     /// The logarithm of the restricted likelihood of what is known, if the function is a random one
     /// with the kernel as generalized covariance, less a constant (Patterson and Thompson 1971;
     /// Kitanidis 1983). To compare maps by. None where the system is singular to rounding.
-    std::optional<double> log_likelihood() const;
+    /// @param error  of values, as a standard deviation: theirs, times the scale, is no less
+    std::optional<double> log_likelihood(double error = 0) const;
 
     /// How much force a functional takes: 0 where the function would meet it anyhow.
     double force(std::size_t functional) const { return forces_[functional]; }

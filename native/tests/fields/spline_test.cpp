@@ -280,6 +280,19 @@ TEST(Spline, TheLikelihoodIsThatOfContrasts) {
     }
 }
 
+TEST(Spline, ErrorsOfValuesAreNoSmallerThanTheyAreSaidToBe) {
+    const std::vector<Functional> known = known_of(wave, wave_slope);
+    EXPECT_FALSE(Spline(known, {}, {}).log_likelihood(0.1));
+    const Spline spline(known, {kIdentity, {1e-4, 0}}, {});
+    const double own = std::sqrt(1e-4 * spline.scale());
+    const double likely = *spline.log_likelihood();
+    EXPECT_EQ(*spline.log_likelihood(0.9 * own), likely);
+    // with twice the error four times the scale
+    const auto free = static_cast<double>(known.size() - 3);
+    EXPECT_NEAR(*spline.log_likelihood(2 * own), likely - 0.5 * free * (std::log(4.0) + 0.25 - 1),
+                1e-9);
+}
+
 TEST(Spline, WeightsSayWhatAValueIsMadeOf) {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     const Spline spline(known, {}, {});
@@ -309,7 +322,7 @@ TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
     for (int n = 0; n < 20; ++n)
         normals.push_back(unit(wave_slope({0.1 * n, 0, 0})));
     for (const int threads : {1, 4}) {
-        const Likely likely = most_likely(known, normals, {}, {threads, nullptr});
+        const Likely likely = most_likely(known, normals, {}, 0, {threads, nullptr});
         EXPECT_EQ(likely.errors.value, 0);
         const Anisotropy& found = likely.anisotropy;
         EXPECT_NEAR(std::abs(found.axes[0][1]), 1, 1e-9);
@@ -325,7 +338,7 @@ TEST(Anisotropy, ByHowMuchAFaultHasMovedRockIsFound) {
     const std::vector<Functional> known = beside_a_fault(thrown);
     const std::vector<Vec3> faults{{1, 0, 0}};
     for (const int threads : {1, 4}) {
-        const Likely likely = most_likely(known, {}, faults, {threads, nullptr});
+        const Likely likely = most_likely(known, {}, faults, 0, {threads, nullptr});
         ASSERT_EQ(likely.throws.size(), 1U);
         EXPECT_EQ(likely.throws[0][0], 0);
         EXPECT_NEAR(likely.throws[0][2], thrown[2], 0.02);

@@ -67,7 +67,7 @@ class LevelSetData:
     names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
     points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
     points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
-    slits: faults that die out. item: names a datum in errors, from "contact", "dip" or "bound" and its row.
+    slits: faults that die out. error: how far contacts may be off, as a standard deviation. item: names a datum in errors, from "contact", "dip" or "bound" and its row.
     """
 
     names: Sequence[str]
@@ -80,6 +80,7 @@ class LevelSetData:
     bound_above: np.ndarray = field(default_factory=_NO_NUMBERS.copy)
     slits: SlitData | None = None
     item: Callable[[str, int], str] = _item
+    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ def solve_field(
             found = work.native(
                 native.solve_field,
                 of_lattice,
-                (len(data.names), data.contacts, data.contact_surfaces),
+                (len(data.names), data.contacts, data.contact_surfaces, data.error),
                 (data.dips, data.normals),
                 (data.bounds, data.bound_below, data.bound_above),
                 (

@@ -16,6 +16,7 @@ from ..project.project import Rock
 from ..project.series import Series
 from ..readers.tables.observations import Bounds, LeftOut, source_text
 from ..settings.dips import SpaceDips
+from ..surfaces.observed.conformable import mean_error
 from ..surfaces.rock_input import RockInput
 
 _MOST_BOUNDS = 20_000  # in ways through intervals: more take long, and say hardly more
@@ -125,6 +126,7 @@ class SeriesData:
             np.where(self.is_lower, self.bound_surfaces, none),
             slits,
             self.item,
+            float(np.sqrt(mean_error([self.rock.surfaces[number] for number in self.numbers]))),
         )
 
     def item(self, kind: str, row: int) -> str:

@@ -43,6 +43,7 @@ struct FieldData {
     std::span<const std::int32_t> bound_below;  ///< f is above the level of this one; -1: none
     std::span<const std::int32_t> bound_above;  ///< f is below the level of this one; -1: none
     Slits slits{};
+    double error = 0;  ///< how far contacts may be off, as a standard deviation
 };
 
 /// How much less f may bend along some directions than across them.
@@ -120,6 +121,9 @@ struct Field {
 /// plane, so that f bends less there: by those ratios under which the data are most likely
 /// (restricted likelihood; Patterson and Thompson 1971, Kitanidis 1983). So is by how much each
 /// fault has moved the rock on one side, along it: f is the smoothest where the rock was before.
+///
+/// Contacts that may be off are passed near by: values have errors under which the data are most
+/// likely, and no smaller ones than these where f rises as in the mean.
 ///
 /// Of more contacts than the options allow those carry the field that it would miss most (Carr et
 /// al. 2001, "Reconstruction and representation of 3D objects with radial basis functions").

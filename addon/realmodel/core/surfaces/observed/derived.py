@@ -212,7 +212,7 @@ def _of_used(
     for number, surface in enumerate(rock.surfaces):
         if surface.is_level_set:
             contacts.append(places[fields.contacts[number]])
-            errors.append(np.zeros(len(contacts[-1])))
+            errors.append(errors_of[fields.contacts[number]])
             bounds.append(fields.bounds(number))
             continue
         on = np.sort(first_rows[meets[:, number]])
