@@ -67,7 +67,8 @@ class LevelSetData:
     names: of the surfaces. contacts: (N, 3) points on surfaces; contact_surfaces: (N,) which. dips: (M, 3)
     points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
     points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
-    slits: faults that die out. error: how far contacts may be off, as a standard deviation. item: names a datum in errors, from "contact", "dip" or "bound" and its row.
+    slits: faults that die out. error: how far contacts may be off, as a standard deviation. item: names a
+    datum in errors, from "contact", "dip" or "bound" and its row.
     """
 
     names: Sequence[str]
