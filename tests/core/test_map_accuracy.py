@@ -7,8 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, Observations, Series, SpaceDips, Surface, build, load_project
+from realmodel.core.base.work import run
 from realmodel.core.ensembles import Realizer
+from realmodel.core.heights import Task, heights
 from realmodel.core.project.project_writer import save_project
+from realmodel.core.settings.methods import checked_options
 from realmodel.core.surfaces.field_data import read_field_data
 from structure_cases import cells_at, heights_at
 
@@ -185,6 +188,22 @@ def test_errors_of_observations(tmp_path):
     (tmp_path / "seen.csv").write_text("x,y,z,block,height_error\n0,0,10,old,-2\n")
     with pytest.raises(InputRefused, match=r"seen.csv:2.*the error of the height, -2, is negative"):
         read_field_data(*_of(project))
+
+
+def test_a_surface_has_no_spikes_at_points_that_are_off():
+    """Tied or not: it passes near its points, at a node there as beside it."""
+    draw = np.random.default_rng(2)
+    plan = draw.uniform(0, 100, (40, 2))
+    points = np.column_stack([plan, 0.3 * plan[:, 0] + draw.normal(0, 2, 40)])
+
+    def kriged(nodes):
+        settings = checked_options("kriging", {})
+        return run(lambda work: heights("kriging", Task(work, points, nodes, settings, error=4.0)).z)
+
+    at, beside = kriged(plan), kriged(plan + 1e-6)
+    assert at == pytest.approx(beside, abs=1e-4)
+    assert np.abs(at - points[:, 2]).max() > 1
+    assert np.std(at - 0.3 * plan[:, 0]) < 1
 
 
 def test_errors_of_arrays():

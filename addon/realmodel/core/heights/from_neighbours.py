@@ -253,10 +253,11 @@ def _of_surface(task: Task, variance: np.ndarray, known: Structure) -> np.ndarra
 
 
 def _free_nodes(task: Task) -> np.ndarray:
-    """(N, 2) the nodes at which heights are asked for: where the surface is tied afterwards, those at points
-    lie beside them, as a nugget would make spikes at them, and none at other points."""
+    """(N, 2) the nodes at which heights are asked for: where the surface is tied afterwards, or does not pass
+    through its points as these have errors, those at points lie beside them, as a nugget would make spikes at
+    them, and none at other points."""
     nodes, plan = task.nodes, task.points[:, :2]
-    if not task.ties:
+    if not (task.ties or task.error > 0):
         return nodes
     near = np.flatnonzero(np.isin(nodes[:, 0], plan[:, 0]))
     at = near[are_among(nodes[near], plan[np.isin(plan[:, 0], nodes[near, 0])])]
