@@ -2,6 +2,7 @@
 """Lines of a map, and heights of observations, that are not exact."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +11,7 @@ from realmodel.core import InputRefused, Observations, Series, SpaceDips, Surfac
 from realmodel.core.base.work import run
 from realmodel.core.ensembles import Realizer
 from realmodel.core.heights import Task, heights
+from realmodel.core.heights.from_neighbours import thinned
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.settings.methods import checked_options
 from realmodel.core.surfaces.field_data import read_field_data
@@ -204,6 +206,21 @@ def test_a_surface_has_no_spikes_at_points_that_are_off():
     assert at == pytest.approx(beside, abs=1e-4)
     assert np.abs(at - points[:, 2]).max() > 1
     assert np.std(at - 0.3 * plan[:, 0]) < 1
+
+
+def test_of_many_points_that_are_off_an_even_part_counts():
+    """All of them: what is near is on one line. A point that is far from the others is among the part."""
+    draw = np.random.default_rng(2)
+    lines = np.column_stack([draw.uniform(0, 100, 5000), draw.integers(0, 3, 5000) * 10.0])
+    points = np.column_stack([np.vstack([lines, [[50.0, 90.0]]]), np.zeros(5001)])
+    task = Task(None, points, np.empty((0, 2)), checked_options("kriging", {}), error=1.0)
+    part = thinned("kriging", task, points)
+    assert 500 < len(part) <= 1000
+    assert (part == points[-1]).all(axis=1).any()
+    assert np.diff(np.sort(part[part[:, 1] == 10, 0])).max() < 1.5
+    asked = replace(task, settings=checked_options("kriging", {"neighbours": 0}))
+    for method, other in (("kriging", asked), ("kriging", replace(task, error=0.0)), ("dsi", task)):
+        assert thinned(method, other, points) is points
 
 
 def test_errors_of_arrays():

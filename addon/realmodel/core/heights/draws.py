@@ -19,7 +19,7 @@ from ..settings.variogram import Variogram
 from . import Interpolation, heights
 from .bounded import Heights, active_bounds, consistent, holds_bounds, runner
 from .companions import Companions
-from .from_neighbours import Structure, dip_use, structure
+from .from_neighbours import Structure, dip_use, structure, thinned
 from .interpolation import Result, Task, run_method
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
@@ -67,7 +67,7 @@ class Draw:
         own = self._known(method, task)
         if own.variogram is None:
             return own.result
-        points, _ = without_mis_ties(task.points[own.counts])
+        points = thinned(own.method, task, without_mis_ties(task.points[own.counts])[0])
         field = self._field_of(own, task.companions)
         at_points, at_nodes = self._at(task, field, points[:, :2])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.algebra import are_among
 from ..base.work import native_module
 from ..settings.dips import Dips
-from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
+from ..settings.methods import DEFAULT_NEIGHBOURS, METHODS, NEIGHBOURS_OF_FITTED
 from ..settings.variogram import Variogram, fit_warnings
 from .companions import (
     MOST_AT_ONCE,
@@ -46,7 +46,8 @@ class DipUse:
 
 
 _FEWEST_DIPS = 2
-_MOST_WITH_ERRORS = 600  # points with errors that all count at each node
+_MOST_WITH_ERRORS = 1000  # points with errors that all count at each node
+_COARSER = 1.25  # cells by which points are thinned out, from one attempt to the next
 _BESIDE = 1e-12  # model units: from a point at 0; its square is no 0
 
 
@@ -119,6 +120,23 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
     warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
     return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+
+
+def thinned(method: str, task: Task, points: np.ndarray) -> np.ndarray:
+    """The points (P, 3) that count for a surface of a task by a method. Of many with errors one in each cell
+    of a grid is enough, as errors along a line are alike, and near ones alone do not show what is between
+    lines."""
+    knows_errors = METHODS[method].run is None or "variogram" in METHODS[method].options
+    is_asked = task.settings.get("neighbours") is not None
+    if not (task.error and knows_errors) or is_asked or len(points) <= _MOST_WITH_ERRORS:
+        return points
+    plan = points[:, :2] - points[:, :2].min(axis=0)
+    cell = float(np.hypot(*plan.max(axis=0))) / _MOST_WITH_ERRORS
+    while True:
+        _, first = np.unique(np.floor(plan / cell), axis=0, return_index=True)
+        if len(first) <= _MOST_WITH_ERRORS:
+            return np.ascontiguousarray(points[np.sort(first)])
+        cell *= _COARSER
 
 
 def _neighbours_of_fitted(task: Task) -> int:

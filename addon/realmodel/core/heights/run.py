@@ -12,7 +12,7 @@ from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import NativeError, refused_as
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
-from . import automatic, bounded
+from . import automatic, bounded, from_neighbours
 from .from_triangulation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 from .mis_ties import without_mis_ties
@@ -27,12 +27,13 @@ def heights(method: str, task: Task) -> Interpolation:
     task, of_dips = with_dips(method, replace(task, points=points))
     reason = ""
     with refused_as(refused_points):
+        few = replace(task, points=from_neighbours.thinned(method, task, points))
         if method == "auto":
-            method, reason, result = automatic.automatic(task)
+            method, reason, result = automatic.automatic(few)
             settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
             task = replace(task, settings=settings)
         else:
-            result = bounded.interpolated(method, task)
+            result = bounded.interpolated(method, few)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     warnings = [*([mis_ties] if mis_ties else []), *of_dips]
@@ -68,7 +69,7 @@ def chosen(task: Task) -> tuple[str, dict]:
     Raises InputRefused."""
     if not len(task.points):
         raise InputRefused("there are no points", item="points")
-    points, _ = without_mis_ties(task.points)
+    points = from_neighbours.thinned("auto", task, without_mis_ties(task.points)[0])
     with refused_as(refused_points):
         with_own, _ = with_dips("auto", replace(task, points=points))
         trial, _ = automatic.choose(with_own)
