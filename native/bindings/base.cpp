@@ -7,6 +7,7 @@
 
 #include "execution.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/base/memory.hpp"
 #include "realmodel/base/version.hpp"
 
@@ -56,6 +57,8 @@ void translate(std::exception_ptr thrown) {
 
 void bind_base(py::module_& module) {
     module.attr("VERSION") = version();
+    module.def("keep_waiting_threads_asleep", &keep_waiting_threads_asleep,
+               "Has OpenMP's threads sleep while they wait, though its library was loaded before.");
     module.def("available_memory", &available_memory,
                "Bytes that this process may still take: the least of what the machine has free and "
                "what its control groups and its own limit leave.");

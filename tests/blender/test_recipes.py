@@ -177,7 +177,6 @@ class ForGeologists(Recipe):
                 ops.surface_move(direction="DOWN")
         self.assertEqual([row.name for row in rock.surfaces], order)
         ops.region_around()
-        rock.use_base, rock.base_elevation = True, 0.0
         ops.build()
         self.assertGreaterEqual(len(self.volumes()), 4)
 

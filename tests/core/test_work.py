@@ -2,6 +2,9 @@
 """Long work in a thread: progress often enough, cancelling soon enough, nothing left running."""
 
 import _thread
+import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -270,3 +273,22 @@ def test_cancelling_and_progress_reach_all_items(threads):
     assert sorted(ended) == list(range(min(3, threads)))
     assert [fraction for fraction, _ in calls] == sorted(fraction for fraction, _ in calls)
     assert "item 0" in {text for _, text in calls}
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="of GNU's OpenMP library on Linux")
+@pytest.mark.parametrize(("before", "policy", "asleep"), [(True, "", 2), (True, "active", 0), (False, "", 0)])
+def test_threads_that_wait_sleep_where_openmp_was_loaded_before(before, policy, asleep):
+    """It has read its environment then, as in Debian's Blender: two threads that sleep for ever keep others
+    from spinning. They do not keep the process from ending."""
+    script = (
+        "import ctypes, os, time\n"
+        + ('ctypes.CDLL("libgomp.so.1")\n' if before else "")
+        + "from realmodel.core.base.work import native_module\n"
+        "count = len(os.listdir('/proc/self/task'))\n"
+        "native_module(); time.sleep(0.2); print(len(os.listdir('/proc/self/task')) - count)\n"
+    )
+    environment = {key: value for key, value in os.environ.items() if key != "OMP_WAIT_POLICY"}
+    environment |= {"OMP_WAIT_POLICY": policy} if policy else {}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (0, f"{asleep}\n"), done.stderr

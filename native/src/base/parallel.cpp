@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.hpp"
 
+#include <chrono>
 #include <deque>
 #include <exception>
 #include <vector>
+
+#include "realmodel/base/execution.hpp"
+
+#if defined(_OPENMP) && defined(__linux__) && !defined(__clang__)
+#define REALMODEL_GNU_OPENMP
+#include <csignal>
+#endif
 
 namespace realmodel {
 
@@ -43,6 +51,24 @@ void run_team(int threads, const std::function<void(std::size_t own, std::size_t
 }
 
 #endif
+
+void keep_waiting_threads_asleep() {
+#if defined(REALMODEL_GNU_OPENMP)
+    // once; not by std::call_once, whose thread-local data bpy leaves no place for
+    [[maybe_unused]] static const bool is_done = [] {
+        sigset_t all, before;  // signals are for the threads that were there
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before);
+        std::thread([] {
+#pragma omp parallel num_threads(2)
+            for (;;)
+                std::this_thread::sleep_for(std::chrono::hours(24));
+        }).detach();
+        pthread_sigmask(SIG_SETMASK, &before, nullptr);
+        return true;
+    }();
+#endif
+}
 
 void parallel_tasks(std::size_t count, const Execution& execution, double share,
                     const std::function<void(std::size_t task, const Execution& own)>& work) {

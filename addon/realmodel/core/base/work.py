@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, ParamSpec, Protocol, TypeVar, cast
 
 from . import missing_native
@@ -368,17 +369,29 @@ def _waiting_threads_sleep() -> Iterator[None]:
     """Has OpenMP's threads sleep while they have nothing to do, unless the user said otherwise.
 
     GNU's spin by default: on a busy machine they then take the time of those that work, and small
-    parallel loops get slower by far. The library reads this once, when it is loaded.
+    parallel loops get slower by far. The library reads this once, when it is loaded; by Debian's Blender it
+    is loaded before.
     """
     name = "OMP_WAIT_POLICY"
     if name in os.environ or "GOMP_SPINCOUNT" in os.environ:
         yield
         return
+    was_loaded = _has_loaded("libgomp")
     os.environ[name] = "PASSIVE"
     try:
         yield
     finally:
         os.environ.pop(name, None)
+    if was_loaded:
+        sys.modules[f"{_PACKAGE}._native"].keep_waiting_threads_asleep()
+
+
+def _has_loaded(library: str) -> bool:
+    """Whether this process has loaded a library, by a part of its file's name; False if that is not known."""
+    try:
+        return library in Path("/proc/self/maps").read_text(errors="replace")
+    except OSError:
+        return False
 
 
 @contextmanager

@@ -11,4 +11,9 @@ struct Execution {
     Progress* progress = nullptr;  ///< null: nobody watches
 };
 
+/// Has the threads of GNU's OpenMP library sleep soon while they have nothing to do, in a process
+/// that loaded it before its environment said so (OMP_WAIT_POLICY). They spin only while there are
+/// no more of them than processors: from now on there is one more, which sleeps.
+void keep_waiting_threads_asleep();
+
 }  // namespace realmodel
