@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from realmodel.core import BuildFailed, Cancelled, InputRefused
 from realmodel.core.base.work import POLL_SECONDS, native_module, run, start
 
@@ -288,7 +289,7 @@ def test_threads_that_wait_sleep_where_openmp_was_loaded_before(before, policy, 
         "native_module(); time.sleep(0.2); print(len(os.listdir('/proc/self/task')) - count)\n"
     )
     environment = {key: value for key, value in os.environ.items() if key != "OMP_WAIT_POLICY"}
-    environment |= {"OMP_WAIT_POLICY": policy} if policy else {}
+    environment |= {"PYTHONPATH": str(ROOT / "addon")} | ({"OMP_WAIT_POLICY": policy} if policy else {})
     command = [sys.executable, "-c", script]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
     assert (done.returncode, done.stdout) == (0, f"{asleep}\n"), done.stderr
