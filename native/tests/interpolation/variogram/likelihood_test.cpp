@@ -79,7 +79,7 @@ TEST(Likelihood, ANuggetIsNoLessThanTheErrorOfHeights) {
     options.has_bounds = true;
     const Nodes between{{250, 300}, {250, 1700}, {700, 1000}, {800, 400}};
     const auto worst = [&](const Variogram& variogram) {
-        const Kriged found = krige(points, between, variogram, {0});
+        const Kriged found = krige(points, between, variogram, {{0}});
         double off = 0;
         for (std::size_t i = 0; i < between.size(); ++i)
             off = std::max(off, std::abs(found.z[i] - (-20 + 0.02 * between[i][1])));
