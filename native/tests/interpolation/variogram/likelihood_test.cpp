@@ -7,6 +7,7 @@
 #include <random>
 
 #include "../dense_kriging.hpp"
+#include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/nearest_distance.hpp"
 
 namespace realmodel::interpolation {
