@@ -8,7 +8,9 @@
 // upright one ("fault"), by one on an integer lattice through a model that stands on it as well
 // ("lattice"), by a block of a model like it ("block"), by one flat quadrangle ("flat"), or by the
 // plane of that ("plane").
+#include <array>
 #include <chrono>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "../fuzz/digest.hpp"
 #include "realmodel/cutting/cut.hpp"
 #include "realmodel/strata/stack.hpp"
 
@@ -67,29 +70,6 @@ realmodel::CellComplex make_model(int quads, bool lattice, double shift, int thr
     return realmodel::strata::build_stack(input, {threads, nullptr});
 }
 
-/// FNV-1a of the bytes of arrays.
-class Digest {
-public:
-    template <class Array>
-    void add(const Array& array) {
-        const auto* bytes = reinterpret_cast<const unsigned char*>(array.data());
-        for (std::size_t i = 0; i < array.size() * sizeof(*array.data()); ++i)
-            value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
-    }
-    void add(const realmodel::CellComplex& c) {
-        add(c.vertices);
-        add(c.face_vertices);
-        add(c.face_offsets);
-        add(c.face_cells);
-        add(c.face_surface);
-        add(c.cell_block);
-    }
-    unsigned long long value() const { return value_; }
-
-private:
-    unsigned long long value_ = 0xcbf29ce484222325ULL;
-};
-
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -126,15 +106,16 @@ int main(int count, char** arguments) {
     }();
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    Digest digest;
-    digest.add(cut.below);
-    digest.add(cut.above);
-    digest.add(cut.section.vertices);
-    digest.add(cut.section.polygon_vertices);
-    digest.add(cut.section.cells);
-    std::printf("%zu cells by %zu triangles: %.3f s, %zu + %zu parts, section of %zu, %016llx\n",
-                model.cell_block.size(), cutter.triangles.size() / 3, seconds,
-                cut.below.cell_block.size(), cut.above.cell_block.size(), cut.section.cells.size(),
-                digest.value());
+    const std::array halves{realmodel::fuzz::digest(cut.below), realmodel::fuzz::digest(cut.above)};
+    const std::uint64_t digest = realmodel::fuzz::Digest()
+                                     .add(halves)
+                                     .add(cut.section.vertices)
+                                     .add(cut.section.polygon_vertices)
+                                     .add(cut.section.cells)
+                                     .value();
+    std::printf(
+        "%zu cells by %zu triangles: %.3f s, %zu + %zu parts, section of %zu, %016" PRIx64 "\n",
+        model.cell_block.size(), cutter.triangles.size() / 3, seconds, cut.below.cell_block.size(),
+        cut.above.cell_block.size(), cut.section.cells.size(), digest);
     return 0;
 }

@@ -6,12 +6,14 @@
 //
 // The lattice has NODES x NODES x NODES nodes, the ground 32 x 32 x 2 triangles.
 #include <chrono>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
+#include "../fuzz/digest.hpp"
 #include "realmodel/fields/level_sets.hpp"
 #include "realmodel/structures/build_parts.hpp"
 
@@ -46,21 +48,6 @@ Surface sheet(int quads, const Height& height) {
     }
     return s;
 }
-
-/// FNV-1a of the bytes of arrays.
-class Digest {
-public:
-    template <class Array>
-    void add(const Array& array) {
-        const auto* bytes = reinterpret_cast<const unsigned char*>(array.data());
-        for (std::size_t i = 0; i < array.size() * sizeof(*array.data()); ++i)
-            value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
-    }
-    unsigned long long value() const { return value_; }
-
-private:
-    unsigned long long value_ = 0xcbf29ce484222325ULL;
-};
 
 double seconds_since(std::chrono::steady_clock::time_point began) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -138,16 +125,9 @@ int main(int count, char** arguments) {
     const auto joining = std::chrono::steady_clock::now();
     const auto built = structures::build_parts(input, execution).complex;
     const double until_cells = seconds_since(joining);
-    Digest digest;
-    digest.add(built.vertices);
-    digest.add(built.face_vertices);
-    digest.add(built.face_offsets);
-    digest.add(built.face_cells);
-    digest.add(built.face_surface);
-    digest.add(built.cell_block);
-    digest.add(built.volumes);
-    std::printf("%d tetrahedra, %zu triangles: %.3f + %.3f s, %zu faces, %zu cells, %016llx\n",
+    std::printf("%d tetrahedra, %zu triangles: %.3f + %.3f s, %zu faces, %zu cells, %016" PRIx64
+                "\n",
                 6 * (nodes - 1) * (nodes - 1) * (nodes - 1), triangles, until_solids, until_cells,
-                built.face_surface.size(), built.cell_block.size(), digest.value());
+                built.face_surface.size(), built.cell_block.size(), fuzz::digest(built));
     return 0;
 }

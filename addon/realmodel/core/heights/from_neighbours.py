@@ -126,9 +126,8 @@ def thinned(method: str, task: Task, points: np.ndarray) -> np.ndarray:
     """The points (P, 3) that count for a surface of a task by a method. Of many with errors one in each cell
     of a grid is enough, as errors along a line are alike, and near ones alone do not show what is between
     lines."""
-    knows_errors = METHODS[method].run is None or "variogram" in METHODS[method].options
     is_asked = task.settings.get("neighbours") is not None
-    if not (task.error and knows_errors) or is_asked or len(points) <= _MOST_WITH_ERRORS:
+    if not (task.error and METHODS[method].may_be_kriged) or is_asked or len(points) <= _MOST_WITH_ERRORS:
         return points
     plan = points[:, :2] - points[:, :2].min(axis=0)
     cell = float(np.hypot(*plan.max(axis=0))) / _MOST_WITH_ERRORS

@@ -53,6 +53,11 @@ class Method:
     has_contacts: bool = True
     tamed_by: str | None = None
 
+    @property
+    def may_be_kriged(self) -> bool:
+        """Whether it has a variogram, or chooses a method that may have one."""
+        return self.run is None or "variogram" in self.options
+
     def needs_points(self, settings: Mapping) -> bool:
         """Whether there is nothing without points, with these settings."""
         return self.instead_of_points is None or settings.get(self.instead_of_points) is None

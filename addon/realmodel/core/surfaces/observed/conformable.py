@@ -74,8 +74,7 @@ def _is_kriged(surface: Surface) -> bool:
         return False
     if not 0 < len(surface.point_array()) <= _MOST_ALIKE:
         return False
-    method = METHODS[surface.method_options()[0]]
-    return method.run is None or "variogram" in method.options
+    return METHODS[surface.method_options()[0]].may_be_kriged
 
 
 def alike_of(rock: Rock, number: int, known: dict[bytes, Any]) -> Alike | None:
