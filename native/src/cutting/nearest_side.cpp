@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/ray_boxes.hpp"
@@ -117,11 +118,13 @@ bool NearestSide::is_on_border(std::int32_t triangle, const Position& q) const {
 std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
     struct Near {
-        double distance, square;
+        double distance;
         std::int32_t triangle;
         Position at;
     };
-    std::vector<Near> near;
+    // mostly one is nearest, which needs no memory and is compared with none
+    std::optional<Near> first;
+    std::vector<Near> others;
     double least = HUGE_VAL;
     tree_.approach(
         p, [&least] { return least * (1 + kAlike); },
@@ -131,22 +134,32 @@ std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
             const Position away = minus(p, at);
             const double distance = dot(away, away);
             if (distance > least * (1 + kAlike)) return;
-            const Position normal = polygon_normal(own);
-            near.push_back(
-                {distance,
-                 std::abs(dot(normal, away)) / std::sqrt(std::max(dot(normal, normal), 1e-300)), t,
-                 at});
             least = std::min(least, distance);
+            if (!first || (others.empty() && first->distance > least * (1 + kAlike)))
+                first = {distance, t, at};
+            else
+                others.push_back({distance, t, at});
         });
-    const Near* best = nullptr;
-    for (const Near& one : near) {
-        if (one.distance > least * (1 + kAlike)) continue;
+    if (!first) return kAbove;
+    std::int32_t best = -1;
+    double best_square = 0;
+    const auto compare = [&](const Near& one) {
+        if (one.distance > least * (1 + kAlike)) return;
         if (at_border != nullptr && is_on_border(one.triangle, one.at)) *at_border = true;
-        if (best == nullptr || one.square > best->square ||
-            (one.square == best->square && one.triangle < best->triangle))
-            best = &one;
-    }
-    return best == nullptr ? kAbove : side_of(corners(best->triangle), p);
+        double square = 0;
+        if (!others.empty()) {
+            const Position normal = polygon_normal(corners(one.triangle));
+            square = std::abs(dot(normal, minus(p, one.at))) /
+                     std::sqrt(std::max(dot(normal, normal), 1e-300));
+        }
+        if (best < 0 || square > best_square || (square == best_square && one.triangle < best)) {
+            best = one.triangle;
+            best_square = square;
+        }
+    };
+    compare(*first);
+    std::ranges::for_each(others, compare);
+    return side_of(corners(best), p);
 }
 
 bool NearestSide::is_near(const Box& box, double margin) const {

@@ -350,24 +350,36 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
                                          std::span<const double> points,
                                          const Execution& execution) {
+    constexpr std::int8_t kOpen = 0;
+    std::vector<std::int8_t> sides(points.size() / 3, kOpen);
+    const auto at = [points](std::size_t i) {
+        return Position{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
+    };
+    const auto decide = [&](const auto& side_of) {
+        parallel_ranges(sides.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (sides[i] == kOpen) sides[i] = side_of(at(i));
+            }
+        });
+    };
+    if (!structures[0].is_body) {
+        // what is beside the fault itself is on its side, wherever its continuation goes
+        const cutting::CutterSurface own = checked_surface(structures[0], 0);
+        const cutting::NearestSide beside(own, execution);
+        decide([&beside](const Position& p) {
+            bool at_border = false;
+            const std::int8_t side = beside(p, &at_border);
+            return at_border ? kOpen : side;
+        });
+        if (std::ranges::find(sides, kOpen) == sides.end()) return sides;
+    }
     Box box;
-    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
-        box.include(Position{points[i], points[i + 1], points[i + 2]});
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        box.include(at(i));
     const StructureSurface surface = first_surface(structures, box);
     const cutting::NearestSide nearest(surface.single[0], execution);
-    // what is beside the fault itself is on its side, wherever its continuation goes
-    const cutting::CutterSurface own = checked_surface(structures[0], 0);
-    const cutting::NearestSide beside(own, execution);
-    std::vector<std::int8_t> sides(points.size() / 3);
-    parallel_ranges(sides.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Position p{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
-            bool at_border = false;
-            const std::int8_t side =
-                structures[0].is_body ? nearest.within(p) : beside(p, &at_border);
-            sides[i] = at_border ? nearest(p) : side;
-        }
-    });
+    decide(
+        [&](const Position& p) { return structures[0].is_body ? nearest.within(p) : nearest(p); });
     return sides;
 }
 

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -129,14 +127,14 @@ def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     whose own edge passes one of these; touching counts, up to rounding."""
     pairs = native_module().meeting_boxes(first, second)
     found = np.zeros(len(first), bool)
-    for start in range(0, len(pairs), 1 << 16):
-        some = pairs[start : start + (1 << 16)]
+    for start in range(0, len(pairs), 1 << 14):
+        some = pairs[start : start + (1 << 14)]
         some = some[_straddles(first[some[:, 0]], second[some[:, 1]])]
         one, other = first[some[:, 0]], second[some[:, 1]]
-        hit = np.zeros(len(some), bool)
-        for (triangle, edges), (i, j) in itertools.product(((one, other), (other, one)), _EDGES):
-            hit |= segments_hit(edges[:, i], edges[:, j], triangle)
-        found[some[hit, 0]] = True
+        begin = np.concatenate([each[:, i] for each in (other, one) for i, _ in _EDGES])
+        end = np.concatenate([each[:, j] for each in (other, one) for _, j in _EDGES])
+        hit = segments_hit(begin, end, np.concatenate([one, one, one, other, other, other]))
+        found[some[hit.reshape(6, -1).any(axis=0), 0]] = True
     return found
 
 

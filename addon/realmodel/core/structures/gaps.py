@@ -282,8 +282,10 @@ class _Around:
         conditions = self._conditions(fault, ends, has_sheets)
         samples = self._looked_at(fault, _outer_border(fault), conditions, box, ends)
         if has_sheets:  # between the two sheets there is different rock on its two sides
-            low, high = self.sheets_at(self.last, samples.points)
-            found = samples.inside & (low < samples.points[:, 2]) & (samples.points[:, 2] < high)
+            found = samples.inside.copy()
+            points = samples.points[found]
+            low, high = self.sheets_at(self.last, points)
+            found[found] = (low < points[:, 2]) & (points[:, 2] < high)
         else:
             found = self._passing(fault, samples)
         if found.any():

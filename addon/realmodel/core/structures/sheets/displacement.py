@@ -44,13 +44,6 @@ class _Places:
         self.sides = sides_of(self.points)
 
 
-def throws_between(
-    work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
-    return Measured(work, structure, fault, surface).between(below, above)[:2]
-
-
 class Measured:
     """Measures the displacement of one surface by one fault."""
 
@@ -59,7 +52,7 @@ class Measured:
         active = structure.faults.active(surface)
         self.others = [other for other in np.flatnonzero(active) if other != fault]
         self.rows = np.where(active, structure.compartments, 0)
-        self.sheets = [sheets[surface] for sheets in structure.sheets]
+        self.surface = surface
         self.cutoffs: dict[tuple[Sheet | None, int], Cutoff] = {}
         self.lower: dict[Sheet | None, _Places] = {}
 
@@ -83,7 +76,7 @@ class Measured:
         return list(pairs.values())
 
     def between(self, below: int, above: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """As everywhere, of two compartments."""
+        """As everywhere, of two compartments, whose sheets may be made after the others were measured."""
         upper = self._cutoff(above, 1)
         if not (len(upper.ends) and len(self._cutoff(below, -1).ends)):
             return _NOTHING
@@ -99,8 +92,11 @@ class Measured:
         heave = np.abs(dot(away[:, :2], places.across[place]))
         return places.points[place], -away[:, 2], heave, places.length[place]
 
+    def _sheet(self, compartment: int) -> Sheet | None:
+        return self.structure.sheets[compartment][self.surface]
+
     def _cutoff(self, compartment: int, side: int) -> Cutoff:
-        sheet, shape = self.sheets[compartment], self.structure.faults.shapes[self.fault]
+        sheet, shape = self._sheet(compartment), self.structure.faults.shapes[self.fault]
         key = sheet, side
         if key not in self.cutoffs:
             assert sheet is not None  # displacements are asked for of sheets that are made
@@ -109,7 +105,7 @@ class Measured:
 
     def _places(self, compartment: int) -> _Places:
         """On the cutoff line of a sheet below the fault."""
-        key = self.sheets[compartment]
+        key = self._sheet(compartment)
         if key not in self.lower:
             shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
             walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))

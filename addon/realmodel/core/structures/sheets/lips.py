@@ -22,11 +22,21 @@ _STEEP = 0.1  # of a unit normal in plan: a fault that dips less is nearly level
 
 class Lip(NamedTuple):
     """A fault at which a sheet is cut off: shape, side (-1 or +1) of the sheet, and points (P,) bool, those
-    that may lie on its cutoff line."""
+    that may lie on its cutoff line. nearest: (P,) the triangle of the fault that is nearest to each, -1 where
+    none is within reach; None where that is not known yet."""
 
     shape: FaultShape
     side: int
     points: np.ndarray
+    nearest: np.ndarray | None = None
+
+    def on(self, points: np.ndarray, reach: float) -> np.ndarray:
+        """(P,) the triangle on which each of the points (P, 3) lies, -1 for those not on the cutoff line."""
+        nearest = self.nearest
+        if nearest is None:
+            corners = self.shape.vertices[self.shape.triangles]
+            nearest = native_module().nearest_triangles(corners, points, reach, execution=on_threads(1))[0]
+        return np.where(self.points, nearest, -1)
 
 
 def beyond_lips(
@@ -42,32 +52,28 @@ def beyond_lips(
     """
     if not lips or not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
         return np.empty((0, 3))
-    corners = [lip.shape.vertices[lip.shape.triangles] for lip in lips]
-    nearest, run = native_module().nearest_triangles, on_threads(1)
-    near = [
-        np.where(lip.points, nearest(own, points, reach, execution=run)[0], -1)
-        for lip, own in zip(lips, corners, strict=True)
-    ]
-    if not any((triangle >= 0).any() for triangle in near):
+    near = np.array([lip.on(points, reach) for lip in lips])
+    of_lip, row = np.nonzero(near >= 0)
+    if not len(row):
         return np.empty((0, 3))
+    corners = np.concatenate(
+        [lip.shape.vertices[lip.shape.triangles[on[on >= 0]]] for lip, on in zip(lips, near, strict=True)]
+    )
+    outward = -np.array([lip.side for lip in lips])[of_lip, None] * unit_normals(corners)
+    level = norm(outward[:, :2])
+    some = level > _STEEP
+    own, outward, level = points[row[some]], outward[some], level[some]
+    away = np.column_stack([outward[:, :2], np.zeros(len(own))]) * (_AWAY * reach / level**2)[:, None]
     ordinary = np.empty((0, 3))
     if settings["extrapolate"] == "method":
-        ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
-    found = [np.empty((0, 3))]
-    for lip, triangle, its in zip(lips, near, corners, strict=True):
-        own = np.flatnonzero(triangle >= 0)
-        outward = -lip.side * unit_normals(its[triangle[own]])
-        level = norm(outward[:, :2])
-        some = level > _STEEP
-        own, outward, level = points[own[some]], outward[some], level[some]
-        away = np.column_stack([outward[:, :2], np.zeros(len(own))]) * (_AWAY * reach / level**2)[:, None]
-        if len(ordinary):
-            there, here = (expected_heights(work, ordinary, plan[:, :2]) for plan in (own + away, own))
-            rise = there - here
-            leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach
-            away[leaves, 2] = rise[leaves]
-        found.append(own + away)
-    beyond = np.concatenate(found)
+        ordinary = mean_heights(points[(near < 0).all(axis=0)])
+    if len(ordinary):
+        plan = np.concatenate([own + away, own])[:, :2]
+        there, here = np.split(expected_heights(work, ordinary, plan), 2)
+        rise = there - here
+        leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach
+        away[leaves, 2] = rise[leaves]
+    beyond = own + away
     points = points[np.isin(points[:, 0], beyond[:, 0])]
     same = welded(np.concatenate([points, beyond])[:, :2])[len(points) :]
     return beyond[same == np.arange(len(points), len(points) + len(beyond))]  # none where another point is

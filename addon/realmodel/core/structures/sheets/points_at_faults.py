@@ -61,7 +61,7 @@ def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -
     active = faults.active(number)
     away = np.full(sides.shape, np.inf)
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
-    reach, away[:, active] = distances(points, entry.median_edge(), shapes)
+    reach, away[:, active], _ = distances(points, entry.median_edge(), shapes)
     near, beside = away < reach, np.isfinite(away)
     near &= ~are_among(points, entry.rock.surfaces[number].contact_array())[:, None]
     agreement = _Agreement(
@@ -252,21 +252,24 @@ def expected_heights(work: Work, points: np.ndarray, plan: np.ndarray, smoothing
     )
 
 
-def distances(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
-    """How near to a fault points (P, 3) may be on its cutoff line, and (P, F) how far they are from faults,
-    if less than an edge length; else infinite.
+def distances(
+    points: np.ndarray, length: float, shapes: list[FaultShape]
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """How near to a fault points (P, 3) may be on its cutoff line; (P, F) how far they are from faults, if
+    less than an edge length, else infinite; and (P, F) the nearest triangle of each fault, else -1.
 
     That near is a quarter of an edge length, or of the mean spacing of the points farther away, where it is
     less. Cutoff lines may have many points, and say nothing of that spacing.
     """
     away = np.full((len(points), len(shapes)), np.inf)
+    triangle = np.full(away.shape, -1, np.int32)
+    nearest = native_module().nearest_triangles
     for fault, shape in enumerate(shapes):
         corners = shape.vertices[shape.triangles]
-        nearest = native_module().nearest_triangles
-        _, away[:, fault] = nearest(corners, points, length, execution=on_threads(1))
+        triangle[:, fault], away[:, fault] = nearest(corners, points, length, execution=on_threads(1))
     ordinary = points[(away >= _NEAR * length).all(axis=1)]
     spacing = _spacing(ordinary) if len(ordinary) > 1 else np.inf
-    return _NEAR * min(length, spacing), away
+    return _NEAR * min(length, spacing), away, triangle
 
 
 def _spacing(points: np.ndarray) -> float:

@@ -49,8 +49,9 @@ class ReadyMesh:
         self.method, self.settings = surface.method_options()
         faults = entry.divided().faults
         self.active = faults.active(number)
+        self.counts: dict[tuple[int, ...], int] = {}  # of triangles, by the key of a family
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
-        self.reach, away, width = self._distances(faults.shapes)
+        self.reach, away, width, self.on_lips = self._distances(faults.shapes)
         is_lip = self._lips(away < self.reach)
         for fault in np.flatnonzero(self.active):
             may_meet = away[self.triangles, fault].min(axis=1) <= width
@@ -58,17 +59,19 @@ class ReadyMesh:
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
-    def _distances(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray, np.ndarray]:
+    def _distances(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
         """How near to a fault a border of the mesh counts as its cutoff line; (V, F) at least how far each
         vertex is from each fault that displaces it; (T,) how far a place in a triangle may be from its
-        nearest corner."""
+        nearest corner; (V, F) the triangle of each fault to which a vertex is as near, else -1."""
         length = median_edge(self.vertices[:, :2], self.triangles)
         some = [shapes[fault] for fault in np.flatnonzero(self.active)]
         away = np.zeros((len(self.vertices), len(shapes)))
-        reach, found = distances(self.vertices, length, some)
+        reach, found, nearest = distances(self.vertices, length, some)
         away[:, self.active] = np.minimum(found, length)
+        on_lips = np.full(away.shape, -1, np.int32)
+        on_lips[:, self.active] = np.where(found < reach, nearest, -1)
         width = _FARTHEST * edge_lengths(self.vertices, self.triangles).reshape(3, -1).max(axis=0)
-        return reach, away, width
+        return reach, away, width, on_lips
 
     def _lips(self, near: np.ndarray) -> np.ndarray:
         """(V, F) bool: of the vertices near faults, (V, F) bool, those on a border of the mesh."""
@@ -104,10 +107,12 @@ class ReadyMesh:
         return found
 
     def count(self, family: Family) -> int:
-        return int(self.own(family).sum())
+        if family.key not in self.counts:
+            self.counts[family.key] = int(self.own(family).sum())
+        return self.counts[family.key]
 
     def has_data(self, family: Family) -> bool:
-        return bool(self.own(family).any())
+        return self.count(family) > 0
 
     def has_few_data(self, family: Family) -> bool:
         """Never: triangles show a slope."""
@@ -134,8 +139,8 @@ class ReadyMesh:
             )
         plan, triangles, known = self.tiling.around(own)
         shapes = self.entry.divided().faults.shapes
-        cut: list[tuple[FaultShape, int, Trace | None]] = [
-            (shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
+        cut: list[tuple[int, int, Trace | None]] = [
+            (fault, side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
         ]
         common = self._continued(plan, known, triangles, cut)
         faults = [shapes[fault] for fault in family.dying]
@@ -169,7 +174,7 @@ class ReadyMesh:
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
-            dying = [(faults[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
+            dying = [(family.dying[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
@@ -235,7 +240,7 @@ class ReadyMesh:
         plan: np.ndarray,
         known: np.ndarray,
         triangles: np.ndarray,
-        cut: list[tuple[FaultShape, int, Trace | None]],
+        cut: list[tuple[int, int, Trace | None]],
     ) -> np.ndarray:
         """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
         the sheet off, its side, and where one dies out its trace."""
@@ -253,10 +258,15 @@ class ReadyMesh:
         if len(missing):
             given = np.flatnonzero(~np.isnan(of_place))
             points = np.column_stack([plan[given], of_place[given]])
+            vertex = None  # of the mesh, that each point is
+            if self.tiling is not None and self.tiling.is_mesh:
+                of_places = np.empty(len(plan), np.intp)
+                of_places[same[order]] = order
+                vertex = of_places[given]
             is_by_node = self.method == CONTINUATION  # it finds each node by itself
             nodes, tiles = (plan[missing], None) if is_by_node else (plan, triangles)
             nodes = np.ascontiguousarray(nodes)
-            lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
+            lips = [self._lip(fault, side, _beside(trace, points), vertex) for fault, side, trace in cut]
             beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
             task = Task(self.work, points, nodes, self.settings, tiles)
@@ -264,6 +274,12 @@ class ReadyMesh:
             of_place[missing] = found.z if is_by_node else found.z[missing]
             z = np.where(np.isnan(z), of_place[same], z)
         return z
+
+    def _lip(self, fault: int, side: int, points: np.ndarray, vertex: np.ndarray | None) -> Lip:
+        """points: (P,) bool, those that may lie on the cutoff line; vertex: (P,) of the mesh, where each is
+        one."""
+        nearest = None if vertex is None else self.on_lips[vertex, fault]
+        return Lip(self.entry.divided().faults.shapes[fault], side, points, nearest)
 
     def finish(self, sheets: list[Sheet]) -> None:
         """The triangles of the sheets are no longer those of the file."""

@@ -14,7 +14,7 @@ from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.wrong_sides import heights_at
-from .displacement import throws_between
+from .displacement import Measured
 from .families import Family
 from .tips import shared
 from .within import Within
@@ -93,6 +93,7 @@ class Throws:
         known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
         self.rank = np.where(known, OWN, UNKNOWN)
         self.rank[:, few] = FEW
+        self._measures: dict[tuple[int, int], Measured] = {}  # by surface and fault
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
 
     def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
@@ -214,10 +215,10 @@ class Throws:
         different: dict[tuple[Sheet | None, ...], tuple[int, int]] = {}
         for pair in pairs:
             different.setdefault(tuple(self.structure.sheets[each][number] for each in pair), pair)
-        parts = [
-            throws_between(self.work, self.structure, fault, number, below, above)
-            for below, above in different.values()
-        ]
+        if (number, fault) not in self._measures:
+            self._measures[number, fault] = Measured(self.work, self.structure, fault, number)
+        measure = self._measures[number, fault].between
+        parts = [measure(below, above)[:2] for below, above in different.values()]
         parts = [part for part in parts if len(part[0])]
         if not parts:
             return None

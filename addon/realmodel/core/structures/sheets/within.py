@@ -11,7 +11,7 @@ from ...base.algebra import norm
 from ...base.triangles import extents, segments_hit, shares_hit
 from ...base.work import Work, native_module
 from ...surfaces.rock_structure import RockStructure
-from ...surfaces.sides import FaultShape, sides_of
+from ...surfaces.sides import FaultShape, fault_sides
 from .families import DIES_OUT, Family, keys_of, parting
 
 _ON = 1e-9  # of the extent of a line: nearer points are in a plane
@@ -29,10 +29,23 @@ class Within:
     known: tuple[np.ndarray, np.ndarray] | None = None  # a box and its walls
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
-        """(N,) bool of points (N, 3)."""
-        faults = self.structure.faults
-        asked = parting(faults, self.number)
-        return self.has(sides_of(self.work, points, faults, asked))
+        """(N,) bool of points (N, 3). A fault that neither ends at another one nor dies out is only asked for
+        what those before it have left."""
+        faults, key = self.structure.faults, self.family.key
+        active, asked = faults.active(self.number), parting(faults, self.number)
+        plain = [
+            n for n in asked if active[n] and key[n] in (-1, 1) and not (faults.ends[n] or faults.dies_out[n])
+        ]
+        left = np.arange(len(points))
+        for fault in plain:
+            left = left[fault_sides(self.work, points[left], faults.shapes[fault]) == key[fault]]
+        sides = np.ones((len(left), len(faults)), np.int8)
+        sides[:, plain] = np.array(key, np.int8)[plain]
+        for fault in [n for n in asked if n not in plain]:
+            sides[:, fault] = fault_sides(self.work, points[left], faults.shapes[fault])
+        found = np.zeros(len(points), bool)
+        found[left] = self.has(faults.without_dropped(sides))
+        return found
 
     def has(self, sides: np.ndarray) -> np.ndarray:
         """(N,) bool of points with these sides (N, F) of the faults."""
