@@ -60,8 +60,8 @@ def read(row):
 
 def _surviving_areas(model):
     """(S,) float64: the area in plan of the faces that lie on each surface."""
-    on = model.face_surface >= 0
-    return np.bincount(model.face_surface[on], plan_areas(model)[on], len(model.surface_names))
+    on = np.flatnonzero(model.face_surface >= 0)
+    return np.bincount(model.face_surface[on], plan_areas(model, on), len(model.surface_names))
 
 
 def plan_area(vertices, triangles):
