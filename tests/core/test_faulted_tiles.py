@@ -298,7 +298,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
 
 @pytest.mark.parametrize(("cells", "dies_out"), [("columns", True), ("blocks", False)])
 def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):
-    project = faulted(28, dies_out)
+    project = faulted(36, dies_out)
     whole, seen = build(project, cells=cells), []
     real = faulted_folder._write_window
 

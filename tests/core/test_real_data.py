@@ -35,7 +35,7 @@ def built_and_checked(project_path, cells):
 def test_claudius_on_one_mesh(tmp_path, cells):
     points = real_data.claudius_points()
     assert [len(p) for p in points.values()] == [5219, 5268, 5277, 5259]
-    path = project_files.points_project(tmp_path, "claudius", points, real_data.CLAUDIUS_REGION, 220.0)
+    path = project_files.points_project(tmp_path, "claudius", points, real_data.CLAUDIUS_REGION, 150.0)
     model = built_and_checked(path, cells)
     assert len(model.blocks) == 3
     assert all(block.volume > 0 for block in model.blocks)
@@ -43,7 +43,7 @@ def test_claudius_on_one_mesh(tmp_path, cells):
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 def test_claudius_on_a_mesh_for_each_horizon(tmp_path, cells):
-    path = project_files.mesh_project(tmp_path, "claudius", real_data.claudius_on_own_meshes(220.0))
+    path = project_files.mesh_project(tmp_path, "claudius", real_data.claudius_on_own_meshes(150.0))
     model = built_and_checked(path, cells)
     assert len(model.blocks) == 3
     assert all(block.volume > 0 for block in model.blocks)
@@ -52,7 +52,7 @@ def test_claudius_on_a_mesh_for_each_horizon(tmp_path, cells):
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 def test_claudius_on_meshes_of_one_outline(tmp_path, cells):
     """Each mesh has its own vertices along the outline, beside its lines by rounding: no slivers there."""
-    meshes = real_data.claudius_on_own_meshes(220.0, real_data.claudius_outline())
+    meshes = real_data.claudius_on_own_meshes(150.0, real_data.claudius_outline())
     model = built_and_checked(project_files.mesh_project(tmp_path, "claudius", meshes), cells)
     assert [block.components for block in model.blocks] == [1, 1, 1]
 

@@ -52,7 +52,7 @@ def model_of(name, folder):
     if name == "claudius":
         points = real_data.claudius_points()
         return build(
-            load_project(project_files.points_project(folder, name, points, real_data.CLAUDIUS_REGION, 220.0))
+            load_project(project_files.points_project(folder, name, points, real_data.CLAUDIUS_REGION, 150.0))
         )
     return build(load_project(SAMPLES / name / "project.toml"))
 
@@ -65,7 +65,7 @@ def model_of(name, folder):
         ("gravel_plain", 12, 2, 6),
         ("castle_hill", 40, 6, 18),
         ("haut_barr", 4, 0.8, 2),
-        pytest.param("claudius", 220, 40, 110, marks=data_only),
+        pytest.param("claudius", 150, 25, 75, marks=data_only),
         pytest.param("drogon", 80, 16, 32, marks=data_only),
         pytest.param("pleasant", 150, 12, 30, marks=data_only),
     ],
