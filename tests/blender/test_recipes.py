@@ -11,7 +11,7 @@ import numpy as np
 from blender_state import coordinates, open_edges, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
 from realmodel.bl.host import notices
-from realmodel.bl.project import compartments, project_settings
+from realmodel.bl.project import compartments, project_settings, surface_statistics
 from realmodel.bl.scene import quality
 from realmodel.bl.shading import looks, weathering
 from recording_layout import draw_tab
@@ -261,6 +261,11 @@ class ForGeologists(Recipe):
         self.assertEqual(len(compartments.names(self.scene)), 2)
         throws = [abs(throw) for _, _, throw, _ in compartments.read(self.scene)["faults"]]
         self.assertTrue(all(abs(throw - 4.0) < 0.1 for throw in throws), throws)
+        shares = [surface_statistics.read(row)["share"] for row in self.model.rocks[0].surfaces]
+        self.assertTrue(all(share > 0.99 for share in shares), "each has a sheet on either side")
+        labels = draw_tab(bpy.context).labels
+        for name in (*compartments.names(self.scene), "Fault", "s0", "s1", "s2"):
+            self.assertIn(name, labels, "names of the panel Compartments stand by themselves")
         self.model.view.color_by = "COMPARTMENT"
 
     def test_a_simulation(self):
