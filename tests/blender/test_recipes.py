@@ -44,7 +44,7 @@ class ForArtists(Recipe):
 
     def cliff(self):
         bpy.data.objects.remove(bpy.data.objects["Cube"])
-        select(gallery_picture.cliff(levels=5))
+        select(gallery_picture.cliff(levels=4))
         ops.fill_with_strata(preset="CLIFF")
         return list(bpy.data.collections["Cube Strata"].objects)
 
@@ -58,7 +58,9 @@ class ForArtists(Recipe):
         self.assertGreater(np.ptp(picture.mean(axis=2)), 0.3)
 
     def test_a_canyon(self):
-        ops.open_sample(sample="canyon")
+        ops.open_sample(sample="canyon", build=False)
+        self.model.rocks[0].edge_length *= 2.5
+        ops.build()
         ops.rock_looks(look="AUTO")
         self.no_warnings()
         self.assertEqual(len(self.model.results), 43)
@@ -91,7 +93,8 @@ class ForArtists(Recipe):
         self.assertGreater(np.ptp(self.rendered().mean(axis=2)), 0.3)
 
     def test_an_animation_of_deposition_and_erosion(self):
-        ops.open_sample(sample="castle_hill")
+        self.assertEqual(ops.open_sample(sample="castle_hill"), {"FINISHED"})
+        self.assertTrue(len(self.model.library))
         ops.animate_stages(frames=12)
         ops.turntable(frames=132)
         self.assertEqual((self.scene.frame_start, self.scene.frame_end), (1, 132))
