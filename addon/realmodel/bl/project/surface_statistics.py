@@ -21,7 +21,8 @@ def of_model(model):
             heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
             whole = 0.0
             if surface.interpolated or rock.region is None:  # each sheet goes on beyond its faults
-                whole = max(plan_area(vertices, each) for each in model.sheet_triangles(number))
+                sheets = [triangles] if model.lacks_project else model.sheet_triangles(number)
+                whole = max(plan_area(vertices, each) for each in sheets)
             figures = {
                 "points": len(surface.points) if surface.points is not None else None,
                 "triangles": len(triangles),
