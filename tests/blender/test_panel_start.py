@@ -101,7 +101,7 @@ class Start(PanelCase):
         self.assertEqual(len(self.model.rocks[0].surfaces), 2)
 
     def test_examples(self):
-        for name in ("two_layers", "castle_hill", "haut_barr"):
+        for name in ("two_layers", "haut_barr"):
             self.assertEqual(ops.open_sample(sample=name), {"FINISHED"})
             self.assertTrue(len(self.model.library))
 
