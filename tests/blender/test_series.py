@@ -345,7 +345,7 @@ class FieldShown(PanelCase):
         super().setUp()
         ops.open_project(filepath=str(PROJECT))
         rock = self.model.rocks[0]
-        rock.edge_length, rock.series[0].resolution = 100.0, 80.0
+        rock.edge_length, rock.series[0].resolution = 100.0, 120.0
         ops.build()
 
     def body(self, kind):
