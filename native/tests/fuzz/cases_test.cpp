@@ -171,9 +171,17 @@ TEST(Examination, ACrashAndAHangAreDefects) {
             for (;;)
                 pause();
         },
-        0.2);
+        0.02);
     ASSERT_EQ(hung.size(), 1u);
     EXPECT_EQ(hung[0].kind, "hang");
+    const auto busy = in_a_process(
+        []() -> std::vector<Defect> {
+            for (volatile unsigned turns = 0;;)
+                turns = turns + 1;
+        },
+        1);
+    ASSERT_EQ(busy.size(), 1u);
+    EXPECT_EQ(busy[0].kind, "hang");
 }
 #endif
 
