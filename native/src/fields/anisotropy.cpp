@@ -157,6 +157,61 @@ void search_second(const Search& search, Candidate& best) {
     Search::improve(best, found, kWorth);
 }
 
+/// Turned about one of its axes.
+Anisotropy turned_about(Anisotropy of, std::size_t axis, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    Vec3& second = of.axes[(axis + 1) % 3];
+    Vec3& third = of.axes[(axis + 2) % 3];
+    second =
+        unit(plus(times(elementary::cos(angle), second), times(elementary::sin(angle), third)));
+    third = cross(of.axes[axis], second);
+    return of;
+}
+
+/// Those near one: turned about each axis, and with other ratios along two of them.
+std::vector<Anisotropy> near(const Anisotropy& of, double degrees, double factor) {
+    std::vector<Anisotropy> out;
+    for (const double sign : {1.0, -1.0}) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out.push_back(turned_about(of, axis, sign * degrees));
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            Anisotropy& other = out.emplace_back(of);
+            double& ratio = other.ratios[axis];
+            ratio = std::clamp(sign > 0 ? ratio * factor : ratio / factor, kLeastRatio, 1.0);
+        }
+    }
+    return out;
+}
+
+/// The best near one: smaller and smaller steps as long as they pay.
+Candidate climbed(const Search& search, Candidate found) {
+    const Likely rest = found.what;
+    double step = 20, factor = 0.5;
+    while (step > 2) {
+        const double before = found.likelihood;
+        Search::improve(found, search.best(near(found.what.anisotropy, step, factor), rest), 0);
+        if (found.likelihood > before) continue;
+        step /= 2;
+        factor = std::sqrt(factor);
+    }
+    return found;
+}
+
+/// Any directions: rocks that are folded twice have no fold axis in common, but beds may have been
+/// moved along one direction.
+void search_any(const Search& search, Candidate& best) {
+    std::vector<Anisotropy> tried;
+    for (const double second : {1.0, 0.3}) {
+        for (const Vec3& direction : main_directions()) {
+            tried.push_back(along_axis(direction, 0.3));
+            tried.back().ratios[1] = second;
+        }
+    }
+    const Candidate other = climbed(search, search.best(tried, best.what));
+    Search::improve(best, other, kWorth);
+    Search::improve(best, climbed(search, best), kWorth);
+}
+
 /// Other errors with the anisotropy of the best.
 void search_errors(const Search& search, Candidate& best) {
     std::vector<Likely> tried;
@@ -241,11 +296,13 @@ Likely most_likely(std::span<const Functional> known, std::span<const Vec3> norm
     const auto climb = [&](Candidate best) {
         search_first(search, normals, best);
         search_second(search, best);
+        if (faults.empty()) search_any(search, best);
         if (!faults.empty()) {
             search_lift(search, best);
             search_throws(search, faults, best);
             search_first(search, normals, best);
             search_second(search, best);
+            search_any(search, best);
             search_throws(search, faults, best);
         }
         search_errors(search, best);
