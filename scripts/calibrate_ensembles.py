@@ -16,7 +16,7 @@ import numpy as np
 from realmodel.core.base.work import Work
 from realmodel.core.heights import Task
 from realmodel.core.heights.draws import Draw
-from realmodel.core.heights.turning_bands import Frame, Noise
+from realmodel.core.heights.turning_bands import FieldArea, Noise
 from realmodel.core.settings.methods import checked_options
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -44,11 +44,11 @@ def calibrated(points, seed, realizations=REALIZATIONS):
     data = np.ascontiguousarray(points[chosen[:DATA]])
     others = points[chosen[DATA : DATA + LEFT_OUT]]
     nodes = np.ascontiguousarray(others[:, :2])
-    frame, known = Frame(points[:, :2].min(axis=0), points[:, :2].max(axis=0)), {}
+    area, known = FieldArea(points[:, :2].min(axis=0), points[:, :2].max(axis=0)), {}
     settings, work = checked_options("kriging", {}), Work()
     drawn = np.array(
         [
-            Draw(frame, Noise((seed, number)), known)
+            Draw(area, Noise((seed, number)), known)
             .heights("kriging", Task(work, data, nodes, settings, 0))
             .z
             for number in range(realizations)

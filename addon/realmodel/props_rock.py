@@ -59,7 +59,13 @@ class RealModelConstraint(bpy.types.PropertyGroup):
     )
 
 
-_SETTINGS = settings_of(ROCK, name=changes.name, edge_length=changes.edge_length, triangles=changes.triangles)
+_SETTINGS = settings_of(
+    ROCK,
+    name=changes.name,
+    edge_length=changes.edge_length,
+    triangles=changes.triangles,
+    use_base=changes.base,
+)
 
 
 class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):

@@ -20,7 +20,7 @@ _SEARCH = {
 
 def settings_of(settings, update=changes.setting, **updates):
     """A base of a property group with the properties of settings. update: what follows on a change; updates:
-    what else, by key."""
+    what else, by key or switch."""
     properties = dict(_all(settings, update, updates))
     return type("Settings", (), {"__module__": __name__, "__annotations__": properties})
 
@@ -30,7 +30,8 @@ def _all(settings, update, updates):
         switch = switch_name(key, settings)
         if setting.switch is not None:
             label, tip = setting.switch
-            yield switch, BoolProperty(name=label, description=tip, update=update, options=set())
+            follows = updates.get(switch) or update
+            yield switch, BoolProperty(name=label, description=tip, update=follows, options=set())
         follows = updates.get(key) or (changes.switched_on(switch) if switch else update)
         if setting.parts:
             yield from _all(setting.parts, follows, {})

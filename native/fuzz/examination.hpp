@@ -20,7 +20,8 @@ struct Examination {
 Examination examine(StackCase stack, const JudgeOptions& options);
 
 /// Calls `work` in a process of its own and returns what it returns: a crash and a hang are defects
-/// too. Where `work` uses several threads the caller must not have done so before.
+/// too. A hang takes so many seconds of processors, or ten times as many without an answer. Where
+/// `work` uses several threads the caller must not have done so before.
 std::vector<Defect> in_a_process(const std::function<std::vector<Defect>()>& work, double seconds);
 
 /// The defects of a case, judged in a process of its own.

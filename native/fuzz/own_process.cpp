@@ -2,9 +2,11 @@
 // What examination.hpp does in a process of its own. Windows has no fork(): this is not compiled
 // there.
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <stdexcept>
 
@@ -13,6 +15,13 @@
 namespace realmodel::fuzz {
 
 namespace {
+
+/// In the child: it is ended by a signal when it has used so much of processors.
+void limit_processor_time(double seconds) {
+    const auto whole = static_cast<rlim_t>(std::ceil(seconds));
+    const rlimit limit{whole, whole + 1};
+    setrlimit(RLIMIT_CPU, &limit);
+}
 
 /// In the child: kinds and sentences, each ended by a zero byte.
 [[noreturn]] void tell(int pipe, const std::vector<Defect>& defects) {
@@ -37,14 +46,17 @@ std::vector<Defect> in_a_process(const std::function<std::vector<Defect>()>& wor
     if (child < 0) throw std::runtime_error("no process");
     if (child == 0) {
         close(ends[0]);
+        limit_processor_time(seconds);
         tell(ends[1], work());
     }
     close(ends[1]);
     std::string text;
     char piece[4096];
     pollfd waiting{ends[0], POLLIN, 0};
+    // A busy machine gives a process little of its time; threads that wait for each other use none.
+    constexpr double kBusy = 10;
     bool in_time = true;
-    while ((in_time = poll(&waiting, 1, static_cast<int>(1000 * seconds)) > 0)) {
+    while ((in_time = poll(&waiting, 1, static_cast<int>(1000 * kBusy * seconds)) > 0)) {
         const ssize_t got = read(ends[0], piece, sizeof piece);
         if (got <= 0) break;
         text.append(piece, static_cast<std::size_t>(got));
@@ -53,6 +65,7 @@ std::vector<Defect> in_a_process(const std::function<std::vector<Defect>()>& wor
     if (!in_time) kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
+    in_time = in_time && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
     if (!in_time) return {{"hang", "no answer in time"}};
     if (text.empty() || text.back() != '\1') {
         const std::string how = WIFSIGNALED(status)

@@ -59,6 +59,14 @@ bool valid_items(const Mesh& mesh, const InputError& refusal, std::size_t count)
            });
 }
 
+/// The rock mass that the refusal of its base names, or null.
+template <class Case>
+auto* rock_named(Case& stack, const InputError& refusal) {
+    const bool is_there = refusal.items.size() == 1 && refusal.items[0] >= 0 &&
+                          static_cast<std::size_t>(refusal.items[0]) < stack.rocks.size();
+    return is_there ? &stack.rocks[static_cast<std::size_t>(refusal.items[0])] : nullptr;
+}
+
 bool beyond_limits(const Mesh& mesh) {
     for (const Point& p : mesh.vertices) {
         for (const double c : p) {
@@ -75,14 +83,16 @@ bool repair(StackCase& stack, const InputError& refusal) {
         stack.rocks.erase(stack.rocks.begin() + static_cast<std::ptrdiff_t>(refusal.items[1]));
         return true;
     }
+    if (refusal.kind == "base_not_below") {
+        RockCase* rock = rock_named(stack, refusal);
+        if (rock == nullptr) return false;
+        const double lowest = lowest_of(*rock);
+        rock->base_elevation = lowest - std::max(1.0, std::abs(lowest) * 1e-3);
+        return true;
+    }
     const auto at = locate(stack, refusal.surface);
     if (!at) return false;
     RockCase& rock = stack.rocks[at->rock];
-    if (refusal.kind == "base_not_below") {
-        const double lowest = lowest_of(rock);
-        rock.base_elevation = lowest - std::max(1.0, std::abs(lowest) * 1e-3);
-        return true;
-    }
     Mesh& mesh = rock.surfaces[at->surface];
     if (refusal.kind != "double_valued" && refusal.kind != "vertical_triangle") return false;
     if (!valid_items(mesh, refusal, 1)) return false;
@@ -104,6 +114,13 @@ std::optional<std::string> unjust(const StackCase& stack, const InputError& refu
             return "the rock masses do not overlap: " + said;
         return std::nullopt;
     }
+    if (refusal.kind == "base_not_below") {
+        const RockCase* rock = rock_named(stack, refusal);
+        if (rock == nullptr) return "no rock mass is named: " + said;
+        if (!rock->base_elevation || lowest_of(*rock) > *rock->base_elevation)
+            return "the base lies below: " + said;
+        return std::nullopt;
+    }
     const auto at = locate(stack, refusal.surface);
     if (!at) return "no surface is named: " + said;
     const RockCase& rock = stack.rocks[at->rock];
@@ -120,11 +137,6 @@ std::optional<std::string> unjust(const StackCase& stack, const InputError& refu
     if (refusal.kind == "vertical_triangle") {
         if (!valid_items(mesh, refusal, 1) || !is_flat(plan_corners(mesh, triangle(0))))
             return "the triangle is not vertical: " + said;
-        return std::nullopt;
-    }
-    if (refusal.kind == "base_not_below") {
-        if (!rock.base_elevation || lowest_of(rock) > *rock.base_elevation)
-            return "the base lies below: " + said;
         return std::nullopt;
     }
     if (refusal.kind == "not_finite" && beyond_limits(mesh)) return std::nullopt;

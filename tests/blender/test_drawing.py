@@ -33,7 +33,8 @@ BLENDERS_MENUS = (
     "TOPBAR_MT_file_export",
     "TOPBAR_MT_help",
 )
-COARSER = 2.5
+COARSER = 4.0
+OF_MORE_CELLS = ("castle_hill", "fault_blocks", "rift_basin")  # where the mesh is coarser
 BY_SCRIPT = {"realmodel.section_update"}  # operators that no button is for
 
 
@@ -90,7 +91,8 @@ class States(PanelCase):
                 ops.open_sample(sample=sample, build=False)
                 self.draw()
                 for rock in self.model.rocks:  # what is drawn does not depend on how fine the meshes are
-                    rock.edge_length *= COARSER
+                    if sample not in OF_MORE_CELLS:
+                        rock.edge_length *= COARSER
                     for series in rock.series:
                         series.resolution *= COARSER
                 ops.build()

@@ -380,6 +380,18 @@ class Region(Imported):
         height += project_settings.model_origin(self.scene)[2]
         self.assertAlmostEqual(height, points[:, 2].max() + 0.1 * np.ptp(points[:, 2]), places=2)
 
+    def test_a_base_by_hand_begins_below_the_points(self):
+        ops.surface_add(filepath=str(self.table("a.csv", grid(20.0))))
+        rock = self.model.rocks[0]
+        rock.use_base = True
+        low = grid(20.0)[:, 2].min()
+        self.assertLess(rock.base_elevation, low)
+        self.assertGreater(rock.base_elevation, low - 20.0)
+        rock.base_elevation = 7.0
+        rock.use_base = False
+        rock.use_base = True
+        self.assertEqual(rock.base_elevation, 7.0, "that of the user stays")
+
     def test_hull(self):
         points = grid(20.0)
         corner = points[:, 0] + points[:, 1] - EAST - NORTH <= 300.0

@@ -6,6 +6,7 @@ import numpy as np
 from panel_case import PanelCase, ops
 from realmodel.bl.shading import look_assets, looks, strata_presets
 from realmodel.core.project.looks import LOOKS
+from realmodel.ui.menu import REALMODEL_MT_object
 
 
 class LookAssets(PanelCase):
@@ -25,6 +26,10 @@ class LookAssets(PanelCase):
     def libraries(self):
         known = bpy.context.preferences.filepaths.asset_libraries
         return [library for library in known if str(self.folder) in library.path]
+
+    def test_the_search_finds_the_command_without_a_model(self):
+        entries = REALMODEL_MT_object.entries(None, bpy.context)
+        self.assertIn("install_looks", [entry[0] for entry in entries if entry is not None])
 
     def test_materials_are_assets_with_a_catalog_and_previews(self):
         ops.install_looks(directory=str(self.folder))

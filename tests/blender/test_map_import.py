@@ -6,8 +6,10 @@ import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.field import map_settings
+from realmodel.bl.objects import built_models
 from realmodel.bl.project import observed_blocks, project_settings
 from realmodel.bl.scene import data_objects
+from realmodel.core.results.layer_values import at_places
 from realmodel.operators import boreholes
 
 VALLEY = SAMPLES / "mapped_valley"
@@ -148,4 +150,8 @@ class MapImport(PanelCase):
         self.model.view.show_misfits = True
         ops.build()
         self.assertEqual(len(self.model.results), 5)
+        places = coordinates(self.draped().data).astype(float) + project_settings.model_origin(self.scene)
+        ground = at_places(*built_models.current(self.scene).surface(4), places[:, :2])
+        lift = (places[:, 2] - ground)[~np.isnan(ground)]
+        self.assertGreater(lift.min(), 1.0, "not within the coarse triangles of the ground")
         self.assertEqual(len(bpy.context.scene.realmodel.misfits) > 0, self.model.view.misfit_count > 0)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The quality of a surface: charts, figures, and worst points."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import PanelCase, ops
 from realmodel.bl.scene import quality
 from realmodel.core import cross_validate
+from realmodel.operators.judge import REALMODEL_OT_save_chart as SaveChart
+from realmodel.operators.sections import REALMODEL_OT_save_section as SaveSection
 
 
 class Quality(PanelCase):
@@ -57,6 +61,8 @@ class Quality(PanelCase):
             path = self.folder / f"chart.{ending}"
             ops.save_chart(filepath=str(path), chart="CROSS_VALIDATION")
             self.assertGreater(path.stat().st_size, 1000)
+        words = [cls.of_what(SimpleNamespace(chart="MESH"), bpy.context) for cls in (SaveChart, SaveSection)]
+        self.assertEqual(words, [(name, "mesh"), ("section",)], "not to replace each other's files")
         self.refused(ops.save_chart, "must end in", filepath=str(self.folder / "chart.bmp"))
 
     def test_another_build_has_not_been_checked(self):

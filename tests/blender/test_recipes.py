@@ -11,7 +11,7 @@ import numpy as np
 from blender_state import coordinates, open_edges, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
 from realmodel.bl.host import notices
-from realmodel.bl.project import compartments, project_settings
+from realmodel.bl.project import compartments, project_settings, surface_statistics
 from realmodel.bl.scene import quality
 from realmodel.bl.shading import looks, weathering
 from recording_layout import draw_tab
@@ -44,7 +44,7 @@ class ForArtists(Recipe):
 
     def cliff(self):
         bpy.data.objects.remove(bpy.data.objects["Cube"])
-        select(gallery_picture.cliff(levels=5))
+        select(gallery_picture.cliff(levels=4))
         ops.fill_with_strata(preset="CLIFF")
         return list(bpy.data.collections["Cube Strata"].objects)
 
@@ -58,7 +58,9 @@ class ForArtists(Recipe):
         self.assertGreater(np.ptp(picture.mean(axis=2)), 0.3)
 
     def test_a_canyon(self):
-        ops.open_sample(sample="canyon")
+        ops.open_sample(sample="canyon", build=False)
+        self.model.rocks[0].edge_length *= 2.5
+        ops.build()
         ops.rock_looks(look="AUTO")
         self.no_warnings()
         self.assertEqual(len(self.model.results), 43)
@@ -91,7 +93,8 @@ class ForArtists(Recipe):
         self.assertGreater(np.ptp(self.rendered().mean(axis=2)), 0.3)
 
     def test_an_animation_of_deposition_and_erosion(self):
-        ops.open_sample(sample="castle_hill")
+        self.assertEqual(ops.open_sample(sample="castle_hill"), {"FINISHED"})
+        self.assertTrue(len(self.model.library))
         ops.animate_stages(frames=12)
         ops.turntable(frames=132)
         self.assertEqual((self.scene.frame_start, self.scene.frame_end), (1, 132))
@@ -258,6 +261,11 @@ class ForGeologists(Recipe):
         self.assertEqual(len(compartments.names(self.scene)), 2)
         throws = [abs(throw) for _, _, throw, _ in compartments.read(self.scene)["faults"]]
         self.assertTrue(all(abs(throw - 4.0) < 0.1 for throw in throws), throws)
+        shares = [surface_statistics.read(row)["share"] for row in self.model.rocks[0].surfaces]
+        self.assertTrue(all(share > 0.99 for share in shares), "each has a sheet on either side")
+        labels = draw_tab(bpy.context).labels
+        for name in (*compartments.names(self.scene), "Fault", "s0", "s1", "s2"):
+            self.assertIn(name, labels, "names of the panel Compartments stand by themselves")
         self.model.view.color_by = "COMPARTMENT"
 
     def test_a_simulation(self):

@@ -344,8 +344,8 @@ class FieldShown(PanelCase):
     def setUp(self):
         super().setUp()
         ops.open_project(filepath=str(PROJECT))
-        row = self.model.rocks[0].series[0]
-        row.resolution = 80.0
+        rock = self.model.rocks[0]
+        rock.edge_length, rock.series[0].resolution = 100.0, 120.0
         ops.build()
 
     def body(self, kind):
@@ -402,7 +402,8 @@ class LiveField(PanelCase):
     def setUp(self):
         super().setUp()
         ops.open_project(filepath=str(PROJECT))
-        self.model.rocks[0].series[0].resolution = 50.0
+        rock = self.model.rocks[0]
+        rock.edge_length, rock.series[0].resolution = 100.0, 50.0
         ops.build()
         self.model.live = True
         self.live_is_done()

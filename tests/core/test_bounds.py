@@ -22,7 +22,7 @@ from realmodel.core.base.work import Work, native_module
 from realmodel.core.heights.bounded import TOLERANCE, consistent
 from realmodel.core.heights.draws import Draw
 from realmodel.core.heights.interpolation import Task
-from realmodel.core.heights.turning_bands import Frame, Noise
+from realmodel.core.heights.turning_bands import FieldArea, Noise
 from realmodel.core.settings.methods import checked_options
 from structure_cases import heights_at, plane_fault, prepared
 
@@ -204,11 +204,11 @@ def test_realizations_keep_bounds(nugget):
     task = Task(Work(), POINTS, places, settings, bounds=bounds)
     drawn = []
     for seed in (1, 2):
-        draw = Draw(Frame(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
+        draw = Draw(FieldArea(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
         drawn.append(draw.heights("kriging", task).z)
         if not nugget:
             assert missed(drawn[-1], bounds) <= 1e-7
-        free = Draw(Frame(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
+        free = Draw(FieldArea(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
         assert missed(free.heights("kriging", replace(task, bounds=None)).z, bounds) > 1
         at_points = draw.heights("kriging", replace(task, nodes=np.ascontiguousarray(POINTS[:, :2])))
         np.testing.assert_allclose(at_points.z, POINTS[:, 2], atol=1e-9)

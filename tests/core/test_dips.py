@@ -27,7 +27,7 @@ from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.heights.draws import Draw
 from realmodel.core.heights.from_neighbours import dip_use, structure
 from realmodel.core.heights.interpolation import Task
-from realmodel.core.heights.turning_bands import Frame, Noise
+from realmodel.core.heights.turning_bands import FieldArea, Noise
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_dips
 from realmodel.core.settings.methods import METHODS, checked_options
@@ -380,7 +380,7 @@ def test_realizations_have_the_dips():
     ends = np.vstack([DIPS.positions + sign * half * axis for axis in np.eye(2) for sign in (1, -1)])
     drawn = []
     for seed in (1, 2):
-        draw = Draw(Frame(UTM, UTM + 1000), Noise((seed, 0)), {})
+        draw = Draw(FieldArea(UTM, UTM + 1000), Noise((seed, 0)), {})
         z = draw.heights("kriging", replace(task, nodes=ends)).z.reshape(4, -1)
         slopes = np.column_stack([z[0] - z[1], z[2] - z[3]]) / (2 * half)
         np.testing.assert_allclose(slopes, DIPS.gradients, atol=1e-6)

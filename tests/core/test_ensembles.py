@@ -10,7 +10,7 @@ from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, bui
 from realmodel.core.base.work import Work
 from realmodel.core.ensembles import Ensemble, Realizer, blocks_at, ensemble
 from realmodel.core.ensembles.ensemble import Sums, added
-from realmodel.core.heights.turning_bands import Frame, GaussianField, Noise
+from realmodel.core.heights.turning_bands import FieldArea, GaussianField, Noise
 from realmodel.core.project.project import Fault
 from realmodel.core.settings.variogram import VARIOGRAMS, Structure, Variogram
 from structure_cases import plane_fault
@@ -28,8 +28,8 @@ def project(points=POINTS, method="kriging", options=KRIGING, edge=8.0, **keys):
 
 def drawn(variogram, nodes, seed=1, anisotropy=None, older=None, correlation=0.0):
     noise = Noise((seed,), older, correlation)
-    frame = Frame(np.array([0.0, 0.0]), np.array([1000.0, 1000.0]))
-    return GaussianField(variogram, anisotropy, frame, noise).at(Work(), nodes)
+    area = FieldArea(np.array([0.0, 0.0]), np.array([1000.0, 1000.0]))
+    return GaussianField(variogram, anisotropy, area, noise).at(Work(), nodes)
 
 
 @pytest.mark.parametrize("model", [model for model in VARIOGRAMS if model != "wave"])

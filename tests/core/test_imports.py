@@ -132,6 +132,15 @@ def test_scripts_find_what_they_import():
                     assert hasattr(module, name) or find_spec(f"{node.module}.{name}"), (file.name, name)
 
 
+def test_public_classes_have_names_of_their_own():
+    modules = {}
+    for name, file in _modules(PACKAGE).items():
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                modules.setdefault(node.name, []).append(name)
+    assert {name: found for name, found in modules.items() if len(found) > 1} == {}
+
+
 def test_no_module_imports_itself_through_others():
     assert _cycle(PACKAGE) is None
 

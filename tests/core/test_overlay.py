@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core.drawing.drawing import Polygon, Text
+from realmodel.core.drawing.drawing import FilledRings, Text
 from realmodel.core.drawing.overlay import ColorKey, Eye, Shown, draw_overlay
 from realmodel.core.drawing.raster import rasterize
 from realmodel.core.results import layer_values
@@ -91,7 +91,7 @@ def test_the_box_never_lies_before_the_model(azimuth, elevation):
 def test_the_scale_bar_is_as_long_as_it_says():
     drawing = draw_overlay(eye(152, 27), shown(), (), ["scale"])
     label = next(text for text in texts(drawing) if text.endswith(" m"))
-    bars = [i.rings[0] for i in drawing.items if isinstance(i, Polygon) and i.fill is None]
+    bars = [i.rings[0] for i in drawing.items if isinstance(i, FilledRings) and i.fill is None]
     length = np.ptp(bars[-1][:, 0])
     assert length == pytest.approx(float(label.removesuffix(" m")) * SIZE[0] / 600.0)
     shown_texts = texts(draw_overlay(eye(152, 27, perspective=True), shown(3.0), (), ["scale"]))
@@ -103,10 +103,8 @@ def test_what_is_covered_below_is_left_free_by_legend_and_scale():
     entries = [("Sand", (0.9, 0.8, 0.4))]
     key = ColorKey("Property", entries)
     drawing = draw_overlay(eye(152, 27), shown(), [key], ["scale"], (0.0, 0.0, 40.0))
-    assert (
-        min(ring[:, 1].min() for item in drawing.items if isinstance(item, Polygon) for ring in item.rings)
-        > 40
-    )
+    rings = [ring for item in drawing.items if isinstance(item, FilledRings) for ring in item.rings]
+    assert min(ring[:, 1].min() for ring in rings) > 40
 
 
 def test_the_arrow_points_north():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Project, Rock, Surface, Variogram, build, cross_validate, interpolate, plots
-from realmodel.core.drawing.drawing import Dots, Line, Polygon, Text
+from realmodel.core.drawing.drawing import Dots, FilledRings, Line, Text
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.surface_quality import surface_quality
 from realmodel.core.results.volume_uncertainty import volume_deviations
@@ -26,7 +26,7 @@ def texts(drawing):
 
 def box(drawing):
     """The frame of the axes: lower left and upper right corner."""
-    frame = next(item for item in items(drawing, Polygon) if item.fill is None)
+    frame = next(item for item in items(drawing, FilledRings) if item.fill is None)
     return frame.rings[0].min(axis=0), frame.rings[0].max(axis=0)
 
 
@@ -91,7 +91,7 @@ def test_quality_of_triangles():
     angles = plots.smallest_angles(corners, np.array([[0, 1, 2], [2, 1, 0], [0, 1, 3], [0, 1, 4]]))
     assert angles == pytest.approx([60, 60, 45, 0])
     drawing = plots.mesh_quality(plots.smallest_angles(VERTICES, TRIANGLES))
-    (bar,) = (item for item in items(drawing, Polygon) if item.fill is not None)
+    (bar,) = (item for item in items(drawing, FilledRings) if item.fill is not None)
     low, high = box(drawing)
     left, right = ((bar.rings[0][[0, 1], 0] - low[0]) / (high[0] - low[0]) * 60).tolist()
     assert left <= 45 < right

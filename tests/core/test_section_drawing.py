@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Fault, Library, Project, Property, Rock, Surface, UsageError, build
-from realmodel.core.drawing.drawing import Line, Polygon, Text
+from realmodel.core.drawing.drawing import FilledRings, Line, Text
 from realmodel.core.drawing.glyphs import text_width
 from realmodel.core.results.sections.section_drawing import block_outlines, draw_section, flattened
 from structure_cases import plane_fault
@@ -38,7 +38,7 @@ def areas(drawing):
     """{layer: area of its filled polygons in units of the section}, heights as drawn."""
     found = {}
     for item in drawing.items:
-        if isinstance(item, Polygon) and item.layer not in ("Axes", "Legend"):
+        if isinstance(item, FilledRings) and item.layer not in ("Axes", "Legend"):
             for ring in item.rings:
                 x, y = ring.T / drawing.scale
                 area = ((x - x[0]) * (np.roll(y, -1) - y[0]) - (np.roll(x, -1) - x[0]) * (y - y[0])).sum() / 2
@@ -66,7 +66,7 @@ def test_a_section_seen_from_the_south(model):
     assert {"A", "B", "x 431,000.0  y 5,398,050.0", "x 431,100.0  y 5,398,050.0", "Elevation (ft)"} <= set(
         texts(drawing)
     )
-    fills = {item.layer: item.fill for item in drawing.items if isinstance(item, Polygon)}
+    fills = {item.layer: item.fill for item in drawing.items if isinstance(item, FilledRings)}
     assert (fills["clay"], fills["sand"]) == ((0, 0, 1), (1, 1, 0))
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Observations, Project, Rock, Surface, build
-from realmodel.core.drawing.drawing import Line, Polygon, Text
+from realmodel.core.drawing.drawing import FilledRings, Line, Text
 from realmodel.core.results.sections.section_drawing import draw_section, holes_on
 from realmodel.core.results.sections.section_holes import UNKNOWN, hole_lines, near_plane
 
@@ -59,7 +59,7 @@ def test_holes_are_drawn_in_the_colors_of_their_blocks(model):
 
 def test_names_over_holes_are_within_the_frame(model):
     drawing = draw_section(model.section((0, 5, 0), (0, -1, 0)), exaggeration=0.2, hole_width=0.5)
-    frame = next(item for item in drawing.items if isinstance(item, Polygon) and item.layer == "Axes")
+    frame = next(item for item in drawing.items if isinstance(item, FilledRings) and item.layer == "Axes")
     names = [item for item in drawing.items if isinstance(item, Text) and item.layer == "Boreholes"]
     assert {item.text for item in names} == {"B1", "B2", "P1"}
     top = max(ring[:, 1].max() for ring in frame.rings)

@@ -22,10 +22,10 @@ from realmodel.core.base.work import Work, native_module
 from realmodel.core.ensembles.realization import Realizer
 from realmodel.core.heights.companions import Companions, SheetModel
 from realmodel.core.heights.cross_validation import validate
-from realmodel.core.heights.from_neighbours import DipUse, Structure, structure
+from realmodel.core.heights.from_neighbours import DipUse, KrigingStructure, structure
 from realmodel.core.heights.interpolation import Task
 from realmodel.core.heights.sheet_draws import SeriesDraw
-from realmodel.core.heights.turning_bands import Frame, GaussianField, Noise
+from realmodel.core.heights.turning_bands import FieldArea, GaussianField, Noise
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.project.series import Series
 from realmodel.core.results.surface_quality import surface_quality
@@ -418,14 +418,16 @@ def test_sheets_are_drawn_together(method):
 
 
 def test_a_drawn_sheet_is_the_field_in_common_and_the_thicknesses_under_it():
-    frame, places = Frame(np.zeros(2), np.full(2, 1000.0)), np.array([[100.0, 200], [180, 260], [800, 700]])
+    area = FieldArea(np.zeros(2), np.full(2, 1000.0))
+    places = np.array([[100.0, 200], [180, 260], [800, 700]])
     variogram, thickness = Variogram("cubic", RANGE, 300.0), Variogram("spherical", 250.0, 1.0)
-    found = Structure(variogram, 0, DipUse(1.0, 0), sheets=SheetModel(np.zeros(3), VARIANCES, thickness))
+    model = SheetModel(np.zeros(3), VARIANCES, thickness)
+    found = KrigingStructure(variogram, 0, DipUse(1.0, 0), sheets=model)
     noises = [Noise((7, sheet)) for sheet in range(3)]
     series = SeriesDraw(noises)
-    drawn = [series.of(sheet, frame, found, None).at(Work(), places) for sheet in (2, 0, 1)]
+    drawn = [series.of(sheet, area, found, None).at(Work(), places) for sheet in (2, 0, 1)]
     fields = [variogram, replace(thickness, sill=30.0), replace(thickness, sill=15.0)]
-    parts = [GaussianField(fields[k], None, frame, noises[k]).at(Work(), places) for k in range(3)]
+    parts = [GaussianField(fields[k], None, area, noises[k]).at(Work(), places) for k in range(3)]
     for k, sheet in ((2, 0), (0, 1), (1, 2)):
         np.testing.assert_allclose(drawn[sheet], np.sum(parts[: k + 1], axis=0), rtol=1e-9)
     assert len(series.known) == 3

@@ -66,8 +66,8 @@ def model_of(name, folder):
         ("castle_hill", 40, 6, 18),
         ("haut_barr", 4, 0.8, 2),
         pytest.param("claudius", 150, 25, 75, marks=data_only),
-        pytest.param("drogon", 50, 10, 20, marks=data_only),
-        pytest.param("pleasant", 100, 8, 20, marks=data_only),
+        pytest.param("drogon", 80, 16, 32, marks=data_only),
+        pytest.param("pleasant", 150, 12, 30, marks=data_only),
     ],
 )
 def test_check_mesh_finds_no_fault(tmp_path, name, edge, thickness, layer):

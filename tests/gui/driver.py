@@ -151,14 +151,15 @@ class Walk:
     # -- eyes
 
     def redrawn(self, times=1):
-        """A condition: the viewport has been drawn anew."""
+        """A condition: the viewport has been drawn anew so many times, the rest of the window once."""
         before = self._draws
+        for area in self.window.screen.areas:
+            area.tag_redraw()
 
         def drawn():
             if self._draws >= before + times:
                 return True
-            for area in self.window.screen.areas:
-                area.tag_redraw()
+            self.area.tag_redraw()
             return False
 
         return drawn

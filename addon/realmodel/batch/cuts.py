@@ -21,7 +21,7 @@ from ..core.readers import MESH_ENDINGS, read_mesh
 from ..core.results.model_boreholes import Interval
 from ..core.results.planned_holes import HoleAxis, HoleInterval
 from ..core.settings.point_file import MeshFile
-from .sources import ENDINGS, Source
+from .sources import ENDINGS, OpenedFile
 
 Writer = Callable[[Path | str], Callable]
 
@@ -128,7 +128,7 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             return [self.cutter]
         if isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            return Source.of(self.cutter[0]).inputs
+            return OpenedFile.of(self.cutter[0]).inputs
         return []
 
     def read(self) -> None:
@@ -136,7 +136,7 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            self._other = Source.of(self.cutter[0]).model(cells="blocks")
+            self._other = OpenedFile.of(self.cutter[0]).model(cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:
         """Cuts, and stages the halves for writing. Returns the summary for the terminal."""

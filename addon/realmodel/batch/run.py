@@ -28,7 +28,7 @@ from ..core.surfaces.prepare import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
 from .probabilities import ProbabilityRequests
-from .sources import Source
+from .sources import OpenedFile
 from .table import ensemble_table, left_out_table, surface_table, tiles_table, volume_table
 from .terminal import TerminalProgress
 
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> None:
         make_folder(options.out)  # they may go there
     mesh_request = _mesh_request(options)
     targets = _checked_targets(options, requests, mesh_request)
-    source = Source.of(options.project)
+    source = OpenedFile.of(options.project)
     project = source.project
     _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
     if options.export_field is not None and not any(rock.has_fields for rock in project.rocks):

@@ -14,14 +14,14 @@ ENDINGS = (".toml", MODEL_ENDING)
 
 
 @dataclass(frozen=True)
-class Source:
+class OpenedFile:
     """The file of a project, read already, or of a model: then project is None."""
 
     file: Path
     project: Project | None
 
     @classmethod
-    def of(cls, file: Path) -> Source:
+    def of(cls, file: Path) -> OpenedFile:
         """Reads a project. Raises InputRefused."""
         return cls(file, None if file.suffix.lower() == MODEL_ENDING else load_project(file))
 

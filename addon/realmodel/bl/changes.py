@@ -2,6 +2,9 @@
 """The update callbacks of settings, one function each: called when a setting is changed by hand or by a
 script."""
 
+import contextlib
+
+from ..core import RealModelError
 from . import display
 from .field import handle, hole_validation
 from .objects import viewports
@@ -9,6 +12,7 @@ from .project import (
     library_rows,
     method_settings,
     names,
+    plan_mesh,
     project_settings,
     reading_text,
     region_size,
@@ -92,6 +96,17 @@ def switched_on(switch):
             setting(row, context)
 
     return changed
+
+
+def base(rock, context):
+    """The base of a rock mass was switched on or off: it begins below the points, where no elevation was
+    given yet."""
+    if not settings.is_filling() and rock.use_base and not rock.is_property_set("base_elevation"):
+        scene = rock.id_data
+        with settings.filling(), contextlib.suppress(RealModelError):  # no points, or a file is gone
+            points = data_objects.points_of(scene, rock, viewports.updated_layer(scene).depsgraph)
+            settings.set_number(rock, "base_elevation", plan_mesh.base_below(points))
+    setting(rock, context)
 
 
 def region(rock, context):

@@ -57,7 +57,7 @@ from .run_folder import (
     require_own,
     write_tile,
 )
-from .tile_inputs import Prepared, divided, prepared
+from .tile_inputs import PreparedInputs, divided, prepared
 from .workers import Workers, no_workers, require_this_version, workers_of
 
 _PREPARED, _JOINED = 0.25, 0.97  # of the time
@@ -251,7 +251,7 @@ def _patches(arrays: dict, side: str) -> Patches:
     return Patches(shape, block, part, int(arrays[f"{side}_open"]))
 
 
-def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
+def _catalog(found: PreparedInputs, store: Store, names: list[Name]) -> Catalog:
     """The table of the whole."""
     frame = found.frame
     parts, compared, unequal, warnings = Parts(), 0, 0, list(found.warnings)

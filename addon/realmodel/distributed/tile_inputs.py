@@ -47,7 +47,7 @@ _MADE = 0.9  # of the time: surfaces have their heights
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedInputs:
     """frame: what tiles share. rocks: as the stack builder takes them, all of them, in files; those that
     tiles interpolate lie at 0. points: of surfaces, by rock mass and number: those that tiles interpolate
     from, and those that they look for on wrong sides. digest: of all that the result depends on."""
@@ -59,7 +59,7 @@ class Prepared:
     warnings: list[BuildWarning]
     digest: str
 
-    def let_go(self) -> Prepared:
+    def let_go(self) -> PreparedInputs:
         """Without what the workers have."""
         return replace(self, rocks=[], near={}, own={})
 
@@ -72,7 +72,7 @@ def prepared(
     workers: Workers,
     report: Reporter,
     cancel: Cancel | None,
-) -> Prepared:
+) -> PreparedInputs:
     """arrays: where everything is kept. size: of tiles."""
     reader = SurfaceReader(arrays, workers)
 
@@ -139,7 +139,7 @@ def prepared(
         {key: len(points) for key, points in own.items()},
         tuple(kept_off(entry.rock) for entry in inputs),
     )
-    return Prepared(frame, rocks, near, own, warnings, _digest(frame, inputs, reader.digests))
+    return PreparedInputs(frame, rocks, near, own, warnings, _digest(frame, inputs, reader.digests))
 
 
 def _no_surfaces(_rock: Rock) -> set[int]:
@@ -309,7 +309,7 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
 
 
 def divided(
-    found: Prepared,
+    found: PreparedInputs,
     arrays: MappedArrays,
     workers: Workers,
     folder_of: Callable[[Name], Path],

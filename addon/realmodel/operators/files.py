@@ -88,9 +88,15 @@ class Exporting(Reporting, ExportHelper):
     def filename_ext(self):
         return f".{self.format.lower()}"
 
+    def of_what(self, _context):
+        """Words that the name of the file has after that of the model, so that files of one ending do not
+        replace each other."""
+        return ()
+
     def invoke(self, context, event):
         if not self.filepath:
-            name = bpy.path.clean_name(context.scene.realmodel.name or "model") + self.filename_ext
+            words = (context.scene.realmodel.name or "model", *self.of_what(context))
+            name = bpy.path.clean_name(" ".join(words)) + self.filename_ext
             self.filepath = str(Path(bpy.data.filepath).parent / name) if bpy.data.filepath else name
         return super().invoke(context, event)
 
@@ -225,6 +231,9 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
             ("TETRAHEDRA", "Tetrahedra", "Tetrahedra alone"),
         ),
     )
+
+    def of_what(self, _context):
+        return ("mesh",)
 
     def begin(self, context):
         self._request = MeshRequest(

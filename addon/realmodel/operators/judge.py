@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from ..bl.project import project_settings
+from ..bl.project import project_settings, settings
 from ..bl.scene import quality
 from ..core import UsageError
 from ..core.drawing import save_drawing
@@ -62,6 +62,9 @@ class REALMODEL_OT_save_chart(Exporting, bpy.types.Operator):
     format: format_menu(DRAWINGS)
     filter_glob: format_filter(DRAWINGS)
     chart: EnumProperty(name="Chart", description="Which chart is saved", items=quality.CHARTS)
+
+    def of_what(self, context):
+        return settings.active_surface(context.scene).name, self.chart.lower()
 
     def write(self, context, path):
         found = quality.found(context.scene)

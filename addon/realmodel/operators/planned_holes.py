@@ -110,6 +110,9 @@ class REALMODEL_OT_planned_hole_save(Exporting, bpy.types.Operator):
     format: format_menu(_TABLES)
     filter_glob: format_filter(_TABLES)
 
+    def of_what(self, context):
+        return (planned_holes.active(context.scene).name,)
+
     def write(self, context, path):
         hole = planned_holes.kept(planned_holes.active(context.scene))
         if hole is None:

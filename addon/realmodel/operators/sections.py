@@ -231,6 +231,9 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         subtype="DISTANCE",
     )
 
+    def of_what(self, _context):
+        return ("section",)
+
     def invoke(self, context, event):
         if not self.properties.is_property_set("exaggeration"):
             self.exaggeration = exaggeration.factor(context.scene)

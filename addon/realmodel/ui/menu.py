@@ -73,6 +73,7 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "assign_property", "Assign Active Property", {}
         yield "weathering", None, {}
         yield "weathering_remove", None, {}
+        yield "install_looks", None, {}
         yield None
         for operation, name, *_ in OPERATIONS:
             yield "boolean", f"Boolean: {name}", {"operation": operation}

@@ -67,21 +67,24 @@ class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
             own = found["volumes"].get(chosen.name, [0.0] * len(found["names"]))
             total = [sum(volumes) for volumes in zip(*found["volumes"].values(), strict=True)]
             column = layout.column(align=True)
-            _three(column, "", chosen.name, "All")
+            _row(column, chosen.name, "All")
             for number, name in enumerate(found["names"]):
-                texts = (units.volume_amount_text(scene, volumes[number]) for volumes in (own, total))
-                _three(column, name, *texts)
-        if found["faults"]:
+                column.label(text=name)
+                _row(column, *(units.volume_amount_text(scene, each[number]) for each in (own, total)))
+        for fault in dict.fromkeys(entry[0] for entry in found["faults"]):
             column = layout.column(align=True)
-            _three(column, "Mean of", "Throw", "Heave")
-            for fault, surface, throw, heave in found["faults"]:
-                texts = (units.length_text(scene, value) for value in (throw, heave))
-                _three(column, f"{fault}, {surface}", *texts)
+            column.label(text=fault)
+            _row(column, "Throw", "Heave", name="Mean of")
+            for name, surface, *values in found["faults"]:
+                if name == fault:
+                    _row(column, *(units.length_text(scene, value) for value in values), name=surface)
 
 
-def _three(column, name, *values):
-    """A row of a table: a name and two values."""
-    row = column.split(factor=0.4)
-    row.label(text=name)
+def _row(column, *values, name=""):
+    """A row of a table: two values, beside a name where it is short."""
+    row = column.row()
+    if name:
+        row = column.split(factor=0.45)
+        row.label(text=name)
     for value in values:
         right_label(row, value)

@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::uint64_t cases = UINT64_MAX, seed = 1, first = 0;
-    double seconds = 1e9, patience = 60;  // of one case, seconds
+    double seconds = 1e9, patience = 60;  // of one case, seconds of processors
     std::filesystem::path corpus, into = ".";
     std::vector<std::filesystem::path> files;
 };

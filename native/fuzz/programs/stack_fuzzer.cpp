@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::uint64_t cases = UINT64_MAX, seed = 1, first = 0;
-    double seconds = 1e9, patience = 120;  // of one case, seconds
+    double seconds = 1e9, patience = 120;  // of one case, seconds of processors
     std::filesystem::path corpus, into = ".";
     int most = 20;  // findings
     JudgeOptions judge;

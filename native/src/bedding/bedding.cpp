@@ -26,10 +26,13 @@ namespace {
 using strata::meaning;
 using strata::Rule;
 
-constexpr double kNear = 32 * 0x1p-52;   // of the largest coordinate: what rounding may do
-constexpr double kBeside = 8 * kNear;    // of it: from an upright polygon to a position beside it
-constexpr double kInwards = 1.0 / 64;    // of the way from a corner to the middle of its polygon
-constexpr std::size_t kPositions = 512;  // plan positions that a thread takes at once
+constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr double kNear = 32 * 0x1p-52;     // of the largest coordinate: what rounding may do
+constexpr double kBeside = 8 * kNear;      // of it: from an upright polygon to a position beside it
+constexpr double kInwards = 1.0 / 64;      // of the way from a corner to the middle of its polygon
+constexpr std::size_t kPositions = 512;    // plan positions that a thread takes at once
+constexpr std::size_t kPolygons = 16'384;  // polygons, likewise
+constexpr std::size_t kCorners = 16'384;   // corners, likewise
 
 /// A corner of a polygon, by their numbers.
 struct Corner {
@@ -37,15 +40,32 @@ struct Corner {
     std::int32_t polygon;
 };
 
-/// A history at one plan position.
+/// A history at one plan position, as far as it was replayed.
 struct Column {
-    struct Layer {
-        bool is_there = false;
-        double base = 0, top = 0;
-    };
-    std::vector<Layer> layers;
-    double top = 0;           ///< of the youngest
-    bool has_border = false;  ///< a side has to be chosen first
+    bool has_layer = false;   ///< the last sheet has deposited a layer
+    bool has_top = false;     ///< some sheet is there
+    bool has_floor = false;   ///< some sheet protects what is below it
+    bool has_border = false;  ///< of some sheet: a side has to be chosen first
+    double base = 0;          ///< of the layer
+    double top = 0;           ///< of the layer, and of all
+    double floor = 0;
+
+    /// Lays a sheet on it.
+    void lay(const History& history, std::size_t sheet, const SheetHeights::Found& found) {
+        has_layer = false;
+        has_border |= found.state == State::kBorder;
+        if (found.state != State::kHeight) return;
+        const auto rule = meaning(history.rules.empty() ? Rule::kErosional : history.rules[sheet]);
+        double level = found.height;
+        if (!rule.cuts && has_top) level = std::max(level, top);
+        if (has_floor) level = std::max(level, floor);
+        has_layer = sheet == 0 ? history.base_elevation.has_value() : has_top;
+        base = sheet == 0 ? history.base_elevation.value_or(0.0) : top;
+        top = level;
+        has_top = true;
+        if (rule.protects) floor = level;
+        has_floor |= rule.protects;
+    }
 };
 
 /// Whether two sheets differ in heights at most.
@@ -72,6 +92,7 @@ private:
     void number_corners();
     void make_sheets();
     void sort_positions();
+    void sort_corners();
 
     PlanPosition plan(std::int32_t vertex) const {
         const auto at = complex_.vertex(vertex);
@@ -91,18 +112,26 @@ private:
     Facing facing(const Polygon& polygon) const;
     PlanPosition beside(const PlanPosition& position, const Polygon& polygon) const;
 
-    /// What a thread has of one plan position.
-    struct Scratch {
-        std::vector<std::optional<SheetPlan::Place>> places;  ///< in each plan, where known
-        std::vector<Column> columns;                          ///< of each history; empty: not known
-        Column beside;                                        ///< the one of a polygon at a border
-    };
-    template <class HeightOf>
-    void replay(const History& history, const HeightOf& height_of, Column& column) const;
-    void set(std::uint32_t corner, const Polygon& polygon, const Column& column, double z,
-             Bedding& bedding) const;
-    void set_position(std::span<const Corner> corners, const PlanPosition& position,
-                      Scratch& scratch, Bedding& bedding) const;
+    std::int32_t vertex(const Corner& corner) const {
+        return vertex(polygons_[index(corner.polygon)],
+                      corner.number - begin_[index(corner.polygon)]);
+    }
+    double height_of(const Corner& corner) const { return complex_.vertex(vertex(corner))[2]; }
+    std::size_t position_of(const Corner& corner) const {
+        return index(position_of_[index(vertex(corner))]);
+    }
+
+    std::span<const Corner> corners_of(std::size_t history) const {
+        const std::size_t first = first_layer_[history], last = first_layer_[history + 1];
+        return {corners_.values.data() + corners_.offsets[first],
+                corners_.values.data() + corners_.offsets[last]};
+    }
+    void replay(std::size_t history, std::span<const std::size_t> used, Bedding& bedding) const;
+    void set(const Corner& corner, const Column& column, bool has_layer, Bedding& bedding) const;
+    void set_at_borders(std::size_t history, std::vector<Corner> some, Bedding& bedding) const;
+    std::vector<Column> columns_at(std::size_t history, const PlanPosition& position,
+                                   std::span<const SheetPlan::Place> places,
+                                   std::span<const std::int32_t> triangles) const;
 
     const ComplexView& complex_;
     std::span<const History> histories_;
@@ -116,7 +145,10 @@ private:
     std::vector<std::unique_ptr<SheetHeights>> sheets_;  ///< that differ
     std::vector<std::vector<std::size_t>> sheets_of_;    ///< of each history
     std::vector<std::int32_t> position_of_;              ///< of each vertex: its plan position
-    std::size_t positions_ = 0;
+    std::vector<PlanPosition> positions_;
+    std::vector<std::uint32_t> column_of_;  ///< of each position, in the history at hand
+    std::vector<std::size_t> first_layer_;  ///< of each history, among the buckets of corners
+    Buckets<Corner> corners_;  ///< by history and layer; those in no layer before all layers
 };
 
 Corners::Corners(const ComplexView& complex, std::span<const History> histories,
@@ -136,6 +168,7 @@ Corners::Corners(const ComplexView& complex, std::span<const History> histories,
     }
     make_sheets();
     sort_positions();
+    sort_corners();
 }
 
 void Corners::check() {
@@ -229,97 +262,157 @@ void Corners::sort_positions() {
     }
     parallel_sort(order, std::less<>(), execution_);
     position_of_.resize(order.size());
-    for (std::size_t at = 0; at < order.size(); ++at) {
-        if (at > 0 && order[at].first != order[at - 1].first) ++positions_;
-        position_of_[index(order[at].second)] = static_cast<std::int32_t>(positions_);
+    for (const auto& [position, vertex] : order) {
+        if (positions_.empty() || position != positions_.back()) positions_.push_back(position);
+        position_of_[index(vertex)] = static_cast<std::int32_t>(positions_.size() - 1);
     }
-    positions_ = order.empty() ? 0 : positions_ + 1;
+}
+
+void Corners::sort_corners() {
+    std::size_t layers = 0;
+    for (const History& history : histories_) {
+        first_layer_.push_back(layers);
+        layers += history.sheets.size() + 1;
+    }
+    first_layer_.push_back(layers);
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(polygons_.size(), (chunk + 1) * kPolygons);
+        for (std::size_t n = chunk * kPolygons; n < end; ++n) {
+            const auto layer = static_cast<std::size_t>(polygons_[n].layer + 1);
+            for (std::uint32_t corner = begin_[n]; corner < begin_[n + 1]; ++corner) {
+                const std::size_t history =
+                    index(histories_of_corners_.empty() ? polygons_[n].history
+                                                        : histories_of_corners_[corner]);
+                put(first_layer_[history] + layer, {corner, static_cast<std::int32_t>(n)});
+            }
+        }
+    };
+    const std::size_t chunks = (polygons_.size() + kPolygons - 1) / kPolygons;
+    corners_ = bucketize_in_order<Corner>(layers, chunks, produce, execution_);
 }
 
 Bedding Corners::bedding() {
-    const auto at = bucketize<Corner>(positions_, [&](const auto& put) {
-        for (std::size_t n = 0; n < polygons_.size(); ++n) {
-            for (std::uint32_t corner = begin_[n]; corner < begin_[n + 1]; ++corner) {
-                put(index(position_of_[index(vertex(polygons_[n], corner - begin_[n]))]),
-                    {corner, static_cast<std::int32_t>(n)});
-            }
-        }
-    });
     const std::size_t count = begin_.back();
     Bedding made{Array<float>(count), Array<float>(count), Array<float>(count)};
-    const std::size_t chunks = (positions_ + kPositions - 1) / kPositions;
-    parallel_workers(chunks, execution_, [&] {
-        Scratch own{{}, std::vector<Column>(histories_.size()), {}};
-        return [&, scratch = std::move(own)](std::size_t chunk) mutable {
-            const std::size_t end = std::min(positions_, (chunk + 1) * kPositions);
-            for (std::size_t position = chunk * kPositions; position < end; ++position) {
-                const auto corners = at[position];
-                if (corners.empty()) continue;
-                const Polygon& polygon = polygons_[index(corners[0].polygon)];
-                const std::uint32_t first = begin_[index(corners[0].polygon)];
-                set_position(corners, plan(vertex(polygon, corners[0].number - first)), scratch,
-                             made);
-            }
-        };
-    });
+    column_of_.assign(positions_.size(), kNone);
+    for (std::size_t history = 0; history < histories_.size(); ++history) {
+        std::vector<std::size_t> used;  // positions
+        for (const Corner& corner : corners_of(history)) {
+            const std::size_t position = position_of(corner);
+            if (column_of_[position] != kNone) continue;
+            column_of_[position] = static_cast<std::uint32_t>(used.size());
+            used.push_back(position);
+        }
+        replay(history, used, made);
+        for (const std::size_t position : used)
+            column_of_[position] = kNone;
+    }
     return made;
 }
 
-void Corners::set_position(std::span<const Corner> corners, const PlanPosition& position,
-                           Scratch& scratch, Bedding& bedding) const {
-    for (Column& column : scratch.columns)
-        column.layers.clear();
-    scratch.places.assign(plans_.size(), std::nullopt);
-    const auto at = [&](std::size_t sheet) {
-        auto& place = scratch.places[plan_of_[sheet]];
-        if (!place) place = plans_[plan_of_[sheet]]->at(position);
-        return sheets_[sheet]->at(*place);
+/// Sheet by sheet over all positions, and then the corners of the layer beneath it: what is read at
+/// once stays in the caches, where columns of all sheets at each position would not.
+void Corners::replay(std::size_t history, std::span<const std::size_t> used,
+                     Bedding& bedding) const {
+    const auto& sheets = sheets_of_[history];
+    std::vector<Column> columns(used.size());
+    std::vector<std::vector<SheetPlan::Place>> places(plans_.size());
+    std::vector<std::size_t> last(plans_.size());  // the last sheet with each plan
+    for (std::size_t k = 0; k < sheets.size(); ++k)
+        last[plan_of_[sheets[k]]] = k;
+    const auto for_corners = [&](std::span<const Corner> some, const auto& work) {
+        parallel_ranges(some.size(), kCorners, execution_, [&](std::size_t begin, std::size_t end) {
+            for (const Corner& corner : some.subspan(begin, end - begin))
+                work(corner, columns[column_of_[position_of(corner)]]);
+        });
     };
-    for (const Corner& corner : corners) {
-        const Polygon& polygon = polygons_[index(corner.polygon)];
-        const std::size_t number = index(
-            histories_of_corners_.empty() ? polygon.history : histories_of_corners_[corner.number]);
-        const History& history = histories_[number];
-        const auto& sheets = sheets_of_[number];
-        Column* column = &scratch.columns[number];
-        if (column->layers.empty()) {
-            replay(
-                history, [&](std::size_t k) { return at(sheets[k]); }, *column);
-        }
-        if (column->has_border) {
-            const PlanPosition inside = beside(position, polygon);
-            const auto chosen = [&](std::size_t k) {
-                const SheetHeights::Found found = at(sheets[k]);
-                return found.state == State::kBorder ? sheets_[sheets[k]]->beside(inside, position)
-                                                     : found;
-            };
-            replay(history, chosen, scratch.beside);
-            column = &scratch.beside;
-        }
-        const std::int32_t own = vertex(polygon, corner.number - begin_[index(corner.polygon)]);
-        set(corner.number, polygon, *column, complex_.vertex(own)[2], bedding);
+    const auto set_layer = [&](std::size_t layer) {
+        for_corners(corners_[first_layer_[history] + layer],
+                    [&](const Corner& corner, const Column& column) {
+                        set(corner, column, layer > 0 && column.has_layer, bedding);
+                    });
+    };
+    set_layer(0);
+    for (std::size_t k = 0; k < sheets.size(); ++k) {
+        const SheetPlan& plan = *plans_[plan_of_[sheets[k]]];
+        auto& at = places[plan_of_[sheets[k]]];
+        const bool is_new = at.empty();
+        at.resize(used.size());
+        parallel_ranges(
+            used.size(), kPositions, execution_, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t n = begin; n < end; ++n) {
+                    if (is_new) at[n] = plan.at(positions_[used[n]]);
+                    columns[n].lay(histories_[history], k, sheets_[sheets[k]]->at(at[n]));
+                }
+            });
+        if (last[plan_of_[sheets[k]]] == k) at = {};
+        set_layer(k + 1);
     }
+    std::vector<Corner> at_borders;
+    for (const Corner& corner : corners_of(history)) {
+        if (columns[column_of_[position_of(corner)]].has_border) at_borders.push_back(corner);
+    }
+    for_corners(corners_of(history), [&](const Corner& corner, const Column& column) {
+        bedding.depth[corner.number] =
+            static_cast<float>(std::max(0.0, column.top - height_of(corner)));
+    });
+    set_at_borders(history, std::move(at_borders), bedding);
 }
 
-template <class HeightOf>
-void Corners::replay(const History& history, const HeightOf& height_of, Column& column) const {
-    column.layers.assign(history.sheets.size(), {});
-    column.has_border = false;
-    std::optional<double> top, floor;
-    for (std::size_t k = 0; k < history.sheets.size(); ++k) {
-        const SheetHeights::Found found = height_of(k);
-        if (found.state == State::kBorder) column.has_border = true;
-        if (found.state != State::kHeight) continue;
-        const auto rule = meaning(history.rules.empty() ? Rule::kErosional : history.rules[k]);
-        double level = found.height;
-        if (!rule.cuts && top) level = std::max(level, *top);
-        if (floor) level = std::max(level, *floor);
-        const std::optional<double> base = k == 0 ? history.base_elevation : top;
-        if (base) column.layers[k] = {true, *base, level};
-        top = level;
-        if (rule.protects) floor = level;
+/// At the border of a sheet each polygon has the column of its own side.
+void Corners::set_at_borders(std::size_t history, std::vector<Corner> some,
+                             Bedding& bedding) const {
+    std::ranges::sort(some, std::less<>(), [&](const Corner& corner) {
+        return std::pair(position_of(corner), corner.number);
+    });
+    std::vector<std::size_t> begins;  // of the corners of each position
+    for (std::size_t n = 0; n < some.size(); ++n) {
+        if (n == 0 || position_of(some[n]) != position_of(some[n - 1])) begins.push_back(n);
     }
-    column.top = top.value_or(0.0);
+    begins.push_back(some.size());
+    parallel_chunks(begins.size() - 1, execution_, [&](std::size_t n) {
+        const auto corners =
+            std::span<const Corner>(some).subspan(begins[n], begins[n + 1] - begins[n]);
+        const PlanPosition& position = positions_[position_of(corners[0])];
+        std::vector<SheetPlan::Place> places;  // in each plan
+        for (const auto& plan : plans_)
+            places.push_back(plan->at(position));
+        std::map<std::vector<std::int32_t>, std::vector<Column>> sides;
+        for (const Corner& corner : corners) {
+            const Polygon& polygon = polygons_[index(corner.polygon)];
+            const PlanPosition inside = beside(position, polygon);
+            std::vector<std::int32_t> triangles;  // in each plan, at borders
+            for (std::size_t plan = 0; plan < plans_.size(); ++plan) {
+                const bool is_border = places[plan].state == State::kBorder;
+                triangles.push_back(is_border ? plans_[plan]->holding(inside) : -1);
+            }
+            auto& columns = sides[triangles];
+            if (columns.empty()) columns = columns_at(history, position, places, triangles);
+            const auto layer = static_cast<std::size_t>(polygon.layer + 1);
+            set(corner, columns[layer], layer > 0 && columns[layer].has_layer, bedding);
+            bedding.depth[corner.number] =
+                static_cast<float>(std::max(0.0, columns.back().top - height_of(corner)));
+        }
+    });
+}
+
+/// A column before all sheets and after each. triangles: in each plan, the one on whose side
+/// heights are wanted at a border.
+std::vector<Column> Corners::columns_at(std::size_t history, const PlanPosition& position,
+                                        std::span<const SheetPlan::Place> places,
+                                        std::span<const std::int32_t> triangles) const {
+    const auto& sheets = sheets_of_[history];
+    std::vector<Column> found(1);
+    for (std::size_t k = 0; k < sheets.size(); ++k) {
+        const SheetPlan::Place& place = places[plan_of_[sheets[k]]];
+        const SheetHeights& heights = *sheets_[sheets[k]];
+        found.push_back(found.back());
+        found.back().lay(histories_[history], k,
+                         place.state == State::kBorder
+                             ? heights.beside(triangles[plan_of_[sheets[k]]], position)
+                             : heights.at(place));
+    }
+    return found;
 }
 
 Corners::Facing Corners::facing(const Polygon& polygon) const {
@@ -355,25 +448,24 @@ PlanPosition Corners::beside(const PlanPosition& position, const Polygon& polygo
     return found;
 }
 
-void Corners::set(std::uint32_t corner, const Polygon& polygon, const Column& column, double z,
+/// Height and thickness of a corner. column: as far as the sheet over its layer.
+void Corners::set(const Corner& corner, const Column& column, bool has_layer,
                   Bedding& bedding) const {
-    const double rounding = kNear * largest_height_;
-    bedding.depth[corner] = static_cast<float>(std::max(0.0, column.top - z));
-    const Column::Layer layer =
-        polygon.layer < 0 ? Column::Layer{} : column.layers[index(polygon.layer)];
-    const double thickness = layer.is_there ? std::max(0.0, layer.top - layer.base) : 0.0;
-    bedding.thickness[corner] = static_cast<float>(thickness);
+    const Polygon& polygon = polygons_[index(corner.polygon)];
+    const double rounding = kNear * largest_height_, z = height_of(corner);
+    const double thickness = has_layer ? std::max(0.0, column.top - column.base) : 0.0;
+    bedding.thickness[corner.number] = static_cast<float>(thickness);
+    float& height = bedding.height[corner.number];
     if (thickness > rounding) {
-        const double height = (z - layer.base) / thickness;
-        bedding.height[corner] = static_cast<float>(z >= layer.top - rounding    ? 1.0
-                                                    : z <= layer.base + rounding ? 0.0
-                                                                                 : height);
+        height = static_cast<float>(z >= column.top - rounding    ? 1.0
+                                    : z <= column.base + rounding ? 0.0
+                                                                  : (z - column.base) / thickness);
         return;
     }
     const auto normal = facing(polygon).normal;
     const double across = elementary::hypot(normal[0], normal[1]);
     const bool is_upright = std::abs(normal[2]) <= 1e-6 * across;
-    bedding.height[corner] = is_upright ? 0.5F : normal[2] > 0 ? 1.0F : 0.0F;
+    height = is_upright ? 0.5F : normal[2] > 0 ? 1.0F : 0.0F;
 }
 
 }  // namespace

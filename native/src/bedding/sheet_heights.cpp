@@ -194,9 +194,7 @@ SheetHeights::Found SheetHeights::at(const SheetPlan::Place& place) const {
     return {place.state, place.state == State::kHeight ? height(place.triangle, place.areas) : 0.0};
 }
 
-SheetHeights::Found SheetHeights::beside(const PlanPosition& other,
-                                         const PlanPosition& position) const {
-    const std::int32_t there = plan_->holding(other);
+SheetHeights::Found SheetHeights::beside(std::int32_t there, const PlanPosition& position) const {
     if (there < 0) return {State::kAbsent, 0};
     const double guess = height(there, plan_->areas(there, position));
     // Of the triangles around the position the first at about that height: all polygons on one side

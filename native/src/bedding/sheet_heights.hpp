@@ -87,8 +87,8 @@ public:
     SheetHeights(const SheetPlan& plan, const TriangleView& sheet);
 
     Found at(const SheetPlan::Place& place) const;
-    /// The height at a border, on the side where another position lies, close by.
-    Found beside(const PlanPosition& other, const PlanPosition& position) const;
+    /// The height at a border, on the side of a triangle that is there; -1: no triangle.
+    Found beside(std::int32_t there, const PlanPosition& position) const;
 
 private:
     double height(std::int32_t triangle, const SheetPlan::Areas& areas) const;

@@ -12,7 +12,7 @@ const int realmodel_dump_pieces = 1;
 
 namespace realmodel::booleans {
 
-void dump_pieces(const Pieces& pieces, const char* path) {
+void dump_pieces(const TrianglePieces& pieces, const char* path) {
     ObjFile file(path);
     for (std::size_t p = 0; p < pieces.points.size(); ++p)
         file.add_vertex(pieces.points.rounded(SpacePointId(p)));
@@ -22,7 +22,7 @@ void dump_pieces(const Pieces& pieces, const char* path) {
             for (std::size_t i = 0; i < pieces.input_count(); ++i) {
                 const auto input = static_cast<std::int32_t>(i);
                 if (pieces.source(input) != source) continue;
-                for (const Piece& piece : pieces.of(input)) {
+                for (const TrianglePiece& piece : pieces.of(input)) {
                     if (piece.is_fresh != fresh) continue;
                     std::array<std::int32_t, 3> corners;
                     for (std::size_t k = 0; k < 3; ++k)

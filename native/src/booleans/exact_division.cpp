@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kFacetsAtOnce = 1 << 8;
 
-std::size_t shared_corners(const Corners& a, const Corners& b) {
+std::size_t shared_corners(const TriangleCorners& a, const TriangleCorners& b) {
     return static_cast<std::size_t>(std::count_if(
         a.begin(), a.end(), [&](SpacePointId p) { return p == b[0] || p == b[1] || p == b[2]; }));
 }
@@ -49,7 +49,7 @@ bool is_triangle(const Region& region) {
 
 }  // namespace
 
-ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen,
+ExactDivision::ExactDivision(TrianglePieces& pieces, std::vector<PieceId>&& chosen,
                              const Execution& execution)
     : pieces_(pieces),
       chosen_(std::move(chosen)),
@@ -61,7 +61,7 @@ ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen,
 
 /// Whether a filter in doubles can tell that the corners that a piece does not share with another
 /// one are on one side of the plane of that: then the two meet in what they share only.
-bool ExactDivision::is_aside(const Corners& own, const Corners& other,
+bool ExactDivision::is_aside(const TriangleCorners& own, const TriangleCorners& other,
                              const exact::SideFilter& plane_of_other) const {
     int side = 0;
     for (const SpacePointId p : own) {
@@ -87,7 +87,7 @@ void ExactDivision::find_candidates() {
     const BoxTree& tree = own ? *own : pieces_.tree();
     std::vector<std::vector<std::array<std::int32_t, 2>>> found(
         (tree.leaf_count() + kFacetsAtOnce - 1) / kFacetsAtOnce);
-    const auto filter_of = [&](const Corners& c) {
+    const auto filter_of = [&](const TriangleCorners& c) {
         return exact::SideFilter(pieces_.points.rounded(c[0]), pieces_.points.rounded(c[1]),
                                  pieces_.points.rounded(c[2]));
     };
@@ -97,8 +97,9 @@ void ExactDivision::find_candidates() {
             std::int32_t last = -1;  // the pairs of a piece follow one another
             std::optional<exact::SideFilter> plane;
             tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
-                const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
-                const Corners &a = one.corners, &b = other.corners;
+                const TrianglePiece &one = pieces_[chosen_[index(i)]],
+                                    &other = pieces_[chosen_[index(j)]];
+                const TriangleCorners &a = one.corners, &b = other.corners;
                 if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) ||
                     has_equal_corners(b) || shared_corners(a, b) == 3)
                     return;
@@ -120,7 +121,7 @@ void ExactDivision::find_meetings() {
         for (const std::int32_t i : pair)
             triangle_of[index(i)] = 0;
     }
-    std::vector<Corners> corners;
+    std::vector<TriangleCorners> corners;
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
         poll(execution_.progress, i);
         if (triangle_of[i] < 0) continue;
@@ -166,7 +167,7 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
         return p != a && p != b && exact::compare(points, a, p) * exact::compare(points, p, b) > 0;
     };
     for (const auto& [own, of] : {std::pair(one, other), std::pair(other, one)}) {
-        const Corners &a = arrangement_.corners(own), &b = arrangement_.corners(of);
+        const TriangleCorners &a = arrangement_.corners(own), &b = arrangement_.corners(of);
         const int facing = exact::orient2d(points, axis, a[0], a[1], a[2]);
         for (std::size_t k = 0; k < 3; ++k) {
             const SpacePointId from = a[k], to = a[(k + 1) % 3];
@@ -188,7 +189,7 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
 }
 
 /// A region in triangles of its nodes.
-std::vector<Corners> ExactDivision::divided(const Region& region) const {
+std::vector<TriangleCorners> ExactDivision::divided(const Region& region) const {
     std::vector<arrangement::Loop> loops;
     std::vector<arrangement::Position> positions;
     const auto [axis, facing] = arrangement_.view_of(region.triangle);
@@ -207,7 +208,7 @@ std::vector<Corners> ExactDivision::divided(const Region& region) const {
                              PointTurns(pieces_.points, view));
     // corners, and two more for each hole, which a bridge joins with the outline
     assert(found.size() + 2 == positions.size() + 2 * (loops.size() - 1));
-    std::vector<Corners> triangles;
+    std::vector<TriangleCorners> triangles;
     for (const auto& t : found)
         triangles.push_back(
             {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)});
@@ -251,10 +252,10 @@ std::vector<ExactDivision::Copy> ExactDivision::coinciding_regions() const {
 
 /// The parts of all triangles, one after another: their regions in triangles, whose points that no
 /// doubles are become the nearest doubles.
-std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
+std::vector<std::vector<TrianglePiece>> ExactDivision::parts_of_triangles() {
     const auto& regions = arrangement_.regions();
     const std::vector<Copy> copies = coinciding_regions();
-    std::vector<std::vector<Corners>> triangles(regions.size());
+    std::vector<std::vector<TriangleCorners>> triangles(regions.size());
     parallel_ranges(regions.size(), kFacetsAtOnce, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t r = begin; r < end; ++r) {
@@ -264,8 +265,8 @@ std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
                     });
     SpacePoints& points = pieces_.points;
     std::vector<SpacePointId> vertex(points.size(), kNone);
-    const auto make = [&](const Corners& nodes) {
-        Piece piece;
+    const auto make = [&](const TriangleCorners& nodes) {
+        TrianglePiece piece;
         for (std::size_t k = 0; k < 3; ++k) {
             const SpacePointId p = nodes[k];
             if (points.is_double(p)) {
@@ -278,7 +279,7 @@ std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
         }
         return piece;
     };
-    std::vector<std::vector<Piece>> made(piece_of_.size());
+    std::vector<std::vector<TrianglePiece>> made(piece_of_.size());
     for (std::size_t r = 0; r < regions.size(); ++r) {
         poll(execution_.progress, r);
         auto& own = made[index(regions.triangles[r])];
@@ -288,7 +289,7 @@ std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
             own.push_back(make({nodes[0], nodes[1], nodes[2]}));
             continue;
         }
-        for (Corners nodes : triangles[index(copy.of)]) {
+        for (TriangleCorners nodes : triangles[index(copy.of)]) {
             if (copy.is_reversed) std::swap(nodes[1], nodes[2]);
             own.push_back(make(nodes));
         }
@@ -306,8 +307,9 @@ void ExactDivision::divide_regions() {
         if (made[t].size() == 1 &&
             in_order(made[t][0].corners).first == in_order(before.corners).first)
             continue;
-        std::erase_if(made[t], [](const Piece& piece) { return has_equal_corners(piece.corners); });
-        for (Piece& piece : made[t])
+        std::erase_if(made[t],
+                      [](const TrianglePiece& piece) { return has_equal_corners(piece.corners); });
+        for (TrianglePiece& piece : made[t])
             piece.is_fresh = piece.is_fresh || before.is_fresh;
         changed.push_back({id, static_cast<std::int32_t>(t)});
     }
@@ -315,7 +317,7 @@ void ExactDivision::divide_regions() {
     for (std::size_t i = 0; i < changed.size();) {
         poll(execution_.progress, i);
         const std::int32_t input = changed[i].first.input;
-        std::vector<Piece> all;
+        std::vector<TrianglePiece> all;
         const auto old = pieces_.of(input);
         for (std::size_t k = 0; k < old.size(); ++k) {
             if (i < changed.size() &&

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "arrangement/triangle_arrangement.hpp"
-#include "booleans/pieces.hpp"
+#include "booleans/triangle_pieces.hpp"
 #include "exact/sign_filters.hpp"
 
 namespace realmodel::booleans {
@@ -17,7 +17,8 @@ namespace realmodel::booleans {
 class ExactDivision {
 public:
     /// @param chosen  pieces, among them all that may meet fresh ones
-    ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, const Execution& execution);
+    ExactDivision(TrianglePieces& pieces, std::vector<PieceId>&& chosen,
+                  const Execution& execution);
 
     using Meeting = arrangement::TriangleArrangement::Intersection;
     /// Where fresh pieces meet others out of order. Finds them; pieces without area are dropped.
@@ -39,22 +40,22 @@ public:
 
 private:
     void find_candidates();
-    bool is_aside(const Corners& own, const Corners& other,
+    bool is_aside(const TriangleCorners& own, const TriangleCorners& other,
                   const exact::SideFilter& plane_of_other) const;
     void find_meetings();
     bool is_contact(const Meeting& met) const;
     bool meet_in_plane(std::int32_t one, std::int32_t other) const;
-    std::vector<Corners> divided(const arrangement::Region& region) const;
+    std::vector<TriangleCorners> divided(const arrangement::Region& region) const;
     /// Which region a region coincides with: itself where it is the first, -1 of a triangle.
     struct Copy {
         std::int32_t of = -1;
         bool is_reversed = false;  ///< whether the two are seen from different sides
     };
     std::vector<Copy> coinciding_regions() const;
-    std::vector<std::vector<Piece>> parts_of_triangles();
+    std::vector<std::vector<TrianglePiece>> parts_of_triangles();
     void divide_regions();
 
-    Pieces& pieces_;
+    TrianglePieces& pieces_;
     std::vector<PieceId> chosen_;
     Execution execution_;
     std::vector<std::array<std::int32_t, 2>> candidates_;  ///< first chosen pieces, then triangles

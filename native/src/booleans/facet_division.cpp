@@ -21,12 +21,12 @@ using meshing::HalfEdge;
 
 /// Triangles of a polygon of any shape: a fan from its least corner. Those without extent are left
 /// out.
-void add_fan(const std::vector<SpacePointId>& loop, std::vector<Corners>& triangles) {
+void add_fan(const std::vector<SpacePointId>& loop, std::vector<TriangleCorners>& triangles) {
     const auto least =
         static_cast<std::size_t>(std::min_element(loop.begin(), loop.end()) - loop.begin());
     const auto at = [&](std::size_t i) { return loop[(least + i) % loop.size()]; };
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-        const Corners t{at(0), at(i), at(i + 1)};
+        const TriangleCorners t{at(0), at(i), at(i + 1)};
         if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
     }
 }
@@ -37,7 +37,7 @@ class FacetDivision {
 public:
     FacetDivision(const SpacePoints& points, const FacetPoints& facet, Progress* progress)
         : global_(points), progress_(progress) {
-        Corners own;
+        TriangleCorners own;
         for (std::size_t k = 0; k < 3; ++k)
             own[k] = enter(places_.add(points.rounded(facet.corners[k])), facet.corners[k]);
         for (axis_ = 0; axis_ < 3 && facing_ == 0; ++axis_)
@@ -57,8 +57,8 @@ public:
     }
 
     bool has_area() const { return facing_ != 0; }
-    std::vector<Corners> result() const {
-        std::vector<Corners> found;
+    std::vector<TriangleCorners> result() const {
+        std::vector<TriangleCorners> found;
         for (const auto& [a, b, c] : mesh_.corners)
             found.push_back({name(SpacePointId(a)), name(SpacePointId(b)), name(SpacePointId(c))});
         return found;
@@ -89,12 +89,12 @@ private:
 
     /// The view along the axis in which the triangle is largest, among those in which it has an
     /// area.
-    void find_best_axis(const Corners& corners) {
+    void find_best_axis(const TriangleCorners& corners) {
         double largest = -1;
         std::array<std::array<double, 3>, 3> p;
         for (std::size_t k = 0; k < 3; ++k)
             p[k] = global_.rounded(corners[k]);
-        const Corners own{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
+        const TriangleCorners own{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
             const double area = std::abs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -
@@ -195,7 +195,7 @@ private:
         return -1;
     }
 
-    void insert(SpacePointId p, const Corners& corners) {
+    void insert(SpacePointId p, const TriangleCorners& corners) {
         if (progress_ != nullptr) progress_->check();
         if (place_of(p).has_value()) return;
         const SpacePointId raw = places_.add(global_.rounded(p));
@@ -362,8 +362,8 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
     return axis;
 }
 
-std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet,
-                             Progress* progress) {
+std::vector<TriangleCorners> divided(const SpacePoints& points, const FacetPoints& facet,
+                                     Progress* progress) {
     std::vector<SpacePointId> loop;
     std::optional<std::size_t> folded;  // the edge that the corner across it lies on
     for (std::size_t k = 0; k < 3; ++k) {
@@ -373,7 +373,7 @@ std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet
             folded = k;
         loop.insert(loop.end(), between.begin(), between.end());
     }
-    std::vector<Corners> triangles;
+    std::vector<TriangleCorners> triangles;
     if (folded) {
         // two polygons that meet in that corner, with hardly any area
         const SpacePointId tip = facet.corners[(*folded + 2) % 3];

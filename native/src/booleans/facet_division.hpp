@@ -11,16 +11,16 @@ namespace realmodel::booleans {
 
 using exact::SpacePointId;
 using exact::SpacePoints;
-using Corners = std::array<SpacePointId, 3>;
+using TriangleCorners = std::array<SpacePointId, 3>;
 using Edge = std::array<SpacePointId, 2>;
 
-inline bool has(const Corners& corners, SpacePointId p) {
+inline bool has(const TriangleCorners& corners, SpacePointId p) {
     return corners[0] == p || corners[1] == p || corners[2] == p;
 }
 
 /// A triangle, and points near it that it is to get as vertices.
 struct FacetPoints {
-    Corners corners;
+    TriangleCorners corners;
     /// Of the edge from corner k to corner k + 1: its coordinate along edge_axis() grows or falls
     /// from point to point.
     std::array<std::vector<SpacePointId>, 3> on_edges;
@@ -37,7 +37,7 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
 /// within that fall outside or together there are left out. The same for the same triangle and
 /// points, however its corners are ordered. Each part of an edge has one triangle.
 /// @throws Cancelled
-std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet,
-                             Progress* progress);
+std::vector<TriangleCorners> divided(const SpacePoints& points, const FacetPoints& facet,
+                                     Progress* progress);
 
 }  // namespace realmodel::booleans

@@ -25,7 +25,7 @@ struct Keyed {
     auto operator<=>(const Keyed&) const = default;
 };
 
-void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution) {
+void find_facets(const RefinedTriangles& parts, FacetMesh& mesh, const Execution& execution) {
     const std::size_t count = parts.triangles.size();
     std::vector<Keyed> keyed(count);
     parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
@@ -44,7 +44,7 @@ void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution
     mesh.of_part.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         poll(execution.progress, i);
-        const Part& part = parts.triangles[i];
+        const RefinedTriangle& part = parts.triangles[i];
         if (first[i] == static_cast<std::int32_t>(i)) {
             mesh.of_part[i] = static_cast<std::int32_t>(mesh.facets.size());
             mesh.facets.push_back({part.corners});
@@ -59,7 +59,7 @@ void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution
 
 }  // namespace
 
-FacetMesh facets_of(const Parts& parts, const Execution& execution) {
+FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution) {
     FacetMesh mesh;
     find_facets(parts, mesh, execution);
     const std::size_t count = mesh.facets.size();

@@ -29,6 +29,6 @@ struct FacetMesh {
 
 /// @throws InputError kind too_large, where the two sides of all facets cannot be numbered;
 /// Cancelled
-FacetMesh facets_of(const Parts& parts, const Execution& execution);
+FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution);
 
 }  // namespace realmodel::booleans

@@ -53,8 +53,8 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
 }
 
 /// The parts of each surface that hang together across edges that are in no loop.
-void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const FacetCells& cells,
-                       Refinement& result, Progress* progress) {
+void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
+                       const FacetCells& cells, Refinement& result, Progress* progress) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
@@ -158,13 +158,13 @@ bool is_kept(Operation operation, bool in_first, bool in_second) {
 
 Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution) {
-    const Parts parts = refine({first, second}, execution);
+    const RefinedTriangles parts = refine({first, second}, execution);
     if (execution.progress != nullptr) execution.progress->begin(0.8, 0.9, "finding facets");
     const FacetMesh mesh = facets_of(parts, execution);
     if (execution.progress != nullptr)
         execution.progress->begin(0.9, 0.99, "finding what is inside");
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
-    Loops loops = find_loops(mesh, parts.vertices.size(), execution.progress);
+    IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution.progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());
     for (const Position& p : parts.vertices)
@@ -174,7 +174,7 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
     assert(are_wound(mesh, cells, result.is_closed));
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
         poll(execution.progress, t);
-        const Part& part = parts.triangles[t];
+        const RefinedTriangle& part = parts.triangles[t];
         result.triangles.push_back(part.corners);
         result.source.push_back(part.source);
         result.source_triangle.push_back(part.origin);

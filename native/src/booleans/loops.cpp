@@ -39,7 +39,7 @@ public:
     }
 
     /// First the paths between vertices that have not two edges, then the cycles of those that do.
-    Loops run(Progress* progress) {
+    IntersectionLoops run(Progress* progress) {
         for (const bool paths : {true, false}) {
             for (std::size_t v = 0; v < edges_at_.size(); ++v) {
                 poll(progress, v);
@@ -79,13 +79,13 @@ private:
     }
 
     const FacetMesh& mesh_;
-    Loops result_;
+    IntersectionLoops result_;
     Buckets<std::int32_t> edges_at_;  ///< of vertices: intersection edges
 };
 
 }  // namespace
 
-Loops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress) {
+IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress) {
     return LoopGraph(mesh, vertices, progress).run(progress);
 }
 

@@ -9,7 +9,7 @@
 namespace realmodel::booleans {
 
 /// The edges along which both surfaces meet, and the loops that these make.
-struct Loops {
+struct IntersectionLoops {
     std::vector<IntersectionLoop> loops;
     std::vector<std::int32_t> of_edge;  ///< the loop of each edge of the mesh, -1 none
 };
@@ -18,6 +18,6 @@ struct Loops {
 /// there all of its facets are of both.
 /// @param vertices  how many there are
 /// @throws Cancelled
-Loops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress);
+IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress);
 
 }  // namespace realmodel::booleans

@@ -7,7 +7,7 @@
 #include "arrangement/polygons.hpp"
 #include "base/keep_single.hpp"
 #include "base/ulp.hpp"
-#include "booleans/pieces.hpp"
+#include "booleans/triangle_pieces.hpp"
 
 namespace realmodel::booleans {
 
@@ -32,7 +32,7 @@ bool are_boxes_near(const std::array<Position, 2>& e, const std::array<Position,
 
 }  // namespace
 
-FacetPair pair_of(Corners one, Corners other) {
+FacetPair pair_of(TriangleCorners one, TriangleCorners other) {
     one = in_order(one).first;
     other = in_order(other).first;
     return other < one ? FacetPair{other, one} : FacetPair{one, other};
@@ -62,7 +62,7 @@ double Nearness::distance_at(double coordinate) const {
 
 double Nearness::distance_of(const FacetPair& pair) const {
     double largest = 0;
-    for (const Corners& corners : pair) {
+    for (const TriangleCorners& corners : pair) {
         for (const SpacePointId p : corners) {
             for (const double x : points_.rounded(p))
                 largest = std::max(largest, std::abs(x));
@@ -89,7 +89,7 @@ bool Nearness::is_near_edge(SpacePointId p, const Edge& edge, double within) con
 }
 
 /// Whether a vertex is near the inside of a triangle.
-bool Nearness::is_over(SpacePointId p, const Corners& t, double within) const {
+bool Nearness::is_over(SpacePointId p, const TriangleCorners& t, double within) const {
     const Position& a = points_.rounded(t[0]);
     const Position u = minus(points_.rounded(t[1]), a), v = minus(points_.rounded(t[2]), a),
                    w = minus(points_.rounded(p), a);
@@ -142,7 +142,7 @@ void Nearness::find(const FacetPair& pair, NearParts& found) const {
     const double within = distance_of(pair);
     find_same(pair, within, found);
     // whether a vertex is near edges of a triangle, which then get it
-    const auto find_near_edges = [&](SpacePointId p, const Corners& t) {
+    const auto find_near_edges = [&](SpacePointId p, const TriangleCorners& t) {
         bool is_near = false;
         for (const Edge& edge : edges_of(t)) {
             if (!is_near_edge(p, edge, within)) continue;
@@ -152,7 +152,7 @@ void Nearness::find(const FacetPair& pair, NearParts& found) const {
         return is_near;
     };
     for (std::size_t k = 0; k < 2; ++k) {
-        const Corners &own = pair[k], &other = pair[1 - k];
+        const TriangleCorners &own = pair[k], &other = pair[1 - k];
         for (const SpacePointId p : own) {
             find_near_edges(p, own);  // a corner near the edge across it: a triangle of no width
             if (has(other, p) || find_near_edges(p, other) || !is_over(p, other, within)) continue;
@@ -169,7 +169,8 @@ void Nearness::find(const FacetPair& pair, NearParts& found) const {
 }
 
 /// Whether what a triangle has on one side of the plane of another is near that plane.
-bool Nearness::passes_little(const Corners& own, const Corners& plane, double within) const {
+bool Nearness::passes_little(const TriangleCorners& own, const TriangleCorners& plane,
+                             double within) const {
     const Position& a = points_.rounded(plane[0]);
     const Position normal =
         cross(minus(points_.rounded(plane[1]), a), minus(points_.rounded(plane[2]), a));

@@ -10,9 +10,9 @@
 namespace realmodel::booleans {
 
 /// Two triangles, by their corners in order; the lesser first.
-using FacetPair = std::array<Corners, 2>;
+using FacetPair = std::array<TriangleCorners, 2>;
 
-FacetPair pair_of(Corners one, Corners other);
+FacetPair pair_of(TriangleCorners one, TriangleCorners other);
 
 /// What of two triangles is nearer than rounding can keep apart.
 struct NearParts {
@@ -25,7 +25,8 @@ struct NearParts {
     };
     std::vector<Edge> same;  ///< vertices that are to become one
     std::vector<std::pair<Edge, SpacePointId>> on_edges;
-    std::vector<std::pair<Corners, SpacePointId>> over;  ///< vertices over the inside of triangles
+    std::vector<std::pair<TriangleCorners, SpacePointId>>
+        over;  ///< vertices over the inside of triangles
     std::vector<Crossing> crossings;
 
     /// Takes over the parts of another one, which is empty then.
@@ -52,14 +53,15 @@ public:
     bool is_shallow(const FacetPair& pair) const;
 
     bool is_near_edge(SpacePointId p, const Edge& edge, double within) const;
-    bool is_over(SpacePointId p, const Corners& t, double within) const;
+    bool is_over(SpacePointId p, const TriangleCorners& t, double within) const;
     /// Whether a point is between the ends of an edge, along its longest axis.
     bool is_between(SpacePointId p, const Edge& edge) const;
 
 private:
     void find_same(const FacetPair& pair, double within, NearParts& found) const;
     void find_crossing(const Edge& e, const Edge& f, double within, NearParts& found) const;
-    bool passes_little(const Corners& own, const Corners& plane, double within) const;
+    bool passes_little(const TriangleCorners& own, const TriangleCorners& plane,
+                       double within) const;
 
     const SpacePoints& points_;
     double ulps_;
@@ -69,7 +71,7 @@ inline Edge edge_of(SpacePointId a, SpacePointId b) {
     return a < b ? Edge{a, b} : Edge{b, a};
 }
 
-inline std::array<Edge, 3> edges_of(const Corners& c) {
+inline std::array<Edge, 3> edges_of(const TriangleCorners& c) {
     return {edge_of(c[0], c[1]), edge_of(c[1], c[2]), edge_of(c[2], c[0])};
 }
 

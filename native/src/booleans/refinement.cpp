@@ -10,8 +10,8 @@
 #include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "booleans/exact_division.hpp"
-#include "booleans/pieces.hpp"
 #include "booleans/snapping.hpp"
+#include "booleans/triangle_pieces.hpp"
 #include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
 
@@ -40,13 +40,13 @@ public:
             fresh_.push_back(static_cast<std::int32_t>(i));
     }
 
-    Parts run();
+    RefinedTriangles run();
 
 private:
     using Numbers = std::vector<std::int32_t>;
 
     void drop_flat();
-    bool is_flat(const Corners& corners) const;
+    bool is_flat(const TriangleCorners& corners) const;
     std::vector<PieceId> pieces_near_fresh() const;
     void find_fresh(const Numbers& among);
     void set_fresh(const ExactDivision& division, const ExactDivision::Meeting& met) {
@@ -63,7 +63,7 @@ private:
     void divide_or_snap(ExactDivision& division, Numbers& touched);
     std::vector<std::uint8_t> near_meetings(const ExactDivision& division) const;
     Numbers snap(std::vector<FacetPair>&& pairs);
-    Parts result() const;
+    RefinedTriangles result() const;
 
     /// What has been done so far.
     enum class State : std::uint8_t {
@@ -72,7 +72,7 @@ private:
         kDivided,  ///< the inputs were divided along one another
     };
 
-    Pieces pieces_;
+    TrianglePieces pieces_;
     Execution execution_;
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
     State state_ = State::kWhole;
@@ -81,7 +81,7 @@ private:
     int exact_rounds_ = 0, snap_rounds_ = 0;
 };
 
-bool Refiner::is_flat(const Corners& c) const {
+bool Refiner::is_flat(const TriangleCorners& c) const {
     if (has_equal_corners(c)) return true;
     const auto& points = pieces_.points;
     const auto &p = points.rounded(c[0]), &q = points.rounded(c[1]), &r = points.rounded(c[2]);
@@ -100,17 +100,17 @@ bool Refiner::is_flat(const Corners& c) const {
 /// meets another piece there, and gets it; later their edges get it.
 void Refiner::drop_flat() {
     for (;;) {
-        std::vector<std::vector<Corners>> found(fresh_.size());
+        std::vector<std::vector<TriangleCorners>> found(fresh_.size());
         parallel_ranges(fresh_.size(), kItemsAtOnce, execution_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end; ++i) {
-                                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                                for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
                                     if (piece.is_fresh && is_flat(piece.corners))
                                         found[i].push_back(in_order(piece.corners).first);
                                 }
                             }
                         });
-        std::vector<Corners> flat;
+        std::vector<TriangleCorners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             flat.insert(flat.end(), found[i].begin(), found[i].end());
             if (state_ == State::kWhole && !found[i].empty()) pieces_.replace(fresh_[i], {});
@@ -135,7 +135,7 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
         parallel_ranges(fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end) {
             auto& own = near[begin / 64];
             for (std::size_t i = begin; i < end; ++i) {
-                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
                     if (!piece.is_fresh) continue;
                     pieces_.find_inputs(pieces_.box(piece.corners),
                                         [&](std::int32_t input) { own.push_back(input); });
@@ -158,7 +158,7 @@ void Refiner::find_fresh(const Numbers& among) {
     fresh_.clear();
     for (const std::int32_t input : among) {
         const auto own = pieces_.of(input);
-        if (std::any_of(own.begin(), own.end(), [](const Piece& p) { return p.is_fresh; }))
+        if (std::any_of(own.begin(), own.end(), [](const TrianglePiece& p) { return p.is_fresh; }))
             fresh_.push_back(input);
     }
 }
@@ -292,7 +292,7 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
         std::vector<FacetPair> left;
         for (FacetPair pair : pairs) {
             bool has_area = true;
-            for (Corners& corners : pair) {
+            for (TriangleCorners& corners : pair) {
                 for (SpacePointId& p : corners)
                     p = snapping.merged(p);
                 has_area = has_area && !has_equal_corners(corners);
@@ -306,7 +306,7 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
     return changed;
 }
 
-Parts Refiner::run() {
+RefinedTriangles Refiner::run() {
     for (int n = 0; n < kMostRounds; ++n) {
         const double share = 0.8 * n / (n + 1.0);
         if (execution_.progress != nullptr)
@@ -319,15 +319,15 @@ Parts Refiner::run() {
         "not keep them apart; move one of them a little");
 }
 
-Parts Refiner::result() const {
-    Parts parts;
+RefinedTriangles Refiner::result() const {
+    RefinedTriangles parts;
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
         poll(execution_.progress, i);
         const auto input = static_cast<std::int32_t>(i);
-        for (const Piece& piece : pieces_.of(input)) {
+        for (const TrianglePiece& piece : pieces_.of(input)) {
             assert(!piece.is_fresh && !has_equal_corners(piece.corners));
-            Part part{{}, pieces_.row(input), pieces_.source(input)};
+            RefinedTriangle part{{}, pieces_.row(input), pieces_.source(input)};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::int32_t& own = number[index(piece.corners[k])];
                 if (own < 0) {
@@ -345,7 +345,7 @@ Parts Refiner::result() const {
 
 }  // namespace
 
-Parts refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution) {
+RefinedTriangles refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution) {
     return Refiner(surfaces, execution).run();
 }
 

@@ -15,7 +15,7 @@ using Position = std::array<double, 3>;
 //
 //   P, Q      the two surfaces, sources 0 and 1. Either may be open and may cross itself
 //   input     a triangle of P or Q, counted through both; its row is its number in its surface
-//   piece     an input as a whole, or a part of it; turned as the input is (Pieces)
+//   piece     an input as a whole, or a part of it; turned as the input is (TrianglePieces)
 //   corner    a vertex of a piece: always a point that doubles give. A point that divides pieces
 //             exactly is a vertex once it is rounded, which moves it
 //   fresh     of a piece: it has changed since it was last known to meet others in order
@@ -28,7 +28,7 @@ using Position = std::array<double, 3>;
 //   round     fresh pieces are divided where they meet out of order (ExactDivision), or what is
 //   near
 //             there is brought together (Snapping). When no piece is fresh, what is left are
-//   part      a piece of the result, which meets all others in order (Parts)
+//   part      a piece of the result, which meets all others in order (RefinedTriangles)
 //   facet     parts that coincide, as one (FacetMesh); times: how often it is a part of P and of Q,
 //   -1
 //             for each that faces the other way
@@ -37,18 +37,18 @@ using Position = std::array<double, 3>;
 //             surface these changes add up to zero (FacetCells)
 
 /// A triangle of one of the surfaces, or a part of it.
-struct Part {
+struct RefinedTriangle {
     std::array<std::int32_t, 3> corners;
     std::int32_t origin;  ///< the triangle of the input that it is part of
     std::uint8_t source;  ///< which surface
 
-    bool operator==(const Part&) const = default;
+    bool operator==(const RefinedTriangle&) const = default;
 };
 
 /// Triangles that meet in common edges and vertices only, or coincide.
-struct Parts {
-    std::vector<Position> vertices;  ///< all different, each a corner of a triangle
-    std::vector<Part> triangles;     ///< by source, then by origin
+struct RefinedTriangles {
+    std::vector<Position> vertices;          ///< all different, each a corner of a triangle
+    std::vector<RefinedTriangle> triangles;  ///< by source, then by origin
 };
 
 /// Divides the triangles of both surfaces along one another and themselves.
@@ -59,6 +59,6 @@ struct Parts {
 /// are rounded to coarser and coarser steps, which merges them.
 ///
 /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large, too_close; Cancelled
-Parts refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
+RefinedTriangles refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
 
 }  // namespace realmodel::booleans

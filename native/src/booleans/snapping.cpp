@@ -26,9 +26,9 @@ void append(std::vector<Item>& to, const std::vector<Item>& from) {
 }
 
 /// Pieces of one triangle that have been folded upon each other go, two and two.
-void cancel_folds(std::vector<Piece>& pieces) {
+void cancel_folds(std::vector<TrianglePiece>& pieces) {
     struct Folded {
-        Corners corners;
+        TriangleCorners corners;
         bool is_odd;
         std::size_t piece;
         auto operator<=>(const Folded&) const = default;
@@ -58,7 +58,7 @@ void cancel_folds(std::vector<Piece>& pieces) {
 
 /// What gets new vertices hands them on to all that is near it, so that layers that lie upon one
 /// another are divided alike: from the pairs on, in waves.
-Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
+Snapping::Snapping(TrianglePieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
                    const Execution& execution)
     : pieces_(pieces),
       wide_(pieces.points, radius.of_pairs),
@@ -67,7 +67,7 @@ Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radiu
     std::vector<std::int32_t> facets;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         poll(execution.progress, i);
-        for (const Corners& corners : pairs[i])
+        for (const TriangleCorners& corners : pairs[i])
             facets.push_back(facets_.add(corners));
     }
     sort_unique(facets);
@@ -86,9 +86,10 @@ Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radiu
     if (merged_.empty()) place(std::move(found));
 }
 
-Snapping::Snapping(Pieces& pieces, std::span<const Corners> flat, const Execution& execution)
+Snapping::Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat,
+                   const Execution& execution)
     : pieces_(pieces), wide_(pieces.points, 0), narrow_(pieces.points, 0), execution_(execution) {
-    for (const Corners& t : flat) {
+    for (const TriangleCorners& t : flat) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
             if (!narrow_.is_between(t[(k + 2) % 3], edge)) continue;
@@ -105,7 +106,7 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
                                                            Waves& waves) {
     constexpr std::size_t kAtOnce = 1 << 14;
     std::vector<FacetNumbers> pairs;
-    std::vector<std::vector<Corners>> around(std::min(kAtOnce, facets.size()));
+    std::vector<std::vector<TriangleCorners>> around(std::min(kAtOnce, facets.size()));
     for (std::size_t first = 0; first < facets.size(); first += kAtOnce) {
         const std::size_t count = std::min(kAtOnce, facets.size() - first);
         parallel_ranges(count, kTrianglesAtOnce, execution_,
@@ -115,7 +116,7 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
                                 own.clear();
                                 spatial::Box box = pieces_.box(facets_[facets[first + i]]);
                                 box.widen(reach(facets[first + i]));
-                                pieces_.find(box, [&own](const Piece& piece) {
+                                pieces_.find(box, [&own](const TrianglePiece& piece) {
                                     own.push_back(in_order(piece.corners).first);
                                 });
                                 sort_unique(own);
@@ -124,7 +125,7 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
         for (std::size_t i = 0; i < count; ++i) {
             if (execution_.progress != nullptr) execution_.progress->check();
             const std::int32_t facet = facets[first + i];
-            for (const Corners& corners : around[i]) {
+            for (const TriangleCorners& corners : around[i]) {
                 const std::int32_t other = facets_.add(corners);
                 waves.resize(facets_.size(), -1);
                 const std::int32_t own = waves[index(facet)], wave = waves[index(other)];
@@ -305,7 +306,7 @@ void Snapping::spread_points() {
 /// Gives a facet the new points on the edges of those near it.
 void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
     Place& place = places_[index(facet)];
-    const Corners& t = facets_[facet];
+    const TriangleCorners& t = facets_[facet];
     spatial::Box box = pieces_.box(t);
     box.widen(wide_.distance_at(pieces_.largest_coordinate()));
     for (const std::int32_t near : place.near) {
@@ -372,12 +373,12 @@ std::span<const SpacePointId> Snapping::points_on(const Edge& edge) const {
     return on_edges_[index(number)].points;
 }
 
-const Snapping::Place* Snapping::place_of(const Corners& in_order) const {
+const Snapping::Place* Snapping::place_of(const TriangleCorners& in_order) const {
     const std::int32_t number = places_.empty() ? -1 : facets_.find(in_order);
     return number < 0 ? nullptr : &places_[index(number)];
 }
 
-bool Snapping::is_divided(const Corners& in_order) const {
+bool Snapping::is_divided(const TriangleCorners& in_order) const {
     for (const Edge& edge : edges_of(in_order)) {
         if (!points_on(edge).empty()) return true;
     }
@@ -385,7 +386,7 @@ bool Snapping::is_divided(const Corners& in_order) const {
     return place != nullptr && !place->over.empty();
 }
 
-std::vector<Corners> Snapping::divided(const Corners& in_order) const {
+std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) const {
     FacetPoints facet{in_order, {}, {}, {}};
     std::vector<SpacePointId> all(in_order.begin(), in_order.end());
     for (std::size_t k = 0; k < 3; ++k) {
@@ -459,11 +460,11 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
 std::vector<std::int32_t> Snapping::apply() {
     pieces_.moved_by(moved_ + 4 * ulp(pieces_.largest_coordinate()));
     const auto inputs = inputs_to_change();
-    std::vector<std::vector<Piece>> made(inputs.size());
+    std::vector<std::vector<TrianglePiece>> made(inputs.size());
     std::vector<std::uint8_t> is_changed(inputs.size(), 0);
     const auto change = [&](std::size_t i) {
-        for (const Piece& piece : pieces_.of(inputs[i])) {
-            Piece own = piece;
+        for (const TrianglePiece& piece : pieces_.of(inputs[i])) {
+            TrianglePiece own = piece;
             for (SpacePointId& p : own.corners)
                 p = merged(p);
             if (own.corners != piece.corners) {
@@ -477,7 +478,7 @@ std::vector<std::int32_t> Snapping::apply() {
                 continue;
             }
             is_changed[i] = 1;
-            for (Corners t : divided(corners)) {
+            for (TriangleCorners t : divided(corners)) {
                 if (is_odd) std::swap(t[1], t[2]);
                 if (!has_equal_corners(t)) made[i].push_back({t, true});
             }

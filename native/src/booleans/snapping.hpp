@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "booleans/key_numbers.hpp"
 #include "booleans/nearness.hpp"
-#include "booleans/number_table.hpp"
-#include "booleans/pieces.hpp"
+#include "booleans/triangle_pieces.hpp"
 
 namespace realmodel::booleans {
 
@@ -29,12 +29,13 @@ public:
         double of_the_rest;  ///< where these have handed on vertices
     };
     /// @param pairs  facets that meet, in order
-    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
+    Snapping(TrianglePieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
              const Execution& execution);
 
     /// Folds triangles without area onto their longest edges: the corner across it becomes a vertex
     /// of all that have the edge, and the triangle is gone.
-    Snapping(Pieces& pieces, std::span<const Corners> flat, const Execution& execution);
+    Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat,
+             const Execution& execution);
 
     /// Whether vertices become one: then this is all that apply() does.
     bool merges() const { return !merged_.empty(); }
@@ -84,22 +85,22 @@ private:
     bool add_points(std::vector<OnEdge>&& found);
     void order_points();
     std::span<const SpacePointId> points_on(const Edge& edge) const;
-    const Place* place_of(const Corners& in_order) const;
-    bool is_divided(const Corners& in_order) const;
-    std::vector<Corners> divided(const Corners& in_order) const;
+    const Place* place_of(const TriangleCorners& in_order) const;
+    bool is_divided(const TriangleCorners& in_order) const;
+    std::vector<TriangleCorners> divided(const TriangleCorners& in_order) const;
     std::vector<std::int32_t> inputs_to_change();
 
-    Pieces& pieces_;
+    TrianglePieces& pieces_;
     Nearness wide_, narrow_;
     Execution execution_;
-    NumberTable<Corners> facets_;     ///< those of the pairs first
-    std::size_t first_ = 0;           ///< so many
-    NumberTable<Edge> edges_;         ///< of facets that are near others, and divided ones
-    std::vector<FacetNumbers> near_;  ///< facets that are near one another
-    std::vector<Place> places_;       ///< of facets
-    std::vector<Divided> on_edges_;   ///< of edges
-    std::vector<Merge> merged_;       ///< what becomes another vertex, in order
-    double moved_ = 0;                ///< how far at most
+    KeyNumbers<TriangleCorners> facets_;  ///< those of the pairs first
+    std::size_t first_ = 0;               ///< so many
+    KeyNumbers<Edge> edges_;              ///< of facets that are near others, and divided ones
+    std::vector<FacetNumbers> near_;      ///< facets that are near one another
+    std::vector<Place> places_;           ///< of facets
+    std::vector<Divided> on_edges_;       ///< of edges
+    std::vector<Merge> merged_;           ///< what becomes another vertex, in order
+    double moved_ = 0;                    ///< how far at most
 };
 
 }  // namespace realmodel::booleans

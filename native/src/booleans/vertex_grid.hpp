@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/vectors.hpp"
-#include "booleans/number_table.hpp"
+#include "booleans/key_numbers.hpp"
 
 namespace realmodel::booleans {
 
@@ -73,7 +73,7 @@ private:
 
     const SpacePoints& points_;
     double cell_;
-    NumberTable<Cell> cells_;
+    KeyNumbers<Cell> cells_;
     std::vector<std::int32_t> first_;
     std::vector<Entry> entries_;
     std::vector<bool> is_there_;

@@ -7,7 +7,7 @@ void join_hollows(const Shells& shells, DisjointSets& sets) {
     for (const auto& [inner, hollow] : shells) {
         if (hollow.sixfold_volume > 0) continue;
         const Shells::value_type* around = nullptr;
-        const auto rank = [&box = hollow.box](const Shell& shell) {
+        const auto rank = [&box = hollow.box](const PartShell& shell) {
             return std::pair(!shell.box.contains(box), shell.sixfold_volume);
         };
         for (const auto& other : shells) {

@@ -10,7 +10,7 @@
 namespace realmodel::cutting {
 
 /// One connected boundary of a part of a cell. Around a hollow it has a negative volume.
-struct Shell {
+struct PartShell {
     double sixfold_volume = 0;
     spatial::Box box;
 
@@ -30,7 +30,7 @@ struct Shell {
 };
 
 /// Those of a cell on one side of the cutter, by a set of what bounds it.
-using Shells = std::map<std::int32_t, Shell>;
+using Shells = std::map<std::int32_t, PartShell>;
 
 /// The wall of a hollow bounds the part around it, and what rounding turned inside out goes with
 /// the part beside it: joins the sets of shells without a positive volume with one that is larger,

@@ -462,7 +462,7 @@ void SurfaceParts::attach_hollows(Progress* progress) {
         visit_item(of_cell[0], [&](const auto& loops) { origin = at(loops[0][0]); });
         for (const Item& item : of_cell) {
             if (!is_of_half(item)) continue;
-            Shell& shell = shells.at(joined_->find(item.slot));
+            PartShell& shell = shells.at(joined_->find(item.slot));
             visit_item(item, [&](const auto& loops) {
                 for (const auto& loop : loops)
                     shell.add(loop, slots_[index(item.slot)].sign, origin, at);

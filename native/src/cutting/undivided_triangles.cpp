@@ -16,7 +16,7 @@ namespace realmodel::cutting {
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
-using Corners = std::array<Position, 3>;
+using TrianglePositions = std::array<Position, 3>;
 
 /// The sign of a volume where doubles tell it, 0 where they do not.
 int sure_side(const Position& a, const Position& b, const Position& c, const Position& d) {
@@ -24,7 +24,7 @@ int sure_side(const Position& a, const Position& b, const Position& c, const Pos
 }
 
 /// Whether all corners of one triangle are surely on one side of the plane of another.
-bool is_beside_plane(const Corners& one, const Corners& plane) {
+bool is_beside_plane(const TrianglePositions& one, const TrianglePositions& plane) {
     const int side = sure_side(plane[0], plane[1], plane[2], one[0]);
     return side != 0 && side == sure_side(plane[0], plane[1], plane[2], one[1]) &&
            side == sure_side(plane[0], plane[1], plane[2], one[2]);
@@ -32,7 +32,8 @@ bool is_beside_plane(const Corners& one, const Corners& plane) {
 
 /// Whether a plane at right angles to some axis surely parts two triangles.
 /// @param margin  of products with the axis, by its length
-bool does_part(const Position& axis, const Corners& one, const Corners& other, double margin) {
+bool does_part(const Position& axis, const TrianglePositions& one, const TrianglePositions& other,
+               double margin) {
     const auto [low, high] = std::minmax({dot(axis, one[0]), dot(axis, one[1]), dot(axis, one[2])});
     const auto [low_beyond, high_beyond] =
         std::minmax({dot(axis, other[0]), dot(axis, other[1]), dot(axis, other[2])});
@@ -42,9 +43,9 @@ bool does_part(const Position& axis, const Corners& one, const Corners& other, d
 
 /// Whether planes along the edges of two triangles part them surely (the theorem of separating
 /// axes; S. Gottschalk, M. C. Lin and D. Manocha, 1996).
-bool are_parted_along_edges(const Corners& one, const Corners& other) {
+bool are_parted_along_edges(const TrianglePositions& one, const TrianglePositions& other) {
     constexpr double kRounding = 0x1p-40;  // of lengths
-    Corners a{}, b{};
+    TrianglePositions a{}, b{};
     double size = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         a[i] = minus(one[i], one[0]);
@@ -69,7 +70,7 @@ bool are_parted_along_edges(const Corners& one, const Corners& other) {
 /// The same of triangles nearly in one plane that share their first corner: a line through it
 /// parts their edges there. Where any does, the middle one lies between two of these edges, or
 /// between one and what is opposite to another.
-bool are_parted_by_line(const Corners& one, const Corners& other) {
+bool are_parted_by_line(const TrianglePositions& one, const TrianglePositions& other) {
     constexpr double kRounding = 0x1p-40;
     const std::array<Position, 4> edges{unit(minus(one[1], one[0])), unit(minus(one[2], one[0])),
                                         unit(minus(other[1], one[0])),
@@ -93,8 +94,8 @@ bool are_parted_by_line(const Corners& one, const Corners& other) {
 }
 
 /// The same of triangles in any position that share their first corner and nothing else by name.
-bool are_parted_at_corner(const Corners& one, const Corners& other) {
-    const auto parts = [](const Corners& plane, const Corners& beside) {
+bool are_parted_at_corner(const TrianglePositions& one, const TrianglePositions& other) {
+    const auto parts = [](const TrianglePositions& plane, const TrianglePositions& beside) {
         const int side = sure_side(plane[0], plane[1], plane[2], beside[1]);
         return side != 0 && side == sure_side(plane[0], plane[1], plane[2], beside[2]);
     };
@@ -110,11 +111,11 @@ bool are_parted_at_corner(const Corners& one, const Corners& other) {
 }
 
 /// The same of triangles that share their first two corners.
-bool are_parted_at_edge(const Corners& one, const Corners& other) {
+bool are_parted_at_edge(const TrianglePositions& one, const TrianglePositions& other) {
     if (sure_side(one[0], one[1], one[2], other[2]) != 0) return true;
     // nearly in one plane: on both sides of the edge they do not fold back
     constexpr double kRounding = 0x1p-40;
-    const auto lengths = [](const Corners& t) {
+    const auto lengths = [](const TrianglePositions& t) {
         return length(minus(t[1], t[0])) * length(minus(t[2], t[0]));
     };
     const Position normal = polygon_normal(one), beyond = polygon_normal(other);
@@ -157,10 +158,10 @@ bool are_surely_apart(const CutterSurface& surface, const Triangle& one, const T
         ++shared;
     }
     const auto corners = [&surface](const Triangle& t) {
-        return Corners{surface.vertices[index(t[0])], surface.vertices[index(t[1])],
-                       surface.vertices[index(t[2])]};
+        return TrianglePositions{surface.vertices[index(t[0])], surface.vertices[index(t[1])],
+                                 surface.vertices[index(t[2])]};
     };
-    const Corners of_a = corners(a), of_b = corners(b);
+    const TrianglePositions of_a = corners(a), of_b = corners(b);
     if (shared == 0)
         return is_beside_plane(of_a, of_b) || is_beside_plane(of_b, of_a) ||
                are_parted_along_edges(of_a, of_b);

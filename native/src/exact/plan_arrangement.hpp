@@ -24,7 +24,7 @@ using VertexId = Id<struct VertexKind>;
 /// Index of a space vertex: an input position (x, y, z).
 using SpaceId = Id<struct SpaceVertex>;
 /// Index of a plane: the input triangle that spans it.
-using PlaneId = Id<struct Plane>;
+using PlaneId = Id<struct SpannedPlane>;
 /// Index of a plan line; ids from `kLocal` on belong to the LocalArrangement that made them.
 using LineId = Id<class Line>;
 /// Index of a plan point; ids below the number of plan vertices are those vertices.
@@ -211,7 +211,7 @@ struct PlaneFilter {
 
 /// A triangle that spans a plane: space vertices, counter-clockwise in plan, and the plan vertices
 /// that they stand on.
-struct Plane {
+struct SpannedPlane {
     std::array<SpaceId, 3> corner;
     std::array<VertexId, 3> plan;
 
@@ -335,7 +335,7 @@ public:
     const Point& point(PointId id) const { return points_[index(id)]; }
     /// What an edge pierces at the crossing of two lines.
     Piercing piercing(const Line& first, const Line& second) const;
-    const Plane& plane(PlaneId id) const { return planes_[index(id)]; }
+    const SpannedPlane& plane(PlaneId id) const { return planes_[index(id)]; }
     PlaneFilter plane_filter(PlaneId id) const {
         return plane_filters_.empty() ? filter_of(plane(id).corner) : plane_filters_[index(id)];
     }
@@ -370,7 +370,7 @@ public:
 private:
     Array<Point> points_;
     Array<SpaceVertex> space_;
-    Array<Plane> planes_;
+    Array<SpannedPlane> planes_;
     Array<PlaneFilter> plane_filters_;
     Array<Line> lines_;
     PlaneFilter filter_of(const std::array<SpaceId, 3>& corner) const;

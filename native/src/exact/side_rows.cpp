@@ -19,7 +19,7 @@ Sides completed(Sides known, std::size_t size, const Ask& ask) {
 
 }  // namespace
 
-RowFilter row_filter(const LocalArrangement& scope, DirectedLine line) {
+LineRowFilter line_row_filter(const LocalArrangement& scope, DirectedLine line) {
     const LineFilter f = scope.filter(line.id());
     const double sign = line.is_reversed() ? -1.0 : 1.0;
     const PlanReach& reach = scope.shared().reach();

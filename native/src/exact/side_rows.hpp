@@ -72,26 +72,27 @@ struct PointRow {
 /// A directed line as a (x - x0) + b (y - y0) + c, with one bound for its error at all points
 /// within reach of the input vertices. Most signs are certain far beyond it, and it costs nothing
 /// for each point.
-struct RowFilter {
+struct LineRowFilter {
     double a, b, c, x0, y0, bound;
 };
 
 /// That of any line: the bound is LineFilter::error_at at the farthest point.
-RowFilter row_filter(const LocalArrangement& scope, DirectedLine line);
+LineRowFilter line_row_filter(const LocalArrangement& scope, DirectedLine line);
 
 /// That of the line through two input vertices, whatever it is made of.
-inline RowFilter row_filter_between(const PlanReach& reach, const Point& from, const Point& to) {
+inline LineRowFilter row_filter_between(const PlanReach& reach, const Point& from,
+                                        const Point& to) {
     const double a = from.y - to.y, b = to.x - from.x;
     return {a,      b,
             0,      from.x,
             from.y, std::abs(a) * reach.edge_x + std::abs(b) * reach.edge_y + 2 * kTermUnderflow};
 }
 
-inline RowFilter row_filter(const LocalArrangement& scope, const DirectedEdge& edge) {
+inline LineRowFilter line_row_filter(const LocalArrangement& scope, const DirectedEdge& edge) {
     const PlanArrangement& shared = scope.shared();
     if (scope.is_vertex(edge.from) && scope.is_vertex(edge.to))
         return row_filter_between(shared.reach(), shared.point(edge.from), shared.point(edge.to));
-    return row_filter(scope, edge.line);
+    return line_row_filter(scope, edge.line);
 }
 
 /// Directed lines with their filters.
@@ -102,7 +103,7 @@ struct LineRow {
 
     void clear() { size = 0; }
     void add(const LocalArrangement& scope, const DirectedEdge& edge) {
-        const RowFilter f = row_filter(scope, edge);
+        const LineRowFilter f = line_row_filter(scope, edge);
         line[size] = edge.line;
         a[size] = f.a;
         b[size] = f.b;
@@ -164,7 +165,7 @@ Sides complete(LocalArrangement& scope, Sides known, const LineRow& lines, Point
 
 /// The same as LocalArrangement::side of all points of a row.
 inline Sides sides_of(LocalArrangement& scope, const DirectedEdge& edge, const PointRow& points) {
-    const RowFilter f = row_filter(scope, edge);
+    const LineRowFilter f = line_row_filter(scope, edge);
     const Pair a = pair_of(f.a), b = pair_of(f.b), c = pair_of(f.c);
     const Pair x0 = pair_of(f.x0), y0 = pair_of(f.y0);
     const Pair bound = pair_of(points.within ? f.bound : HUGE_VAL);

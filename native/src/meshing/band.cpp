@@ -54,9 +54,10 @@ std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment
 }
 
 /// All lattices as one mesh, numbered on from the border's points.
-void take_lattices(BandedMesh& out, std::vector<Lattice>&& lattices, std::vector<OpenEdge>& rim) {
+void take_lattices(BandedMesh& out, std::vector<TriangleLattice>&& lattices,
+                   std::vector<OpenEdge>& rim) {
     FlatMesh& mesh = out.mesh;
-    for (Lattice& lattice : lattices) {
+    for (TriangleLattice& lattice : lattices) {
         const auto points = static_cast<std::int32_t>(mesh.points.size());
         const auto triangles = static_cast<std::int32_t>(mesh.corners.size());
         mesh.points.insert(mesh.points.end(), lattice.points.begin(), lattice.points.end());
@@ -110,7 +111,7 @@ struct BandPoints {
 
 BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
                        std::span<const std::int32_t> loners, std::span<const OpenEdge> rim,
-                       std::span<const Lattice> lattices) {
+                       std::span<const TriangleLattice> lattices) {
     BandPoints band;
     band.in_band.assign(mesh.points.size(), -1);
     for (const auto* pieces : {&border.border, &border.inner}) {
@@ -123,7 +124,7 @@ BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
         band.add(mesh, loner);
     for (const OpenEdge& edge : rim)
         band.add(mesh, edge.from);
-    for (const Lattice& lattice : lattices)
+    for (const TriangleLattice& lattice : lattices)
         for (const std::int32_t loner : lattice.loners)
             band.add(mesh, loner);
     return band;
@@ -179,7 +180,7 @@ void lock_pieces(FlatMesh& mesh, std::int32_t first, std::span<const Segment> lo
 }  // namespace
 
 BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
-                     std::vector<Lattice>&& lattices, const Check& check) {
+                     std::vector<TriangleLattice>&& lattices, const Check& check) {
     BandedMesh out;
     FlatMesh& mesh = out.mesh;
     mesh.points = std::move(border.points);

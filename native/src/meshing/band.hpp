@@ -18,7 +18,7 @@ struct BandedMesh {
 
 /// Joins border and lattices; lattices are used up.
 BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
-                     std::vector<Lattice>&& lattices, const Check& check);
+                     std::vector<TriangleLattice>&& lattices, const Check& check);
 
 /// The same without lattices: the triangulation of the graph with its edges cut.
 FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,

@@ -202,7 +202,7 @@ public:
         blocked_ = too_near_.begin();
     }
 
-    Lattice fill() {
+    TriangleLattice fill() {
         Weaver weaver(lattice_.mesh, frame_.is_square, std::move(kept_off_));
         const auto finish_row = [&] {
             if (!row_.columns.empty()) weaver.add(std::move(row_));
@@ -302,7 +302,7 @@ private:
     std::vector<Interval> crossings_;  // from: x where the border crosses the row; to: not used
     std::vector<Interval> too_near_;
     std::vector<std::array<std::int64_t, 2>> kept_off_;
-    Lattice lattice_;
+    TriangleLattice lattice_;
     Row row_;
     std::vector<Interval>::const_iterator blocked_;
     double blocked_to_ = -kInfinity;  // in the row, up to what is reached so far
@@ -390,9 +390,9 @@ LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
     return frame;
 }
 
-Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
-                       const LatticeFrame& frame, SizeField& size, double edge_length,
-                       double clearance, const Check& check) {
+TriangleLattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
+                               const LatticeFrame& frame, SizeField& size, double edge_length,
+                               double clearance, const Check& check) {
     RowFiller filler(frame, size, edge_length, clearance * edge_length, check);
     filler.keep_off_border(border, loners);
     return filler.fill();

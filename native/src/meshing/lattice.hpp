@@ -20,7 +20,7 @@ struct LatticeFrame {
 /// Stretched by at most 1.5 % so that it meets that edge's ends and the opposite border.
 LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length);
 
-struct Lattice {
+struct TriangleLattice {
     std::vector<PlanPoint> points;  ///< row after row
     /// Triangles whose corners are all there; in `points` and among themselves. A triangle lies
     /// wholly inside the region.
@@ -34,8 +34,8 @@ struct Lattice {
 /// of 0.6 on, nothing of these can pass between the corners of a triangle; squares are left out
 /// where something might. Time and memory grow with the points made and the pieces, not with the
 /// bounding box.
-Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
-                       const LatticeFrame& frame, SizeField& size, double edge_length,
-                       double clearance, const Check& check);
+TriangleLattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
+                               const LatticeFrame& frame, SizeField& size, double edge_length,
+                               double clearance, const Check& check);
 
 }  // namespace realmodel::meshing

@@ -276,7 +276,7 @@ PlanarMesh collected(FlatMesh&& flat, const Check& check) {
 BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutting,
                                const Check& placing, const Check& joining) const {
     BorderPieces border;
-    std::vector<Lattice> lattices;
+    std::vector<TriangleLattice> lattices;
     if (request_.mesher == Mesher::kGrid) {
         const double side = size.largest();
         border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
@@ -290,8 +290,9 @@ BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutt
                                               size, length, kClearance, placing));
         }
     }
-    const bool has_lattice = std::any_of(lattices.begin(), lattices.end(),
-                                         [](const Lattice& l) { return !l.points.empty(); });
+    const bool has_lattice =
+        std::any_of(lattices.begin(), lattices.end(),
+                    [](const TriangleLattice& l) { return !l.points.empty(); });
     if (request_.mesher == Mesher::kFrontal && !has_lattice)
         return {mesh_without_lattice(graph_, border, finest, joining), 0, {}};
     return join_band(std::move(border), graph_.loners, std::move(lattices), joining);

@@ -224,14 +224,14 @@ private:
 
 /// A piece of a line; its size is its length where edges are as long as anywhere, and more where
 /// they are shorter.
-struct Piece {
+struct LinePiece {
     Point from, way;
     double size;
 };
 
-std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::int32_t>& line,
-                             meshing::SizeField& lengths) {
-    std::vector<Piece> pieces;
+std::vector<LinePiece> pieces_of(const ComplexView& model, const std::vector<std::int32_t>& line,
+                                 meshing::SizeField& lengths) {
+    std::vector<LinePiece> pieces;
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Point from = model.vertex(line[i - 1]);
         const Point way = minus(model.vertex(line[i]), from);
@@ -251,14 +251,14 @@ std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::in
 /// Points that divide a line into parts of about equal size, in order.
 std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int32_t>& line,
                             meshing::SizeField& lengths) {
-    const std::vector<Piece> pieces = pieces_of(model, line, lengths);
+    const std::vector<LinePiece> pieces = pieces_of(model, line, lengths);
     double size = 0;
-    for (const Piece& piece : pieces)
+    for (const LinePiece& piece : pieces)
         size += piece.size;
     const double parts = std::max(1.0, std::round(size / (kPartOfALine * lengths.largest())));
     std::vector<Point> found;
     double at = 0, number = line.front() == line.back() ? 0 : 1;
-    for (const Piece& piece : pieces) {
+    for (const LinePiece& piece : pieces) {
         for (; number < parts && at + piece.size >= number * size / parts; ++number)
             found.push_back(moved(
                 piece.from, std::max(0.0, number * size / parts - at) / piece.size, piece.way));

@@ -17,13 +17,13 @@ namespace realmodel::simulation {
 namespace {
 
 /// An edge of the top (even key) or bottom (odd key) of a block, kept at its lesser end.
-struct BorderEdge {
+struct BoundaryEdge {
     std::int32_t to, key, direction;
 };
 
 /// The edges of tops and bottoms of blocks, and of the top of the model (as of a block more).
-Buckets<BorderEdge> border_edges(const ComplexView& model, Progress* progress) {
-    return bucketize<BorderEdge>(model.vertex_count(), [&](const auto& put) {
+Buckets<BoundaryEdge> border_edges(const ComplexView& model, Progress* progress) {
+    return bucketize<BoundaryEdge>(model.vertex_count(), [&](const auto& put) {
         for (std::size_t f = 0; f < model.face_count(); ++f) {
             poll(progress, f);
             std::int32_t below = model.block(model.cell(f, 0)),
@@ -36,7 +36,7 @@ Buckets<BorderEdge> border_edges(const ComplexView& model, Progress* progress) {
             for (const std::int32_t to : loop) {
                 const auto add = [&, a = from](std::int32_t key) {
                     const auto [low, high] = unordered(a, to);
-                    put(index(low), BorderEdge{high, key, (a < to) == is_upward ? 1 : -1});
+                    put(index(low), BoundaryEdge{high, key, (a < to) == is_upward ? 1 : -1});
                 };
                 if (below >= 0) add(2 * below);
                 if (above >= 0) add(2 * above + 1);
@@ -58,14 +58,14 @@ std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress
     const auto edges = border_edges(model, progress);
     const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
     std::vector<VertexTrace> found;
-    std::vector<BorderEdge> own;
+    std::vector<BoundaryEdge> own;
     for (std::size_t v = 0; v < edges.size(); ++v) {
         poll(progress, v);
         own.assign(edges[v].begin(), edges[v].end());
-        std::sort(own.begin(), own.end(), [](const BorderEdge& a, const BorderEdge& b) {
+        std::sort(own.begin(), own.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
             return std::tie(a.to, a.key) < std::tie(b.to, b.key);
         });
-        BorderEdge open{-1, -1, 0};  // the last
+        BoundaryEdge open{-1, -1, 0};  // the last
         for (std::size_t i = 0, end = 0; i < own.size(); i = end) {
             std::int32_t sum = 0;
             for (; end < own.size() && own[end].to == own[i].to && own[end].key == own[i].key;

@@ -113,7 +113,7 @@ struct StacksHere {
     /// What an error or a warning names, as the whole has it.
     void name_as_in_whole(int& surface, std::vector<std::int64_t>& items,
                           const std::string& kind) const {
-        if (kind == "rocks_overlap") {
+        if (kind == "rocks_overlap" || kind == "base_not_below" || kind == "bad_region") {
             for (std::int64_t& rock : items)
                 rock = rocks[static_cast<std::size_t>(rock)];
         }

@@ -20,7 +20,7 @@ using meshing::PlanPoint;
 namespace {
 
 /// The directions of a plane and a point of it.
-struct Plane {
+struct PlaneFrame {
     Position origin, strike, dip;
 
     Position at(const PlanPoint& p) const {
@@ -36,7 +36,7 @@ struct Plane {
 };
 
 /// The plane through the middle of a surface, by areas, at right angles to its mean normal.
-std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
+std::optional<PlaneFrame> mean_plane(const cutting::CutterSurface& surface) {
     const auto at = [&](NodeId v) { return surface.vertices[index(v)]; };
     const Position first = at(surface.triangles[0][0]);  // exact where the plane is that of an axis
     Position normal{0, 0, 0}, total{0, 0, 0};
@@ -59,7 +59,7 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     Position middle = first;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] += total[k] / (3 * whole);
-    return Plane{middle, strike, cross(normal, strike)};
+    return PlaneFrame{middle, strike, cross(normal, strike)};
 }
 
 /// The triangles, by places in plan, that lie outside what directed edges have on their left;

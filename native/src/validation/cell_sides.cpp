@@ -8,7 +8,7 @@
 
 namespace realmodel::validation {
 
-CellSides::CellSides(const ComplexView& model, const Execution& execution) {
+SidesByCell::SidesByCell(const ComplexView& model, const Execution& execution) {
     const std::size_t sides = model.face_cells.size(), cells = model.cell_count();
     const auto produce = [&](std::size_t chunk, const auto& put) {
         for (std::size_t i = chunk * kItemsOfChunk, end = std::min(sides, i + kItemsOfChunk);

@@ -21,9 +21,9 @@ inline bool is_reversed(Side side) {
 }
 
 /// The sides of every cell, ascending.
-class CellSides {
+class SidesByCell {
 public:
-    CellSides(const ComplexView& model, const Execution& execution);
+    SidesByCell(const ComplexView& model, const Execution& execution);
 
     std::span<const Side> operator[](std::size_t cell) const { return sides_[cell]; }
 

@@ -65,8 +65,8 @@ Buckets<DirectedEdge> edge_buckets(const ComplexView& model, std::span<const Sid
 
 }  // namespace
 
-std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side> sides,
-                                 EdgeTable& table) {
+std::optional<EdgeCount> open_edge(const ComplexView& model, std::span<const Side> sides,
+                                   EdgeTable& table) {
     table.reset(count_edges(model, sides), model.cell_kind == CellKind::kBlocks);
     for (const Side side : sides) {
         along_loop(model, side, [&](std::int32_t from, std::int32_t to) { table.use(from, to); });
@@ -74,11 +74,11 @@ std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side>
     return table.closed() ? std::nullopt : table.open_edge();
 }
 
-std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
-                                               std::span<const Side> sides,
-                                               const Execution& execution) {
+std::optional<EdgeCount> open_edge_of_large_cell(const ComplexView& model,
+                                                 std::span<const Side> sides,
+                                                 const Execution& execution) {
     const auto buckets = edge_buckets(model, sides, execution);
-    std::vector<std::optional<EdgeUse>> open(buckets.size());
+    std::vector<std::optional<EdgeCount>> open(buckets.size());
     parallel_chunks(buckets.size(), execution, [&](std::size_t b) {
         EdgeTable table;
         table.reset(buckets[b].size(), model.cell_kind == CellKind::kBlocks);
@@ -86,7 +86,7 @@ std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
             table.use(from, to);
         if (!table.closed()) open[b] = table.open_edge();
     });
-    std::optional<EdgeUse> lowest;
+    std::optional<EdgeCount> lowest;
     for (const auto& e : open) {
         if (e && (!lowest || std::pair(e->low, e->high) < std::pair(lowest->low, lowest->high)))
             lowest = e;

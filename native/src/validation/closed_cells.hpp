@@ -12,12 +12,12 @@
 namespace realmodel::validation {
 
 /// An edge of a cell that is not closed there, or none. One thread, one table for all its cells.
-std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side> sides,
-                                 EdgeTable& table);
+std::optional<EdgeCount> open_edge(const ComplexView& model, std::span<const Side> sides,
+                                   EdgeTable& table);
 
 /// The same of a cell of many faces, on several threads.
-std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
-                                               std::span<const Side> sides,
-                                               const Execution& execution);
+std::optional<EdgeCount> open_edge_of_large_cell(const ComplexView& model,
+                                                 std::span<const Side> sides,
+                                                 const Execution& execution);
 
 }  // namespace realmodel::validation

@@ -11,7 +11,7 @@
 namespace realmodel::validation {
 
 /// An edge of a cell and how often its faces run along it: from `low` to `high`, and back.
-struct EdgeUse {
+struct EdgeCount {
     std::int32_t low = -1, high = -1;
     std::int64_t ahead = 0, back = 0;
 };
@@ -62,13 +62,13 @@ public:
     }
 
     /// Of the edges that were not, the one with the lowest vertices.
-    std::optional<EdgeUse> open_edge() const {
-        std::optional<EdgeUse> lowest;
+    std::optional<EdgeCount> open_edge() const {
+        std::optional<EdgeCount> lowest;
         std::uint64_t lowest_key = kFree;
         for (std::size_t i = 0; i <= mask_; ++i) {
             const auto [low, high] = unpacked_pair(keys_[i]);
-            const EdgeUse edge{low, high, static_cast<std::int64_t>(uses_[i] & kAheadMask),
-                               static_cast<std::int64_t>(uses_[i] >> 32)};
+            const EdgeCount edge{low, high, static_cast<std::int64_t>(uses_[i] & kAheadMask),
+                                 static_cast<std::int64_t>(uses_[i] >> 32)};
             const bool fine = edge.ahead == edge.back && (several_ || edge.ahead <= 1);
             if (fine || keys_[i] >= lowest_key) continue;
             lowest_key = keys_[i];

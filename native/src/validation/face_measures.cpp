@@ -14,7 +14,7 @@ namespace {
 using Position = std::array<double, 3>;
 
 /// A corner of each cell.
-std::vector<std::int32_t> cell_origins(const ComplexView& model, const CellSides& sides,
+std::vector<std::int32_t> cell_origins(const ComplexView& model, const SidesByCell& sides,
                                        const Execution& execution) {
     std::vector<std::int32_t> origin(model.cell_count());
     in_chunks(origin.size(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
@@ -36,7 +36,7 @@ Position coordinate_steps(const ComplexView& model) {
 
 }  // namespace
 
-FaceMeasures::FaceMeasures(const ComplexView& model, const CellSides& sides,
+FaceMeasures::FaceMeasures(const ComplexView& model, const SidesByCell& sides,
                            const Execution& execution)
     : measures_(model.face_count()) {
     const auto origin = cell_origins(model, sides, execution);

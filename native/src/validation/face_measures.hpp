@@ -23,7 +23,7 @@ struct FaceMeasure {
 /// should be, and its share in volumes.
 class FaceMeasures {
 public:
-    FaceMeasures(const ComplexView& model, const CellSides& sides, const Execution& execution);
+    FaceMeasures(const ComplexView& model, const SidesByCell& sides, const Execution& execution);
 
     const FaceMeasure& operator[](std::size_t face) const { return measures_[face]; }
     const FaceMeasure* data() const { return measures_.data(); }

@@ -46,7 +46,7 @@ struct CellFindings {
 /// Cell by cell: is it closed, and has it a volume.
 class CellTests {
 public:
-    CellTests(const ComplexView& model, const CellSides& sides, const FaceMeasures& faces,
+    CellTests(const ComplexView& model, const SidesByCell& sides, const FaceMeasures& faces,
               const Execution& execution)
         : model_(model),
           execution_(execution),
@@ -106,7 +106,7 @@ private:
         }
     }
 
-    void closed(std::size_t c, const std::optional<EdgeUse>& open, Findings& found) const {
+    void closed(std::size_t c, const std::optional<EdgeCount>& open, Findings& found) const {
         if (!open) return;
         found.fail([&] {
             const auto times = [](std::int64_t n) {
@@ -147,13 +147,13 @@ private:
 
     const ComplexView& model_;
     Execution execution_;
-    const CellSides& sides_;
+    const SidesByCell& sides_;
     const FaceMeasures& faces_;
     std::vector<double> volume_;
 };
 
 /// How far the volumes of the cells of a block may be off, each by the rounding of all its extent.
-double volume_rounding(const ComplexView& model, const CellSides& sides, std::size_t block) {
+double volume_rounding(const ComplexView& model, const SidesByCell& sides, std::size_t block) {
     double rounding = 0;
     for (std::size_t c = 0; c < model.cell_count(); ++c) {
         if (model.cell_block[c] == static_cast<std::int32_t>(block))
@@ -162,7 +162,7 @@ double volume_rounding(const ComplexView& model, const CellSides& sides, std::si
     return rounding;
 }
 
-Findings check_block_volumes(const ComplexView& model, const CellSides& sides,
+Findings check_block_volumes(const ComplexView& model, const SidesByCell& sides,
                              const std::vector<double>& cell_volume) {
     std::vector<Sum> sums(model.block_volume.size());
     for (std::size_t c = 0; c < cell_volume.size(); ++c)
@@ -219,7 +219,7 @@ std::vector<TestResult> check_topology(const ComplexView& model, const Execution
     add("loops", "faces", check_loops(model, execution));
     add("vertices", "vertices", check_vertices(model, execution));
     add("outside", "faces", check_outside(model, execution));
-    const CellSides sides(model, execution);
+    const SidesByCell sides(model, execution);
     FaceMeasures faces(model, sides, execution);
     add("faces", "faces", std::move(faces.findings()));
     report(0.5, "checking every cell");

@@ -24,7 +24,7 @@ struct Divided {
             found.push_back(pieces.of(static_cast<std::int32_t>(i)).size());
         return found;
     }
-    Pieces pieces;
+    TrianglePieces pieces;
     ExactDivision division;
 };
 
@@ -39,7 +39,7 @@ TEST(ExactDivision, PiecesAreDividedWhereTheyCross) {
     EXPECT_FALSE(found.division.meetings().empty());
     found.division.divide(found.division.meetings());
     for (std::int32_t input = 0; input < 2; ++input) {
-        for (const Piece& piece : found.pieces.of(input)) {
+        for (const TrianglePiece& piece : found.pieces.of(input)) {
             double low = 9, high = -9;
             for (const SpacePointId p : piece.corners) {
                 low = std::min(low, found.pieces.points.rounded(p)[0]);
@@ -58,14 +58,14 @@ TEST(ExactDivision, OverlapsInOnePlaneAreDividedAlike) {
         EXPECT_TRUE(found.division.is_in_doubles(met));
     }
     found.division.divide(found.division.meetings());
-    std::vector<std::array<Corners, 1>> of_p, of_q;
+    std::vector<std::array<TriangleCorners, 1>> of_p, of_q;
     for (std::int32_t input = 0; input < 4; ++input) {
-        for (const Piece& piece : found.pieces.of(input))
+        for (const TrianglePiece& piece : found.pieces.of(input))
             (input < 2 ? of_p : of_q).push_back({in_order(piece.corners).first});
     }
     std::sort(of_p.begin(), of_p.end());
     std::sort(of_q.begin(), of_q.end());
-    std::vector<std::array<Corners, 1>> both;
+    std::vector<std::array<TriangleCorners, 1>> both;
     std::ranges::set_intersection(of_p, of_q, std::back_inserter(both));
     EXPECT_FALSE(both.empty());
 }
@@ -91,7 +91,7 @@ TEST(ExactDivision, APointThatNoDoubleIsIsRoundedAndItsPiecesAreFresh) {
     Divided found(square({0, 0, 0}, 2), steep);
     found.division.divide(found.division.meetings());
     for (std::size_t i = 0; i < found.pieces.input_count(); ++i) {
-        for (const Piece& piece : found.pieces.of(static_cast<std::int32_t>(i))) {
+        for (const TrianglePiece& piece : found.pieces.of(static_cast<std::int32_t>(i))) {
             for (const SpacePointId p : piece.corners)
                 EXPECT_TRUE(found.pieces.points.is_double(p));
         }

@@ -20,7 +20,7 @@ struct Found {
         std::sort(sorted.begin() + 1, sorted.end());
         return sorted;
     }
-    Parts parts;
+    RefinedTriangles parts;
     FacetMesh mesh;
     FacetCells cells;
 };

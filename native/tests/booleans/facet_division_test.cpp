@@ -22,7 +22,7 @@ public:
     }
     SpacePointId inside(double s, double t) { return points.add(at(s, t)); }
     /// Twice the area in plan, which all axes see.
-    double area(const Corners& t) const {
+    double area(const TriangleCorners& t) const {
         const auto &a = points.rounded(t[0]), &b = points.rounded(t[1]), &c = points.rounded(t[2]);
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     }
@@ -42,18 +42,18 @@ private:
     std::vector<SpacePointId> corners_;
 };
 
-std::set<Edge> edges_in(const std::vector<Corners>& triangles) {
+std::set<Edge> edges_in(const std::vector<TriangleCorners>& triangles) {
     std::set<Edge> found;
-    for (const Corners& t : triangles) {
+    for (const TriangleCorners& t : triangles) {
         for (const Edge& edge : edges_of(t))
             found.insert(edge);
     }
     return found;
 }
 
-void expect_tiled(const Sample& sample, const std::vector<Corners>& triangles) {
+void expect_tiled(const Sample& sample, const std::vector<TriangleCorners>& triangles) {
     double sum = 0;
-    for (const Corners& t : triangles) {
+    for (const TriangleCorners& t : triangles) {
         EXPECT_GT(sample.area(t), 0);
         sum += sample.area(t);
     }
@@ -122,8 +122,8 @@ TEST(FacetDivision, WhicheverCornerIsFirst) {
         sample.facet.within.push_back(
             sample.inside(0.05 + 0.4 * uniform(), 0.05 + 0.4 * uniform()));
     sample.facet.on_edges[0] = {sample.inside(0.25, 0), sample.inside(0.5, 0)};
-    const auto sorted = [](std::vector<Corners> triangles) {
-        for (Corners& t : triangles)
+    const auto sorted = [](std::vector<TriangleCorners> triangles) {
+        for (TriangleCorners& t : triangles)
             std::sort(t.begin(), t.end());
         std::sort(triangles.begin(), triangles.end());
         return triangles;

@@ -8,7 +8,7 @@ namespace {
 
 /// Two triangles of P that share an edge, the first once more in Q, turned over, and twice in P.
 FacetMesh mesh() {
-    Parts parts;
+    RefinedTriangles parts;
     parts.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     parts.triangles = {{{0, 1, 2}, 0, 0}, {{1, 3, 2}, 1, 0}, {{1, 2, 0}, 2, 0}, {{0, 2, 1}, 0, 1}};
     return facets_of(parts, {1});

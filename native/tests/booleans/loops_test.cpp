@@ -14,12 +14,12 @@ struct FoundLoops {
         : parts(refine({p.view(), q.view()}, {1})),
           mesh(facets_of(parts, {1})),
           loops(find_loops(mesh, parts.vertices.size(), nullptr)) {}
-    Parts parts;
+    RefinedTriangles parts;
     FacetMesh mesh;
-    Loops loops;
+    IntersectionLoops loops;
 };
 
-TEST(Loops, TwoSquaresThatCrossMeetAlongAPath) {
+TEST(IntersectionLoops, TwoSquaresThatCrossMeetAlongAPath) {
     const FoundLoops found(square({0, 0, 0}, 2), upright({1, 0, -1}, 2));
     ASSERT_EQ(found.loops.loops.size(), 1U);
     const IntersectionLoop& loop = found.loops.loops[0];
@@ -32,7 +32,7 @@ TEST(Loops, TwoSquaresThatCrossMeetAlongAPath) {
               std::ssize(loop.vertices) - 1);
 }
 
-TEST(Loops, ACubeThroughASquareMakesOneThatCloses) {
+TEST(IntersectionLoops, ACubeThroughASquareMakesOneThatCloses) {
     const FoundLoops found(square({0, 0, 0}, 9), cube({1, 1, -1}, 2));
     ASSERT_EQ(found.loops.loops.size(), 1U);
     EXPECT_EQ(found.loops.loops[0].kind, LoopKind::kHardClosed);
@@ -40,12 +40,12 @@ TEST(Loops, ACubeThroughASquareMakesOneThatCloses) {
               std::ssize(found.loops.loops[0].vertices));
 }
 
-TEST(Loops, WithinAPartThatBothShareThereAreNone) {
+TEST(IntersectionLoops, WithinAPartThatBothShareThereAreNone) {
     const FoundLoops found(square({0, 0, 0}, 2), square({0, 0, 0}, 2));
     EXPECT_TRUE(found.loops.loops.empty());
 }
 
-TEST(Loops, SurfacesApartHaveNone) {
+TEST(IntersectionLoops, SurfacesApartHaveNone) {
     EXPECT_TRUE(FoundLoops(square({0, 0, 0}, 2), square({0, 0, 1}, 2)).loops.loops.empty());
 }
 

@@ -14,14 +14,14 @@ protected:
     SpacePointId at(double x, double y, double z) {
         return points.add(exact::SpacePosition{x, y, z});
     }
-    NearParts find(const Corners& other) const {
+    NearParts find(const TriangleCorners& other) const {
         NearParts found;
         nearness.find(pair_of(level, other), found);
         return found;
     }
 
     SpacePoints points;
-    Corners level{at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)};
+    TriangleCorners level{at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)};
     Nearness nearness{points, 64};
     double little = ulp(4.0);
 };
@@ -38,12 +38,12 @@ TEST_F(Near, AVertexIsOnAnEdgeOrOverTheInside) {
     EXPECT_EQ(beside.on_edges,
               (std::vector<std::pair<Edge, SpacePointId>>{{edge_of(level[0], level[1]), on}}));
     const NearParts above = find({over, at(1, 1, -9), at(1, 2, -9)});
-    EXPECT_EQ(above.over, (std::vector<std::pair<Corners, SpacePointId>>{{level, over}}));
+    EXPECT_EQ(above.over, (std::vector<std::pair<TriangleCorners, SpacePointId>>{{level, over}}));
     EXPECT_TRUE(above.same.empty());
 }
 
 TEST_F(Near, EdgesThatPassEachOtherHaveACrossing) {
-    const Corners across{at(2, -1, little), at(2, 1, little), at(2, 0, 9)};
+    const TriangleCorners across{at(2, -1, little), at(2, 1, little), at(2, 0, 9)};
     const NearParts found = find(across);
     ASSERT_EQ(found.crossings.size(), 1U);
     EXPECT_NEAR(found.crossings[0].at[0], 2, 1e-12);
@@ -62,7 +62,7 @@ TEST_F(Near, ShallowIsWhatPassesThePlaneByLittle) {
 }
 
 TEST_F(Near, APairIsTheSameInEitherOrder) {
-    const Corners other{at(7, 1, 1), at(1, 7, 1), at(1, 1, 7)};
+    const TriangleCorners other{at(7, 1, 1), at(1, 7, 1), at(1, 1, 7)};
     EXPECT_EQ(pair_of(other, level), pair_of({level[2], level[0], level[1]}, other));
 }
 

@@ -12,18 +12,18 @@ namespace {
 
 TEST(Refinement, WhatMeetsInOrderStaysAsItIs) {
     const Mesh p = square({0, 0, 0}, 2), q = square({0, 0, 1}, 2);
-    const Parts parts = refine({p.view(), q.view()}, {1});
+    const RefinedTriangles parts = refine({p.view(), q.view()}, {1});
     EXPECT_EQ(parts.vertices.size(), 8U);
     EXPECT_EQ(parts.triangles,
-              (std::vector<Part>{
+              (std::vector<RefinedTriangle>{
                   {{0, 1, 2}, 0, 0}, {{1, 3, 2}, 1, 0}, {{4, 5, 6}, 0, 1}, {{5, 7, 6}, 1, 1}}));
 }
 
 TEST(Refinement, PartsKnowWhatTheyArePartOfAndHowItTurns) {
     const Mesh p = square({0, 0, 0}, 2), q = upright({0.5, -1, -1}, 4);
-    const Parts parts = refine({p.view(), q.view()}, {1});
+    const RefinedTriangles parts = refine({p.view(), q.view()}, {1});
     double area = 0;
-    for (const Part& part : parts.triangles) {
+    for (const RefinedTriangle& part : parts.triangles) {
         if (part.source != 0) continue;
         EXPECT_LT(part.origin, 2);
         std::array<Position, 3> at;

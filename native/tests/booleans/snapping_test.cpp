@@ -20,14 +20,14 @@ struct Snapped {
     }
     std::vector<std::int32_t> apply() { return Snapping(pieces, pairs, kRadius, {1}).apply(); }
     bool has(std::int32_t input, SpacePointId vertex) const {
-        return std::ranges::any_of(pieces.of(input), [vertex](const Piece& piece) {
+        return std::ranges::any_of(pieces.of(input), [vertex](const TrianglePiece& piece) {
             return std::ranges::count(piece.corners, vertex) != 0;
         });
     }
 
     const Mesh p = square({0, 0, 0}, 4);
     const Mesh q;
-    Pieces pieces;
+    TrianglePieces pieces;
     std::vector<FacetPair> pairs;
 };
 
@@ -73,7 +73,7 @@ TEST(Snapping, EdgesThatPassEachOtherGetACommonVertex) {
 
 TEST(Snapping, ATriangleWithoutAreaIsFoldedOntoItsLongestEdge) {
     Snapped found({0, 0, 0, 4, 0, 0, 1, 0, 0});
-    const Corners flat = in_order(found.pieces.of(2)[0].corners).first;
+    const TriangleCorners flat = in_order(found.pieces.of(2)[0].corners).first;
     const SpacePointId middle = found.pieces.of(2)[0].corners[2];
     const auto changed = Snapping(found.pieces, std::span(&flat, 1), {1}).apply();
     EXPECT_EQ(changed, (std::vector<std::int32_t>{0, 2}));

@@ -25,8 +25,8 @@ TEST(VertexGrid, FindsTheNearestAcrossCellsAndTheFirstOfEquals) {
     EXPECT_EQ(grid.nearest({-1, 0, 0}, 1), kNone);
 }
 
-TEST(NumberTable, NumbersKeysInTheOrderInWhichTheyCome) {
-    NumberTable<std::array<std::int64_t, 3>> table;
+TEST(KeyNumbers, NumbersKeysInTheOrderInWhichTheyCome) {
+    KeyNumbers<std::array<std::int64_t, 3>> table;
     EXPECT_EQ(table.find({1, 2, 3}), -1);
     EXPECT_EQ(table.add({1, 2, 3}), 0);
     EXPECT_EQ(table.add({3, 2, 1}), 1);

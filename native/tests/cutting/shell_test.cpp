@@ -20,21 +20,21 @@ struct Corners {
 const std::vector<std::vector<NodeId>> kOutward{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-Shell shell_of(const Corners& at, int sign) {
-    Shell shell;
+PartShell shell_of(const Corners& at, int sign) {
+    PartShell shell;
     for (const auto& face : kOutward)
         shell.add(face, sign, at(0), at);
     return shell;
 }
 
-TEST(Shell, HasTheVolumeAndTheBoxOfItsPolygons) {
-    const Shell shell = shell_of({{1, 2, 3}, {3, 5, 4}}, 1);
+TEST(PartShell, HasTheVolumeAndTheBoxOfItsPolygons) {
+    const PartShell shell = shell_of({{1, 2, 3}, {3, 5, 4}}, 1);
     EXPECT_DOUBLE_EQ(shell.sixfold_volume, 6 * 6.0);
     EXPECT_EQ(shell.box.low, (Position{1, 2, 3}));
     EXPECT_EQ(shell.box.high, (Position{3, 5, 4}));
 }
 
-TEST(Shell, AroundAHollowItIsNegative) {
+TEST(PartShell, AroundAHollowItIsNegative) {
     EXPECT_DOUBLE_EQ(shell_of({{0, 0, 0}, {1, 1, 2}}, -1).sixfold_volume, -6 * 2.0);
 }
 

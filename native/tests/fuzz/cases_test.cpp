@@ -98,7 +98,7 @@ TEST(Repair, AsksWhetherARefusalIsJust) {
     EXPECT_TRUE(unjust(stack, InputError("double_valued", "", 0, {0, 1})));
     EXPECT_TRUE(unjust(stack, InputError("double_valued", "", 0, {0, 2})));
     EXPECT_TRUE(unjust(stack, InputError("vertical_triangle", "", 1, {0})));
-    EXPECT_TRUE(unjust(stack, InputError("base_not_below", "", 0)));
+    EXPECT_TRUE(unjust(stack, InputError("base_not_below", "", -1, {0})));
     EXPECT_TRUE(unjust(stack, InputError("not_finite", "", 0)));
     EXPECT_TRUE(unjust(stack, InputError("bad_index", "", 0)));
     EXPECT_FALSE(unjust(stack, InputError("rocks_overlap", "", -1, {0, 1})));
@@ -171,9 +171,17 @@ TEST(Examination, ACrashAndAHangAreDefects) {
             for (;;)
                 pause();
         },
-        0.2);
+        0.02);
     ASSERT_EQ(hung.size(), 1u);
     EXPECT_EQ(hung[0].kind, "hang");
+    const auto busy = in_a_process(
+        []() -> std::vector<Defect> {
+            for (volatile unsigned turns = 0;;)
+                turns = turns + 1;
+        },
+        1);
+    ASSERT_EQ(busy.size(), 1u);
+    EXPECT_EQ(busy[0].kind, "hang");
 }
 #endif
 

@@ -10,11 +10,13 @@
 #include "plans.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/column_filler.hpp"
+#include "simulation/column_repair.hpp"
 #include "simulation/dump.hpp"
 #include "simulation/element_quality.hpp"
 #include "simulation/narrow_strips.hpp"
 #include "simulation/post_columns.hpp"
 #include "simulation/post_levels.hpp"
+#include "simulation/vertical_faults.hpp"
 
 namespace realmodel::simulation {
 namespace {
@@ -190,6 +192,29 @@ TEST(ElementQualityTest, ThinElementsUnderASteepTopAreSkewed) {
         EXPECT_EQ(std::abs(removal.height - removal.into), 1);
     const auto moves = quality.steep(std::vector<std::uint8_t>(at.plan.nodes(), 1));
     EXPECT_FALSE(moves.empty());
+}
+
+TEST(ColumnRepairTest, ColumnsInOrderAreDividedAsAsked) {
+    const Fixture at({{0, 0}, {4, 4}});
+    const LayeredMesh mesh =
+        repaired_columns(at.input, VerticalFaults(at.model.view, at.lines.steps),
+                         {.minimum_thickness = 0.5, .layers = {2}}, nullptr);
+    EXPECT_EQ(mesh.prisms.corners.size(), 2 * at.plan.triangles());
+    EXPECT_EQ(mesh.volumes, (std::vector<double>{240}));
+    EXPECT_EQ(mesh.skewed.faces, 0u);
+}
+
+TEST(ColumnRepairTest, LevelsUnderASteepTopAreMergedUntilFewerFacesAreSkewed) {
+    const Fixture at({{0, 60}, {0.6, 60.6}});
+    const Layering layering{.minimum_thickness = 0.1, .layers = {2}};
+    const PostLevels levels(at.input, layering);
+    const FilledColumns columns = fill_columns(at.input, levels, nullptr);
+    const auto before =
+        ElementQuality(at.plan, levels, columns.fronts, 0.1, nullptr).skewed(false).faces;
+    const LayeredMesh mesh = repaired_columns(
+        at.input, VerticalFaults(at.model.view, at.lines.steps), layering, nullptr);
+    EXPECT_LT(mesh.skewed.faces, before);
+    EXPECT_LT(mesh.prisms.corners.size(), columns.mesh.prisms.corners.size());
 }
 
 TEST(NarrowStripsTest, AreasOfOneElementFarFromOthersAreWide) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "complex_checks.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -114,11 +116,22 @@ TEST_P(RockMassesOf, ThatOverlapAreRefusedWithBoth) {
 TEST(RockMasses, NameTheirSurfacesThroughAll) {
     try {
         build_rocks({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
+                     {{level(1, 2, 0, 1, 0), level(1, 2, 0, 1, 1)}, std::nan("")}});
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(e.kind, "not_finite");
+        EXPECT_EQ(e.surface, 2);
+    }
+}
+
+TEST(RockMasses, AreNamedByNumberWhereTheirBaseIsTooHigh) {
+    try {
+        build_rocks({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
                      {{level(1, 2, 0, 1, 0), level(1, 2, 0, 1, 1)}, 0.5}});
         FAIL();
     } catch (const InputError& e) {
         EXPECT_EQ(e.kind, "base_not_below");
-        EXPECT_EQ(e.surface, 2);
+        EXPECT_EQ(e.items, (std::vector<std::int64_t>{1}));
     }
 }
 

@@ -186,6 +186,22 @@ TEST(Stack, TheRegionClips) {
     }
 }
 
+TEST(Stack, ARegionWhoseTrianglesOverlapIsRefused) {
+    const std::vector<double> corners{0, 0, 1, 0.4, 0, 1, 0.6, 0.8};
+    const std::vector<std::int32_t> triangles{0, 1, 3, 0, 3, 2, 1, 3, 2};
+    StackInput input;
+    const auto lower = flat(0), upper = flat(1);
+    input.surfaces = {lower.view(), upper.view()};
+    input.region = TriangleView{corners, triangles};
+    try {
+        build_stack(input, {1, nullptr});
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(e.kind, "bad_region");
+        EXPECT_EQ(e.items, (std::vector<std::int64_t>{0}));
+    }
+}
+
 TEST(Stack, TheBaseCarriesBlockZero) {
     const auto c = build({flat(0), flat(1)}, -2.0);
     expect_valid(c);

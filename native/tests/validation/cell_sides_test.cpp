@@ -12,10 +12,10 @@ std::vector<Side> of(std::span<const Side> sides) {
     return {sides.begin(), sides.end()};
 }
 
-TEST(CellSides, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
+TEST(SidesByCell, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
     auto cubes = two_cubes();
     const ComplexView model = cubes.view();
-    const CellSides sides(model, {2, nullptr});
+    const SidesByCell sides(model, {2, nullptr});
     EXPECT_EQ(of(sides[0]), (std::vector<Side>{0, 2, 6, 8, 10, 12}));
     EXPECT_EQ(of(sides[1]), (std::vector<Side>{3, 4, 14, 16, 18, 20}));
     EXPECT_EQ(face_of(sides[1][0]), 1U);
@@ -24,17 +24,17 @@ TEST(CellSides, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
     EXPECT_EQ(sides.end(), sides[1].data() + 6);
 }
 
-TEST(CellSides, ACellWithoutFacesHasNone) {
+TEST(SidesByCell, ACellWithoutFacesHasNone) {
     auto cubes = two_cubes();
     cubes.block.push_back(0);
-    EXPECT_TRUE(CellSides(cubes.view(), {1, nullptr})[2].empty());
+    EXPECT_TRUE(SidesByCell(cubes.view(), {1, nullptr})[2].empty());
 }
 
-TEST(CellSides, ManyFacesInSeveralChunksStayInOrder) {
+TEST(SidesByCell, ManyFacesInSeveralChunksStayInOrder) {
     auto cubes = two_cubes();
     for (int i = 0; i < 10000; ++i)
         cubes.add_face({0, 1, 2}, i % 2, 1 - i % 2, 0);
-    const CellSides sides(cubes.view(), {3, nullptr});
+    const SidesByCell sides(cubes.view(), {3, nullptr});
     for (const std::size_t cell : {0U, 1U}) {
         EXPECT_EQ(sides[cell].size(), 10006U);
         EXPECT_TRUE(std::ranges::is_sorted(sides[cell]));

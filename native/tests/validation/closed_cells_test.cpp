@@ -15,9 +15,9 @@ using Edge = std::array<std::int64_t, 4>;  // its vertices, how often ahead and 
 /// The open edge of a cell, the same whether it is taken for small or for large; none: all 0.
 Edge open_edge_of(OwnedComplex& complex, std::size_t cell = 0) {
     const ComplexView model = complex.view();
-    const CellSides sides(model, {1, nullptr});
+    const SidesByCell sides(model, {1, nullptr});
     EdgeTable table;
-    const auto numbers = [](const std::optional<EdgeUse>& use) {
+    const auto numbers = [](const std::optional<EdgeCount>& use) {
         return use ? Edge{use->low, use->high, use->ahead, use->back} : Edge{};
     };
     const Edge small = numbers(open_edge(model, sides[cell], table));

@@ -21,6 +21,14 @@ def of_dips(scene, rock, names, places):
     return z
 
 
+def over_the_ground(scene, rock, places):
+    """(N,) the heights of places (N, 3) on the ground of a rock mass, not below its youngest surface as it is
+    built, whose triangles may be larger than those of the data."""
+    youngest = [surface.name for row, surface in settings.surface_rows(scene) if row.name == rock][-1:]
+    z = np.array(places, np.float64)[:, 2]
+    return np.fmax(z, _built(scene, rock, youngest[0], places)) if youngest else z
+
+
 def extent(scene):
     """The size of all data, or of the model."""
     if len(scene.realmodel.results):

@@ -171,7 +171,9 @@ def _maps(scene):
         draped = map_settings.of_rock(rock)
         if draped is None or not len(draped.triangles):
             continue
-        places = draped.vertices - project_settings.model_origin(scene) + lift
+        places = np.array(draped.vertices, np.float64)
+        places[:, 2] = heights.over_the_ground(scene, rock.name, places)
+        places += lift - project_settings.model_origin(scene)
         corners = draped.triangles.ravel().astype(np.int32)
         offsets = np.arange(0, len(corners) + 1, 3, dtype=np.int32)
         shape = PolygonMesh(places.astype(np.float32), offsets, corners)

@@ -19,7 +19,9 @@ def of_model(model):
         for surface in rock.surfaces:
             vertices, triangles = model.surface(number)
             heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
-            whole = plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
+            whole = 0.0
+            if surface.interpolated or rock.region is None:  # each sheet goes on beyond its faults
+                whole = max(plan_area(vertices, each) for each in model.sheet_triangles(number))
             figures = {
                 "points": len(surface.points) if surface.points is not None else None,
                 "triangles": len(triangles),
@@ -58,8 +60,8 @@ def read(row):
 
 def _surviving_areas(model):
     """(S,) float64: the area in plan of the faces that lie on each surface."""
-    on = model.face_surface >= 0
-    return np.bincount(model.face_surface[on], plan_areas(model)[on], len(model.surface_names))
+    on = np.flatnonzero(model.face_surface >= 0)
+    return np.bincount(model.face_surface[on], plan_areas(model, on), len(model.surface_names))
 
 
 def plan_area(vertices, triangles):

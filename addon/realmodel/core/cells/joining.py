@@ -75,7 +75,7 @@ def _refused(
 ) -> InputRefused | BuildFailed:
     """The refusal for a native InputError of build_parts, which counts structures after all surfaces."""
     surfaces = _first_surfaces(inputs)[-1]
-    if error.kind in ("rocks_overlap", "base_not_below") or 0 <= error.surface < surfaces:
+    if error.kind in ("rocks_overlap", "base_not_below", "bad_region") or 0 <= error.surface < surfaces:
         return refused_stack(error, inputs)
     error.surface -= surfaces
     return refused_structure(error, structures.faults, structures.bodies)

@@ -28,14 +28,15 @@ def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused |
             advice="rock masses may share borders but no area: correct the regions",
             place=place,
         )
-    entry, number = _surface_at(inputs, error.surface)
-    if entry is None and error.kind == "base_not_below":  # of a floor or a lid, which are no surfaces
-        own = [each for each in inputs if f"base_elevation {each.rock.base_elevation or 0:f} " in str(error)]
-        entry = next(iter(own), None)
-    if entry is None:
-        return InputRefused(str(error), place=place)
-    rock = entry.rock
+    if error.kind == "bad_region":
+        rock = inputs[int(error.items[0])].rock
+        file, line = rock.shape_source("region")
+        return InputRefused(
+            str(error), file=file, line=line, item=rock.item, advice="a region covers each position once"
+        )
     if error.kind == "base_not_below":
+        entry = inputs[int(error.items[0])]
+        rock = entry.rock
         file, line = rock.place_of("base_elevation")
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
         lowest = f", whose lowest point is {place_text(place)}" if place else ""
@@ -43,6 +44,10 @@ def refused_stack(error: NativeError, inputs: list[RockInput]) -> InputRefused |
         if place and (beyond := _beyond_its_points(entry, place[2])):
             lower = f"{lower}; {beyond}"
         return InputRefused(what + lowest, file=file, line=line, item=rock.item, advice=lower, place=place)
+    entry, number = _surface_at(inputs, error.surface)
+    if entry is None:
+        return InputRefused(str(error), place=place)
+    rock = entry.rock
     surface = rock.surfaces[number]
     file, line = surface.shape_source()
     items = tuple(int(i) for i in error.items)

@@ -41,7 +41,7 @@ class Operand:
 
 
 @dataclass(eq=False)
-class Source:
+class OperandElements:
     """The elements of a mesh of parts that come from one operand.
 
     vertices: (N,) vertices of the mesh that lie on the operand; vertex_of: (N, 3), the vertices of the
@@ -73,7 +73,7 @@ class MeshParts:
     corners: np.ndarray
     edges: np.ndarray
     corner_edges: np.ndarray
-    sources: tuple[Source, Source]
+    sources: tuple[OperandElements, OperandElements]
     meeting: np.ndarray
 
     def shape(self, coordinates: np.ndarray) -> PolygonMesh:
@@ -181,13 +181,13 @@ def mesh_of_parts(
     offsets = offsets.astype(np.int32)
     edges, edge_of_corner = native_module().polygon_edges(offsets, corners, len(used))
 
-    def source_of(number: int, operand: Operand) -> Source:
+    def source_of(number: int, operand: Operand) -> OperandElements:
         at = np.flatnonzero(source[row] == number)
         vertices, first_at = np.unique(corners[at], return_index=True)
         known = at[corner_edge[at] >= 0]
         own_edges, first_edge = np.unique(edge_of_corner[known], return_index=True)
         own_faces = np.flatnonzero(source[faces] == number)
-        return Source(
+        return OperandElements(
             vertices,
             operand.corner_vertices[corner_of[at[first_at]]],
             corner_weights[at[first_at]],

@@ -15,7 +15,7 @@ ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
 
 
 @dataclass(frozen=True, eq=False)
-class Polygon:
+class FilledRings:
     """Closed rings (N, 2); holes turn the other way. fill, stroke: None for none."""
 
     rings: list[np.ndarray]
@@ -54,7 +54,7 @@ class Text:
     layer: str
 
 
-DrawingItem = Polygon | Line | Dots | Text
+DrawingItem = FilledRings | Line | Dots | Text
 
 
 @dataclass(eq=False)
@@ -84,7 +84,7 @@ class Drawing:
         """rings: (N, 2), or a list of them. fill, stroke: colors, None for none; width: of the stroke."""
         single = np.ndim(rings[0][0]) == 0
         arrays = [np.asarray(ring, np.float64) for ring in ([rings] if single else rings)]
-        self.items.append(Polygon(arrays, fill, stroke, width, layer))
+        self.items.append(FilledRings(arrays, fill, stroke, width, layer))
 
     def rectangle(
         self,

@@ -15,7 +15,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .drawing import ANCHORS, BLACK, Color, Drawing, DrawingItem, Line, Polygon, Text
+from .drawing import ANCHORS, BLACK, Color, Drawing, DrawingItem, FilledRings, Line, Text
 
 _LONGEST_NAME = 31
 _ZERO_LAYER = "0"
@@ -64,7 +64,7 @@ class _Pairs:
         return [(10, float(at[0])), (20, float(at[1])), (30, 0.0)]
 
     def item(self, item: DrawingItem, layer: str) -> None:
-        if isinstance(item, Polygon):
+        if isinstance(item, FilledRings):
             for ring in item.rings:
                 self.polyline(ring, layer, item.fill or item.stroke or BLACK, closed=True)
         elif isinstance(item, Line):
@@ -114,7 +114,7 @@ def _layer_color(drawing: Drawing, layer: str) -> int:
     for item in drawing.items:
         if item.layer == layer:
             return color_number(
-                item.fill or item.stroke or BLACK if isinstance(item, Polygon) else item.color
+                item.fill or item.stroke or BLACK if isinstance(item, FilledRings) else item.color
             )
     return color_number(BLACK)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.algebra import ranks_in_runs
-from .drawing import ANCHORS, WHITE, Color, Dots, Drawing, DrawingItem, Line, Polygon, Text
+from .drawing import ANCHORS, WHITE, Color, Dots, Drawing, DrawingItem, FilledRings, Line, Text
 from .glyphs import text_rings, text_width
 
 _SUBROWS = 5  # of a row of pixels, in which the covered part is exact
@@ -48,7 +48,7 @@ def _rgba(color: Color) -> np.ndarray:
 
 def item_shapes(item: DrawingItem) -> Iterator[tuple[list[np.ndarray], Color]]:
     """The shapes of an item, as (rings, color): rings (N, 2) in points."""
-    if isinstance(item, Polygon):
+    if isinstance(item, FilledRings):
         if item.fill is not None:
             yield item.rings, item.fill
         if item.stroke is not None:

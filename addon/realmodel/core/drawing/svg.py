@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from .drawing import Color, Drawing, DrawingItem, Line, Polygon, Text
+from .drawing import Color, Drawing, DrawingItem, FilledRings, Line, Text
 
 
 def write_svg(drawing: Drawing, file: BinaryIO) -> None:
@@ -29,7 +29,7 @@ def write_svg(drawing: Drawing, file: BinaryIO) -> None:
 
 
 def _elements(item: DrawingItem, height: float) -> list[str]:
-    if isinstance(item, Polygon):
+    if isinstance(item, FilledRings):
         path = " ".join(f"M{_places(ring, height)}Z" for ring in item.rings)
         stroke = f' stroke-width="{item.width:g}"' if item.stroke else ""
         colors = f"{_color('fill', item.fill)}{_color('stroke', item.stroke)}"

@@ -15,7 +15,7 @@ from ..fields import FieldDraws
 from ..fields.series_field import SeriesField
 from ..heights.draws import Draw
 from ..heights.sheet_draws import SeriesDraw
-from ..heights.turning_bands import Frame, Noise
+from ..heights.turning_bands import FieldArea, Noise
 from ..model.model import Model
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces
@@ -47,7 +47,7 @@ class Realizer:
         places = [each for each in places if len(each)] or [np.zeros((1, 2))]
         low = np.min([each.min(axis=0) for each in places], axis=0)
         high = np.max([each.max(axis=0) for each in places], axis=0)
-        self._frame = Frame(low, high)
+        self._area = FieldArea(low, high)
 
     def realization(
         self,
@@ -120,7 +120,7 @@ class Realizer:
                 noise, of_series = own, SeriesDraw([own]) if beside else None
             given = None if self.model.structures.is_divided else entry.interpolations[each]
             known = self._known.setdefault((rock, each), {})
-            draws.append(Draw(self._frame, own, known, given, of_series))
+            draws.append(Draw(self._area, own, known, given, of_series))
         return replace(
             entry,
             surfaces=[

@@ -29,7 +29,7 @@ Step = Callable[[float], None]
 
 
 @dataclass(frozen=True)
-class MeshFormat:
+class SimulationFormat:
     """A format of meshes for simulation.
 
     write(mesh, path, outputs, step, unit) writes it by outputs.file or outputs.folder. polyhedra: whether it
@@ -81,23 +81,23 @@ def _polyhedral(mesh: Mesh) -> PolyhedralMesh:
     return mesh if isinstance(mesh, PolyhedralMesh) else ElementFaces(mesh).polyhedral()
 
 
-MESH_FORMATS: dict[str, MeshFormat] = {
+MESH_FORMATS: dict[str, SimulationFormat] = {
     known.ending: known
     for known in (
-        MeshFormat(".vtu", "VTK Unstructured Grid, OpenGeoSys", _file(_write_vtu), True),
-        MeshFormat(".foam", "OpenFOAM Case", _write_openfoam, True, POLY_MESH),
-        MeshFormat(".msh", "Gmsh", _file(write_msh)),
-        MeshFormat(".inp", "Abaqus, CalculiX", _file(write_inp)),
-        MeshFormat(".cdb", "ANSYS", _file(write_cdb)),
-        MeshFormat(".exo", "Exodus II", _file(write_exodus), True),
-        MeshFormat(".f3grid", "FLAC3D", _file(write_f3grid)),
-        MeshFormat(".disv", "MODFLOW 6 DISV", _modflow(write_disv, lambda mesh: mesh)),
-        MeshFormat(".disu", "MODFLOW 6 DISU", _modflow(write_disu, _polyhedral), True),
+        SimulationFormat(".vtu", "VTK Unstructured Grid, OpenGeoSys", _file(_write_vtu), True),
+        SimulationFormat(".foam", "OpenFOAM Case", _write_openfoam, True, POLY_MESH),
+        SimulationFormat(".msh", "Gmsh", _file(write_msh)),
+        SimulationFormat(".inp", "Abaqus, CalculiX", _file(write_inp)),
+        SimulationFormat(".cdb", "ANSYS", _file(write_cdb)),
+        SimulationFormat(".exo", "Exodus II", _file(write_exodus), True),
+        SimulationFormat(".f3grid", "FLAC3D", _file(write_f3grid)),
+        SimulationFormat(".disv", "MODFLOW 6 DISV", _modflow(write_disv, lambda mesh: mesh)),
+        SimulationFormat(".disu", "MODFLOW 6 DISU", _modflow(write_disu, _polyhedral), True),
     )
 }
 
 
-def mesh_format_for(path: str | Path) -> MeshFormat:
+def mesh_format_for(path: str | Path) -> SimulationFormat:
     """The format that this ending says. Raises UsageError."""
     return by_ending(path, MESH_FORMATS, "meshes are not written as {}")
 

@@ -49,7 +49,7 @@ class Trial:
 
     candidate: Candidate
     settings: dict
-    known: from_neighbours.Structure | None
+    known: from_neighbours.KrigingStructure | None
 
     def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
         task = replace(task, points=points, nodes=nodes, settings=self.settings, bounds=None)

@@ -61,7 +61,7 @@ def interpolated(method: str, task: Task) -> Result:
         result = run_method(method, replace(task, bounds=bounds.some(kept)))
         return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, given.left_out)])
     run = runner(method, task)
-    give = Heights(replace(free, left_out=False), run, METHODS[method].leaves_one_out)
+    give = MethodHeights(replace(free, left_out=False), run, METHODS[method].leaves_one_out)
     active = active_bounds(task.work, task.points, given, give)
     result = run(replace(free, points=np.vstack([task.points, active])))
     if task.left_out:  # bounds are not left out
@@ -72,7 +72,7 @@ def interpolated(method: str, task: Task) -> Result:
 
 
 @dataclass(frozen=True)
-class Heights:
+class MethodHeights:
     """Heights of a method from any points. run: the method; leaves_one_out: it estimates each point from the
     others in one run."""
 
@@ -177,7 +177,7 @@ def contradiction_warnings(bounds: Bounds, left_out: np.ndarray) -> list[str]:
     ]
 
 
-def active_bounds(work: Work, points: np.ndarray, bounds: Consistent, give: Heights) -> np.ndarray:
+def active_bounds(work: Work, points: np.ndarray, bounds: Consistent, give: MethodHeights) -> np.ndarray:
     """(A, 3) the bounds that support the surface, as points.
 
     In rounds: bounds beyond which the surface lies become points, the worst of each cell of a grid twice as

@@ -17,9 +17,9 @@ from ..readers.tables.observations import Bounds
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights
-from .bounded import Heights, active_bounds, consistent, holds_bounds, runner
+from .bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
 from .companions import Companions
-from .from_neighbours import Structure, dip_use, structure, thinned
+from .from_neighbours import KrigingStructure, dip_use, structure, thinned
 from .interpolation import Result, Task, run_method
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
@@ -27,7 +27,7 @@ from .run import with_dips
 from .sheet_draws import SeriesDraw, SheetField, drawn_companions, drawn_dips, nugget_noise
 from .surface_reference import heights_of
 from .true_thickness import lifted, measured
-from .turning_bands import Frame, GaussianField, Noise
+from .turning_bands import FieldArea, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
 
@@ -46,7 +46,7 @@ class _Known:
     variogram: Variogram | None
     counts: np.ndarray
     thickness: np.ndarray | None = None
-    joint: Structure | None = None
+    joint: KrigingStructure | None = None
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Draw:
     realizations of the surface. given: the interpolated heights, where no fault displaces the surface.
     series: what the sheets of its series share in this realization, where it is in one."""
 
-    frame: Frame
+    area: FieldArea
     noise: Noise
     known: dict[bytes, _Known]
     given: Interpolation | None = None
@@ -96,9 +96,9 @@ class Draw:
         anisotropy = own.settings.get("anisotropy")
         if own.joint is None or companions is None:
             assert own.variogram is not None
-            return GaussianField(own.variogram, anisotropy, self.frame, self.noise)
+            return GaussianField(own.variogram, anisotropy, self.area, self.noise)
         assert self.series is not None
-        return self.series.of(companions.own, self.frame, own.joint, anisotropy)
+        return self.series.of(companions.own, self.area, own.joint, anisotropy)
 
     def _drawn(self, free: Task, field: GaussianField | SheetField, own: _Known) -> Task:
         """The task of a surface with the slopes of S where it has dips, and with S of the other sheets; its
@@ -139,7 +139,7 @@ class Draw:
             error = field_at(each.nodes) - run_drawn(replace(drawn, points=data, nodes=each.nodes)).z
             return Result(run(each).z + error)
 
-        return active_bounds(free.work, free.points, given, Heights(free, realized, False))
+        return active_bounds(free.work, free.points, given, MethodHeights(free, realized, False))
 
     def _known(self, method: str, task: Task) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on

@@ -76,7 +76,7 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 
 
 @dataclass(frozen=True)
-class Structure:
+class KrigingStructure:
     """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
     that are kriged together."""
 
@@ -87,7 +87,7 @@ class Structure:
     sheets: SheetModel | None = None
 
 
-def structure(task: Task, are_apart: bool = False) -> Structure:
+def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
     they may be in a file."""
     if task.companions is not None:
@@ -97,7 +97,7 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     if given is not None:
         variogram = Variogram.from_settings(given)
         neighbours = DEFAULT_NEIGHBOURS if asked is None else asked
-        return Structure(variogram, neighbours, dip_use(task, variogram, neighbours))
+        return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours))
     anisotropy = settings["anisotropy"]
     along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
     has_bounds = task.bounds is not None and len(task.bounds) > 0
@@ -119,7 +119,7 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     variogram = Variogram.from_fit(fitted, anisotropy is None).with_least_nugget(task.error)
     has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
     warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
-    return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+    return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
 
 
 def thinned(method: str, task: Task, points: np.ndarray) -> np.ndarray:
@@ -167,7 +167,7 @@ def _fitted_alike(task: Task, along: tuple[float, float] | None) -> dict | None:
     return found[task.alike.own] if found else None
 
 
-def _joint_structure(task: Task, companions: Companions) -> Structure:
+def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
     """structure of the sheets of a series: the likeliest one. Where a part of many points has shown it, what
     sheets lie apart is estimated from all data."""
     points, dips = companions.data(task.points, task.dips)
@@ -195,18 +195,18 @@ def _joint_structure(task: Task, companions: Companions) -> Structure:
 
 def _of_model(
     task: Task, variogram: Variogram, model: SheetModel, points: Sequence[np.ndarray], count: int
-) -> Structure:
+) -> KrigingStructure:
     """The structure of sheets with a variogram and a model. count: of all data."""
     together = replace(task, points=pooled(points, model.offsets))
     asked, fitted = task.settings["neighbours"], task.settings["variogram"] is None
     neighbours = (
         (_neighbours_of_fitted(together) if fitted else DEFAULT_NEIGHBOURS) if asked is None else asked
     )
-    found = Structure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
+    found = KrigingStructure(variogram, neighbours, dip_use(together, variogram, neighbours), sheets=model)
     return _of_all_sheets(found, task, len(points), count)
 
 
-def _of_all_sheets(found: Structure, task: Task, sheets: int, count: int) -> Structure:
+def _of_all_sheets(found: KrigingStructure, task: Task, sheets: int, count: int) -> KrigingStructure:
     """With as many neighbors as sheets that are kriged together have. count: of all data."""
     if task.settings["neighbours"] is not None:
         return found
@@ -216,7 +216,7 @@ def _of_all_sheets(found: Structure, task: Task, sheets: int, count: int) -> Str
 
 
 def mean_offsets(
-    task: Task, known: Structure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
+    task: Task, known: KrigingStructure, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
 ) -> np.ndarray:
     """(S,) what each sheet lies above that with the most points: by how much it differs from what the others
     let expect at its points, on average; those with the smaller variance count more."""
@@ -235,7 +235,7 @@ def mean_offsets(
     return offsets
 
 
-def _joint_arguments(task: Task, known: Structure, data: JointData, sheet: int) -> tuple:
+def _joint_arguments(task: Task, known: KrigingStructure, data: JointData, sheet: int) -> tuple:
     settings = task.settings
     assert known.sheets is not None
     return (
@@ -247,7 +247,9 @@ def _joint_arguments(task: Task, known: Structure, data: JointData, sheet: int) 
     )
 
 
-def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.ndarray, np.ndarray, int]:
+def _cokrige(
+    task: Task, companions: Companions, known: KrigingStructure
+) -> tuple[np.ndarray, np.ndarray, int]:
     """Heights of one sheet at the nodes, or at its own points, each left out; their variances, and how many
     have no point within the radius."""
     assert known.sheets is not None
@@ -263,7 +265,7 @@ def _cokrige(task: Task, companions: Companions, known: Structure) -> tuple[np.n
     return z + offset, _of_surface(task, variance, known), alone
 
 
-def _of_surface(task: Task, variance: np.ndarray, known: Structure) -> np.ndarray:
+def _of_surface(task: Task, variance: np.ndarray, known: KrigingStructure) -> np.ndarray:
     """(N,) variances of the surface, of those of points at nodes: where points have errors, the nugget is
     theirs, and no part of the surface."""
     return np.maximum(variance - known.variogram.nugget, 0.0) if task.error > 0 else variance
@@ -283,7 +285,7 @@ def _free_nodes(task: Task) -> np.ndarray:
     return nodes
 
 
-def krige(task: Task, known: Structure | None = None) -> Result:
+def krige(task: Task, known: KrigingStructure | None = None) -> Result:
     """Ordinary kriging; universal kriging where the settings have a drift. known: the result of
     `structure`."""
     native = native_module()

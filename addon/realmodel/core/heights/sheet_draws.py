@@ -14,10 +14,10 @@ from ..base.work import Work
 from ..settings.dips import Dips
 from ..settings.variogram import Variogram
 from .companions import Companions, SheetModel
-from .from_neighbours import Structure
+from .from_neighbours import KrigingStructure
 from .interpolation import Task
 from .mis_ties import without_mis_ties
-from .turning_bands import Frame, GaussianField, Noise
+from .turning_bands import FieldArea, GaussianField, Noise
 
 NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
 
@@ -39,10 +39,10 @@ class SeriesDraw:
     noises: list[Noise]
     known: dict[tuple, np.ndarray] = field(default_factory=dict)
 
-    def of(self, own: int, frame: Frame, found: Structure, anisotropy: dict | None) -> SheetField:
+    def of(self, own: int, area: FieldArea, found: KrigingStructure, anisotropy: dict | None) -> SheetField:
         """The field of one sheet, with the covariances of a structure."""
         assert found.sheets is not None
-        return SheetField(self, own, frame, found.variogram, found.sheets, anisotropy)
+        return SheetField(self, own, area, found.variogram, found.sheets, anisotropy)
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class SheetField:
 
     draw: SeriesDraw
     own: int
-    frame: Frame
+    area: FieldArea
     variogram: Variogram
     sheets: SheetModel
     anisotropy: dict | None
@@ -71,7 +71,7 @@ class SheetField:
         at = hashlib.sha256(np.ascontiguousarray(places)).digest()
         key = (number, repr(variogram), repr(self.anisotropy), at)
         if key not in self.draw.known:
-            drawn = GaussianField(variogram, self.anisotropy, self.frame, self.draw.noises[number])
+            drawn = GaussianField(variogram, self.anisotropy, self.area, self.draw.noises[number])
             self.draw.known[key] = drawn.at(work, places)
         return self.draw.known[key]
 

@@ -68,8 +68,8 @@ class Noise:
 
 
 @dataclass(frozen=True)
-class Frame:
-    """The area of random fields, from one corner (2,) in plan to the other. Fields of one frame have the
+class FieldArea:
+    """The area of random fields, from one corner (2,) in plan to the other. Fields of one area have the
     correlation of their noises."""
 
     low: np.ndarray
@@ -78,17 +78,17 @@ class Frame:
 
 @dataclass(frozen=True)
 class GaussianField:
-    """A random field of mean 0 in a frame, with the variogram's covariance without its nugget. anisotropy:
+    """A random field of mean 0 in an area, with the variogram's covariance without its nugget. anisotropy:
     {ratio, azimuth} of structures that have none of their own."""
 
     variogram: Variogram
     anisotropy: dict | None
-    frame: Frame
+    area: FieldArea
     noise: Noise
 
     def at(self, work: Work, nodes: np.ndarray) -> np.ndarray:
         """(N,) float64: the field at nodes (N, 2)."""
-        local = np.ascontiguousarray(nodes - (self.frame.low + self.frame.high) / 2)
+        local = np.ascontiguousarray(nodes - (self.area.low + self.area.high) / 2)
         field = np.zeros(len(nodes))
         parts = self.variogram.parts()
         for number, part in enumerate(parts):
@@ -113,7 +113,7 @@ class GaussianField:
         east, north = _directions().T[:, :, None]
         along, across = _to_isotropic(part.anisotropy or self.anisotropy or NO_ANISOTROPY)
         directions = east * along + north * across
-        reach = hypot(*(self.frame.high - self.frame.low)) / 2
+        reach = hypot(*(self.area.high - self.area.low)) / 2
         reach *= float(norm(directions).max())  # how far lines go, both ways
         # half of it is as far as covariances count; a process as smooth as these needs them to end near 0
         length = 2 * max(2 * reach, _ENDS * part.range)

@@ -46,12 +46,15 @@ def volume_deviations(model: ModelData) -> np.ndarray:
     return found
 
 
-def plan_areas(model: ModelData) -> np.ndarray:
-    """(F,) float64: the areas of a model's faces seen from above."""
-    if not len(model.face_vertices):
+def plan_areas(model: ModelData, faces: np.ndarray | None = None) -> np.ndarray:
+    """(F,) float64: the areas of a model's faces, or of some of them by their numbers, seen from above."""
+    offsets, corners = model.face_offsets, model.face_vertices
+    if faces is not None:
+        offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    if not len(corners):
         return np.zeros(0)
-    x, y = _plan(model)
-    first, last = model.face_offsets[:-1], model.face_offsets[1:] - 1
+    x, y = _plan(model, corners)
+    first, last = offsets[:-1], offsets[1:] - 1
     doubled = x * _next(y, first, last) - y * _next(x, first, last)
     return np.abs(np.add.reduceat(doubled, first)) / 2
 
@@ -59,14 +62,14 @@ def plan_areas(model: ModelData) -> np.ndarray:
 def _middles(model: ModelData) -> np.ndarray:
     """(F, 2) float64: the mean of the corners of each face in plan."""
     first, counts = model.face_offsets[:-1], np.diff(model.face_offsets)
-    x, y = (np.add.reduceat(values, first) / counts for values in _plan(model))
+    x, y = (np.add.reduceat(values, first) / counts for values in _plan(model, model.face_vertices))
     return np.column_stack([x, y]) + model.vertices[0, :2]
 
 
-def _plan(model: ModelData) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the corners of all faces, relative to the first vertex."""
+def _plan(model: ModelData, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of corners, relative to the first vertex."""
     plan = model.vertices[:, :2] - model.vertices[:1, :2]
-    x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
+    x, y = (np.ascontiguousarray(plan[:, axis])[corners] for axis in range(2))
     return x, y
 
 

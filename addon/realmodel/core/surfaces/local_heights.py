@@ -54,7 +54,7 @@ class LocalHeights:
     lowest: float = 0.0
     highest: float = 0.0
     reach: float = 0.0
-    known: from_neighbours.Structure | None = None
+    known: from_neighbours.KrigingStructure | None = None
     spacing: float = 0.0
     grid: RegularGrid | None = None
     fit: Plane | float | None = None

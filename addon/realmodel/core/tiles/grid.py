@@ -119,7 +119,7 @@ def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
 
 
 @dataclass(frozen=True)
-class Part:
+class MeshPart:
     """What of a mesh a tile needs: vertices (V, 2 or 3), triangles (T, 3) int32, and the number that each of
     these has in the mesh, (T,) int32, and each vertex, (V,)."""
 
@@ -182,11 +182,13 @@ def _grouped(
         yield divmod(tile, grid.rows), which
 
 
-def part_of(mesh: Sheet, numbers: np.ndarray) -> Part:
+def part_of(mesh: Sheet, numbers: np.ndarray) -> MeshPart:
     """Some triangles of a mesh, (T,) int32."""
     vertices, triangles = mesh
     used, corners = np.unique(triangles[numbers], return_inverse=True)
-    return Part(np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers, used)
+    return MeshPart(
+        np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers, used
+    )
 
 
 def clipped_region(region: Sheet, box: tuple[float, float, float, float]) -> Sheet:

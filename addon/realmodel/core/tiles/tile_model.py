@@ -37,7 +37,7 @@ from ..surfaces.surface_arrays import SurfaceArrays
 from ..surfaces.surface_heights import raise_to
 from ..surfaces.wrong_sides import WrongPoints, below_older, heights_at
 from .grid import (
-    Part,
+    MeshPart,
     TileGrid,
     box_triangles,
     clipped_region,
@@ -121,7 +121,7 @@ def write_parts(
             part = part_of(mesh, listed.of(name))
             plan = part.vertices[:, :2]
             met[name] = (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
-            arrays = {key: getattr(part, key) for key in Part.__dataclass_fields__}
+            arrays = {key: getattr(part, key) for key in MeshPart.__dataclass_fields__}
             _write(arrays, folder_of(name) / _part(rock, surface))
     return met
 
@@ -233,14 +233,14 @@ def _parts(work: Work, frame: Frame, box: Box, folder: Path) -> tuple[dict, dict
     return parts, made
 
 
-def _read_part(folder: Path, rock: int, surface: int | str) -> Part:
+def _read_part(folder: Path, rock: int, surface: int | str) -> MeshPart:
     path = folder / _part(rock, surface)
     if not path.exists():
         columns = 2 if surface == REGION else 3
         none = np.empty(0, np.int32)
-        return Part(np.empty((0, columns)), np.empty((0, 3), np.int32), none, none)
+        return MeshPart(np.empty((0, columns)), np.empty((0, 3), np.int32), none, none)
     arrays = read_mapped(path)
-    return Part(*(arrays[name] for name in Part.__dataclass_fields__))
+    return MeshPart(*(arrays[name] for name in MeshPart.__dataclass_fields__))
 
 
 @dataclass(frozen=True)
@@ -248,7 +248,7 @@ class Interpolated:
     """A part of a surface that a tile interpolated, and its heights. above: the WrongPoints of the surface
     before, from which it is kept off."""
 
-    part: Part
+    part: MeshPart
     heights: PartHeights
     above: WrongPoints | None
 
@@ -293,7 +293,7 @@ def _interpolated(
     return Interpolated(part if len(known) == len(z) else _where_known(part), found, above)
 
 
-def _where_known(part: Part) -> Part:
+def _where_known(part: MeshPart) -> MeshPart:
     """The triangles all of whose vertices have a height."""
     known = np.isfinite(part.vertices[:, 2])[part.triangles].all(axis=1)
     rest = part_of(part.sheet, np.flatnonzero(known))

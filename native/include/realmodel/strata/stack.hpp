@@ -90,9 +90,8 @@ using realmodel::Warning;
 /// @param is_local  of columns: edges have all vertices that lie on them, whether any face needs
 ///                  them there or not, so that what is somewhere follows from what is near
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle, double_valued,
-/// base_not_below,
-///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all
-///         rock masses
+///         base_not_below and bad_region (items: the rock mass), rocks_overlap (items: the two rock
+///         masses), too_large; surfaces are counted through all rock masses
 /// @throws Cancelled
 CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution& execution,
                               CellKind cells = CellKind::kColumns,

@@ -15,7 +15,7 @@ constexpr std::size_t kBetweenChecks = 1 << 16;
 
 /// The `count` nearest of `among`, with numbers in it.
 std::vector<spatial::Neighbor> nearest_among(std::span<const Position> among,
-                                             const Positions& positions,
+                                             const DistinctPoints& positions,
                                              std::span<const std::int32_t> asked, std::size_t count,
                                              int threads) {
     const spatial::NearestPoints tree(among);
@@ -86,7 +86,7 @@ private:
 
 }  // namespace
 
-std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
+std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
                                                std::span<const std::int32_t> asked,
                                                std::size_t count, const Execution& execution,
                                                std::size_t most) {

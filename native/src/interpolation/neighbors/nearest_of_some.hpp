@@ -14,7 +14,7 @@ namespace realmodel::interpolation {
 
 /// Points of which no two lie at one position, by their numbers from 0: at(number). They may be
 /// more than the memory holds.
-struct Positions {
+struct DistinctPoints {
     std::size_t size;
     std::function<Position(std::size_t)> at;
 };
@@ -26,7 +26,7 @@ inline constexpr std::size_t kMostInMemory = 1 << 18;
 /// another, as NearestPoints::find gives them; the first is the point itself. Of many points no
 /// tree is built: they are gone through once, by how far those of an even part are from the asked.
 /// @param most  of points in a tree
-std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
+std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
                                                std::span<const std::int32_t> asked,
                                                std::size_t count, const Execution& execution,
                                                std::size_t most = kMostInMemory);

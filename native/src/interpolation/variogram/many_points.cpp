@@ -66,7 +66,7 @@ std::vector<spatial::Neighbor> ManyPoints::nearest(const IsotropicSpace& space,
                                                    std::span<const std::int32_t> asked,
                                                    std::size_t count,
                                                    const Execution& execution) const {
-    const Positions positions{size(), [&](std::size_t i) { return space(local(i)); }};
+    const DistinctPoints positions{size(), [&](std::size_t i) { return space(local(i)); }};
     return nearest_of_some(positions, asked, count, execution, most_);
 }
 

@@ -55,21 +55,21 @@ bool usable(const CurveFit& fit) {
 /// The numbers of a variogram that are changed to refine it, and by how much.
 struct Step {
     double CurveFit::*nugget;
-    double Curve::*curve;
+    double VariogramCurve::*curve;
     double times;
 
     bool applies_to(const CurveFit& fit) const {
         return nugget != nullptr ? fit.nugget > 0
-                                 : curve == &Curve::range || fit.curve.rough_share > 0;
+                                 : curve == &VariogramCurve::range || fit.curve.rough_share > 0;
     }
     void change(CurveFit& fit, bool up) const {
         (nugget != nullptr ? fit.*nugget : fit.curve.*curve) *= up ? times : 1 / times;
     }
 };
 
-constexpr Step kSteps[] = {{nullptr, &Curve::rough_share, 1.8},
-                           {nullptr, &Curve::range, 1.4},
-                           {nullptr, &Curve::rough_range, 1.6},
+constexpr Step kSteps[] = {{nullptr, &VariogramCurve::rough_share, 1.8},
+                           {nullptr, &VariogramCurve::range, 1.4},
+                           {nullptr, &VariogramCurve::rough_range, 1.6},
                            {&CurveFit::nugget, nullptr, 2}};
 constexpr double kMostRough = 0.6;  // share of the rougher part
 
@@ -105,7 +105,8 @@ std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candida
 }
 
 /// With the sill that fits the experimental values best, where there is one.
-std::optional<Candidate> VariogramSearch::candidate(const Curve& curve, double nugget) const {
+std::optional<Candidate> VariogramSearch::candidate(const VariogramCurve& curve,
+                                                    double nugget) const {
     const CurveFit fit = fit_sill(e_, curve, nugget);
     if (!usable(fit) || fit.partial_sill <= 0) return std::nullopt;
     const PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
@@ -120,7 +121,7 @@ Candidate VariogramSearch::refined(const Candidate& start) const {
     const auto better_by = [&](const Step& step, bool up) {
         CurveFit changed = best.fit;
         step.change(changed, up);
-        const Curve& curve = changed.curve;
+        const VariogramCurve& curve = changed.curve;
         if (curve.range > longest || curve.rough_share > kMostRough) return false;
         const std::optional<Candidate> found = candidate(curve, changed.nugget);
         if (!found || found->contradicts()) return false;
@@ -200,7 +201,7 @@ const Candidate* VariogramSearch::best_with(VariogramModel model) const {
     return best;
 }
 
-void VariogramSearch::attempt(const Curve& curve, double nugget, double longest) {
+void VariogramSearch::attempt(const VariogramCurve& curve, double nugget, double longest) {
     if (curve.range > longest) return;
     if (const auto found = candidate(curve, nugget)) all_.push_back(*found);
 }
@@ -213,7 +214,7 @@ void VariogramSearch::vary(const Candidate& start) {
         attempt(start.fit.curve, share * e_.gamma.front(), longest);
     const CurveFit with_nugget = best_with(model)->fit;
     for (const double times : kRangeFactors) {
-        Curve curve = with_nugget.curve;
+        VariogramCurve curve = with_nugget.curve;
         curve.range *= times;
         attempt(curve, with_nugget.nugget, longest);
     }
@@ -234,7 +235,7 @@ void VariogramSearch::roughen(VariogramModel model) {
     const double longest = std::max(start.curve.range, longest_);
     for (const RougherPart& part : parts) {
         for (const double share : part.shares) {
-            Curve curve = start.curve;
+            VariogramCurve curve = start.curve;
             curve.rougher = part.model;
             curve.rough_range = part.range;
             curve.rough_share = share;
@@ -246,7 +247,7 @@ void VariogramSearch::roughen(VariogramModel model) {
         if (best.curve.rough_share == 0) return;
         if (round == 0) {
             for (const double times : {0.5, 2.0}) {
-                Curve curve = best.curve;
+                VariogramCurve curve = best.curve;
                 curve.range *= times;
                 attempt(curve, best.nugget, longest);
             }
@@ -254,7 +255,7 @@ void VariogramSearch::roughen(VariogramModel model) {
             continue;
         }
         for (const double times : {0.55, 1.8}) {
-            Curve curve = best.curve;
+            VariogramCurve curve = best.curve;
             curve.rough_share *= times;
             attempt(curve, best.nugget, longest);
         }

@@ -60,8 +60,8 @@ public:
 
 private:
     void start(std::span<const VariogramModel> models);
-    std::optional<Candidate> candidate(const Curve& curve, double nugget) const;
-    void attempt(const Curve& curve, double nugget, double longest);
+    std::optional<Candidate> candidate(const VariogramCurve& curve, double nugget) const;
+    void attempt(const VariogramCurve& curve, double nugget, double longest);
     void vary(const Candidate& start);
     void roughen(VariogramModel model);
     const Candidate* best_with(VariogramModel model) const;

@@ -15,7 +15,7 @@ constexpr int kRangesTried = 48;
 struct Sums {
     double w1 = 0, wf = 0, wff = 0, wg = 0, wfg = 0;
 
-    Sums(const ExperimentalVariogram& e, const Curve& curve) {
+    Sums(const ExperimentalVariogram& e, const VariogramCurve& curve) {
         for (std::size_t i = 0; i < e.lags.size(); ++i) {
             const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
             const double f = curve(e.lags[i]);
@@ -61,7 +61,7 @@ CurveFit fit_for_range(const ExperimentalVariogram& e, VariogramModel model, dou
 
 }  // namespace
 
-CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nugget) {
+CurveFit fit_sill(const ExperimentalVariogram& e, const VariogramCurve& curve, double nugget) {
     const Sums s(e, curve);
     CurveFit fit;
     fit.curve = curve;
@@ -99,7 +99,7 @@ CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool wi
 }
 
 Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy) {
-    const Curve& curve = fit.curve;
+    const VariogramCurve& curve = fit.curve;
     Variogram out{curve.model, curve.range, fit.sill(), fit.nugget, anisotropy, {}};
     if (curve.rough_share > 0) {
         out.further.push_back({curve.rougher, curve.range * curve.rough_range,

@@ -9,7 +9,7 @@ namespace realmodel::interpolation {
 
 /// How semivariance grows with distance, from 0 to 1: as a model does, or with a part that is
 /// rougher - a rougher model, or one of a shorter range.
-struct Curve {
+struct VariogramCurve {
     VariogramModel model = VariogramModel::kSpherical;
     double range = 1;
     VariogramModel rougher = VariogramModel::kExponential;
@@ -26,7 +26,7 @@ struct Curve {
 /// nugget + partial_sill curve(h), and how far from the experimental values: the sum of squares
 /// weighted by pairs / lag^2 (Chiles and Delfiner 2012, section 2.6.2, as gstat does).
 struct CurveFit {
-    Curve curve;
+    VariogramCurve curve;
     double nugget = 0, partial_sill = 0;
     double misfit = std::numeric_limits<double>::infinity();
 
@@ -37,7 +37,7 @@ struct CurveFit {
 CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool with_nugget);
 
 /// Curve and nugget given, the sill alone.
-CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nugget);
+CurveFit fit_sill(const ExperimentalVariogram& e, const VariogramCurve& curve, double nugget);
 
 Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy);
 

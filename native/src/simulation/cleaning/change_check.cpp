@@ -47,7 +47,7 @@ std::int32_t ChangeCheck::surface_of(const Change& change, std::int32_t face) co
     return face >= 0 ? complex_.surface(face) : change.added[index(-1 - face)].surface;
 }
 
-const FaceShape& ChangeCheck::shape_of(const Change& change, std::int32_t face) const {
+const FaceVectors& ChangeCheck::shape_of(const Change& change, std::int32_t face) const {
     return face >= 0 ? complex_.shape(face) : change.added[index(-1 - face)].shape;
 }
 
@@ -270,7 +270,7 @@ bool ChangeCheck::keeps_volume(const Change& change, std::int32_t cell, std::spa
     const Vec3 from = complex_.point(loop_of(change, own[0].face)[0]);
     volume = old.volume;
     for (const Beside& each : own) {
-        const FaceShape& shape = shape_of(change, each.face);
+        const FaceVectors& shape = shape_of(change, each.face);
         const bool adds = (each.face < 0) == (cells_of(change, each.face)[0] == cell);
         volume += (adds ? 1 : -1) * dot(shape.area, minus(shape.center, from)) / 3;
     }

@@ -47,7 +47,7 @@ private:
         std::array<std::int32_t, 2> cells;
     };
 
-    const FaceShape& shape_of(const Change& change, std::int32_t face) const;
+    const FaceVectors& shape_of(const Change& change, std::int32_t face) const;
     bool join_equal_faces(Change& change, std::int32_t vertex);
     bool join_pair(Change& change, std::vector<std::int32_t>& equal) const;
     Loop loop_of(const Change& change, std::int32_t face) const;

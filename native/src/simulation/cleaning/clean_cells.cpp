@@ -247,7 +247,7 @@ private:
         }
         double least = tolerance_;
         for (const std::int32_t f : complex_.cell_faces(cell)) {
-            const FaceShape& face = complex_.shape(f);
+            const FaceVectors& face = complex_.shape(f);
             const double area = length(face.area);
             if (!(area > 0)) continue;
             double most = 0;

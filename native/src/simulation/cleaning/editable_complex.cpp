@@ -164,12 +164,12 @@ EditableComplex::EditableComplex(const ComplexView& model, const Execution& exec
                     });
 }
 
-FaceShape EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
+FaceVectors EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
     Vec3 middle{};
     for (const std::int32_t v : loop)
         middle = plus(middle, point(v));
     middle = times(1.0 / static_cast<double>(loop.size()), middle);
-    FaceShape found;
+    FaceVectors found;
     Vec3 moment{};
     double weights = 0;
     Vec3 from = minus(point(loop.back()), middle);

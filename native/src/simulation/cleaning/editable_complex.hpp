@@ -30,7 +30,7 @@ inline std::optional<std::array<std::int32_t, 2>> beside(std::span<const std::in
 
 /// The area vector of a face, away from its first cell, and its center, as OpenFOAM has them: of
 /// the triangles between its edges and the mean of its corners.
-struct FaceShape {
+struct FaceVectors {
     Vec3 area{}, center{};
 };
 
@@ -42,7 +42,7 @@ struct CellShape {
 
 /// A face and the side from which a cell has it.
 struct SeenFace {
-    FaceShape shape;
+    FaceVectors shape;
     double sign;
 };
 
@@ -57,7 +57,7 @@ struct Change {
         std::array<std::int32_t, 2> cells;
         std::int32_t surface;
         bool is_joined;  ///< of two faces
-        FaceShape shape;
+        FaceVectors shape;
     };
     std::vector<std::int32_t> removed;
     std::vector<Face> added;
@@ -92,7 +92,7 @@ public:
         return cells_[index(face)];
     }
     std::int32_t surface(std::int32_t face) const { return surface_[index(face)]; }
-    const FaceShape& shape(std::int32_t face) const { return shapes_[index(face)]; }
+    const FaceVectors& shape(std::int32_t face) const { return shapes_[index(face)]; }
     const CellShape& cell(std::int32_t cell) const { return cell_shapes_[index(cell)]; }
     /// Relative to the middle of the model.
     Vec3 point(std::int32_t v) const { return points_[index(v)]; }
@@ -106,7 +106,7 @@ public:
     std::int32_t cell_count() const { return static_cast<std::int32_t>(cell_faces_.size()); }
     std::int32_t vertex_count() const { return static_cast<std::int32_t>(points_.size()); }
 
-    FaceShape shape_of(std::span<const std::int32_t> loop) const;
+    FaceVectors shape_of(std::span<const std::int32_t> loop) const;
     /// The cell as it is.
     CellShape measured(std::int32_t cell) const;
 
@@ -125,7 +125,7 @@ private:
     std::vector<Vec3> points_;
     std::vector<std::array<std::int32_t, 2>> cells_;
     std::vector<std::int32_t> surface_;
-    std::vector<FaceShape> shapes_;
+    std::vector<FaceVectors> shapes_;
     std::vector<CellShape> cell_shapes_;
     ListPool corners_, cell_faces_, vertex_faces_;
 };

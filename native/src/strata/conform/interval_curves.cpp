@@ -23,11 +23,11 @@ namespace realmodel::strata {
 
 /// Ascending; where two curves start at one vertex the lower end comes first, and of equal
 /// curves on one side the younger is the upper.
-bool IntervalCurves::before(const Curve& a, const Curve& b) const {
+bool IntervalCurves::before(const IntervalCurve& a, const IntervalCurve& b) const {
     if (a.start != b.start) return a.start < b.start;
     if (a.end != b.end) return a.end < b.end;
     if (a.left != b.left) return b.left;
-    const auto surface = [&](const Curve& curve) {
+    const auto surface = [&](const IntervalCurve& curve) {
         return faces_.surface[static_cast<std::size_t>(curve.face)];
     };
     return std::pair(surface(a), a.face) < std::pair(surface(b), b.face);
@@ -61,7 +61,8 @@ void IntervalCurves::collect(std::size_t number) {
         if (end - begin == 2) {
             if (before(begin[1], begin[0])) std::swap(begin[0], begin[1]);
         } else {
-            std::sort(begin, end, [&](const Curve& a, const Curve& b) { return before(a, b); });
+            std::sort(begin, end,
+                      [&](const IntervalCurve& a, const IntervalCurve& b) { return before(a, b); });
         }
     }
 }
@@ -69,7 +70,8 @@ void IntervalCurves::collect(std::size_t number) {
 void IntervalCurves::add_curves(const LineEdge& edge) {
     const auto face = static_cast<std::size_t>(edge.face);
     const bool left = edge.from < edge.to;
-    Curve curve{0, 0, edge.face, cell_of(faces_.above[face]), cell_of(faces_.below[face]), left};
+    IntervalCurve curve{0,   0, edge.face, cell_of(faces_.above[face]), cell_of(faces_.below[face]),
+                        left};
     const std::int32_t steps = std::abs(edge.to - edge.from);
     std::uint32_t entry = edge.begin;
     std::int32_t vertex = conformed_.vertices[entry];
@@ -87,21 +89,22 @@ void IntervalCurves::add_curves(const LineEdge& edge) {
     }
 }
 
-std::int32_t below_all(std::span<const Curve> curves, bool left) {
-    const auto lowest = std::find_if(curves.begin(), curves.end(),
-                                     [&](const Curve& curve) { return curve.left == left; });
+std::int32_t below_all(std::span<const IntervalCurve> curves, bool left) {
+    const auto lowest = std::find_if(curves.begin(), curves.end(), [&](const IntervalCurve& curve) {
+        return curve.left == left;
+    });
     return lowest == curves.end() ? kOutsideCell : lowest->below;
 }
 
-void IntervalCurves::find_crossings(std::size_t number, std::span<const Curve> curves,
+void IntervalCurves::find_crossings(std::size_t number, std::span<const IntervalCurve> curves,
                                     LocalArrangement& scope,
                                     std::vector<ExtraPoint>& missing) const {
-    const auto plane = [&](const Curve& curve) {
+    const auto plane = [&](const IntervalCurve& curve) {
         return faces_.plane[static_cast<std::size_t>(curve.face)];
     };
     for (std::size_t i = 0; i < curves.size(); ++i) {
         for (std::size_t j = i + 1; j < curves.size(); ++j) {
-            const Curve &a = curves[i], &b = curves[j];
+            const IntervalCurve &a = curves[i], &b = curves[j];
             if (a.start >= b.start || a.end <= b.end) continue;
             const LineId line = collinear_.representative[number];
             const LineId trace = scope.trace(plane(a), plane(b)).id();

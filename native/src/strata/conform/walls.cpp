@@ -64,12 +64,13 @@ private:
             batch_.found.links.emplace_back(a, b);
     }
 
-    void process_interval(std::size_t line, std::size_t interval, std::span<const Curve> curves) {
+    void process_interval(std::size_t line, std::size_t interval,
+                          std::span<const IntervalCurve> curves) {
         if (curves.empty()) return;
         // The common case: one face edge on either side, the same cells above and below. They hang
         // together whether walls may stand here or not.
         if (curves.size() == 2) {
-            const Curve &a = curves[0], &b = curves[1];
+            const IntervalCurve &a = curves[0], &b = curves[1];
             if (a.left != b.left && a.as_high_as(b) && is_same(a.above, b.above) &&
                 is_same(a.below, b.below)) {
                 link(a.above, b.above);
@@ -85,23 +86,23 @@ private:
         const std::size_t known = missing.size();
         curves_.find_crossings(line, curves, batch_.scope, missing);
         if (missing.size() > known) return;
-        for_each_gap(
-            curves, blocks_ == nullptr,
-            [&](const Curve& low, const Curve& high, std::int32_t left, std::int32_t right) {
-                const std::array lower{low.start, low.end}, upper{high.start, high.end};
-                if (is_same(left, right)) {
-                    link(left, right);
-                } else if (blocks_ == nullptr) {
-                    joining_.add(lower, upper, left, right, low.start != high.start);
-                } else {
-                    batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
-                                                      static_cast<std::int32_t>(interval), lower,
-                                                      upper, left, right});
-                }
-            });
+        for_each_gap(curves, blocks_ == nullptr,
+                     [&](const IntervalCurve& low, const IntervalCurve& high, std::int32_t left,
+                         std::int32_t right) {
+                         const std::array lower{low.start, low.end}, upper{high.start, high.end};
+                         if (is_same(left, right)) {
+                             link(left, right);
+                         } else if (blocks_ == nullptr) {
+                             joining_.add(lower, upper, left, right, low.start != high.start);
+                         } else {
+                             batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
+                                                               static_cast<std::int32_t>(interval),
+                                                               lower, upper, left, right});
+                         }
+                     });
     }
 
-    bool may_have_walls(const Curve& curve) {
+    bool may_have_walls(const IntervalCurve& curve) {
         const auto point_of = [&](std::int32_t vertex) {
             return blocks_->plan_vertices.representative[conformed_.plan_vertex_of(vertex)];
         };
@@ -115,7 +116,7 @@ private:
 
     /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
     /// goes on beyond the line.
-    void continue_faces(std::span<const Curve> curves) {
+    void continue_faces(std::span<const IntervalCurve> curves) {
         for (std::size_t i = 0; i < curves.size();) {
             std::size_t left = i;  // the first curve to the left of the line at this height
             while (left < curves.size() && curves[left].as_high_as(curves[i]) && !curves[left].left)

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -145,10 +146,9 @@ public:
         }
         triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
         if (chains.empty()) return;
-        for (std::size_t t = 0; t < mesh.size(); ++t) {
-            poll(progress, t);
-            if (const auto v = mesh.corners(t)) divide(t, *v, chains);
-        }
+        find_divisions(chains, progress);
+        for (const Division& division : divisions_)
+            divide(division);
     }
 
     std::vector<double> vertices;
@@ -159,34 +159,82 @@ private:
     /// Vertices still to be inserted into the edges 0-1, 1-2 and 2-0 of a part, in that direction.
     using Waiting = std::array<std::vector<std::int32_t>, 3>;
 
-    void divide(std::size_t t, const Corners& corners, const BorderChains& chains) {
-        Waiting waiting;
-        bool any = false;
+    /// A triangle and what divides its edges, or null.
+    struct Division {
+        std::size_t triangle;
+        Corners corners;
+        std::array<const BorderChains::value_type*, 3> chains;
+    };
+
+    /// An edge is divided in all triangles that have it or in none: else one would reach over what
+    /// the other still has.
+    void find_divisions(const BorderChains& chains, Progress* progress) {
+        for (std::size_t t = 0; t < mesh_.size(); ++t) {
+            poll(progress, t);
+            const auto corners = mesh_.corners(t);
+            if (!corners) continue;
+            Division division{t, *corners, {}};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto chain = chains.find(
+                    edge_between(position((*corners)[i]), position((*corners)[(i + 1) % 3])));
+                if (chain != chains.end()) division.chains[i] = &*chain;
+            }
+            if (has_chain(division)) divisions_.push_back(division);
+        }
+        std::set<const BorderChains::value_type*> refused;
+        std::size_t before = 0;
+        do {
+            before = refused.size();
+            for (Division& division : divisions_) {
+                for (auto& chain : division.chains) {
+                    if (refused.contains(chain)) chain = nullptr;
+                }
+                if (!keeps_turn(division))
+                    refused.insert(division.chains.begin(), division.chains.end());
+                refused.erase(nullptr);
+            }
+        } while (refused.size() != before);
+    }
+
+    static bool has_chain(const Division& division) {
+        return division.chains != std::array<const BorderChains::value_type*, 3>{};
+    }
+
+    /// Whether all parts turn as the triangle does.
+    bool keeps_turn(const Division& division) {
         const std::size_t vertices_before = vertices.size();
+        const std::vector<Corners> parts = parts_of(division);
+        const int turn = turn_of(division.corners);
+        const bool keeps =
+            std::ranges::all_of(parts, [&](const Corners& p) { return turn_of(p) == turn; });
+        vertices.resize(vertices_before);
+        return keeps;
+    }
+
+    void divide(const Division& division) {
+        if (!has_chain(division)) return;
+        const std::vector<Corners> parts = parts_of(division);
+        std::copy(parts[0].begin(), parts[0].end(),
+                  triangles.begin() + static_cast<std::ptrdiff_t>(3 * division.triangle));
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            triangles.insert(triangles.end(), parts[i].begin(), parts[i].end());
+    }
+
+    /// The parts of a triangle, whose new vertices are added.
+    std::vector<Corners> parts_of(const Division& division) {
+        Waiting waiting;
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t a = corners[i], b = corners[(i + 1) % 3];
-            const PlanEdge edge = edge_between(position(a), position(b));
-            const auto chain = chains.find(edge);
-            if (chain == chains.end()) continue;
-            any = true;
-            const bool ahead = position(a) == edge.first;
+            const auto* chain = division.chains[i];
+            if (chain == nullptr) continue;
+            const std::int32_t a = division.corners[i], b = division.corners[(i + 1) % 3];
+            const bool ahead = position(a) == chain->first.first;
             for (const PlanPosition& p : chain->second)
                 waiting[i].push_back(insert(p, ahead ? a : b, ahead ? b : a));
             if (!ahead) std::reverse(waiting[i].begin(), waiting[i].end());
         }
-        if (!any) return;
         std::vector<Corners> parts;
-        part(corners, waiting, parts);
-        const int turn = turn_of(corners);
-        if (std::any_of(parts.begin(), parts.end(),
-                        [&](const Corners& p) { return turn_of(p) != turn; })) {
-            vertices.resize(vertices_before);
-            return;
-        }
-        std::copy(parts[0].begin(), parts[0].end(),
-                  triangles.begin() + static_cast<std::ptrdiff_t>(3 * t));
-        for (std::size_t i = 1; i < parts.size(); ++i)
-            triangles.insert(triangles.end(), parts[i].begin(), parts[i].end());
+        part(division.corners, waiting, parts);
+        return parts;
     }
 
     /// Splits along a fan from the corner opposite of the first edge that has vertices waiting.
@@ -235,6 +283,7 @@ private:
     }
 
     const Mesh& mesh_;
+    std::vector<Division> divisions_;
 };
 
 }  // namespace

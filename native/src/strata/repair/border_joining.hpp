@@ -28,16 +28,16 @@ using BorderChains = std::map<std::pair<spatial::PlanPosition, spatial::PlanPosi
 /// rounding size would lie all along the border. So every edge that borders a surface or a region
 /// is divided at the border vertices that lie within rounding of it (in every mesh that has this
 /// edge), and the triangles at it with the edge; the borders then coincide exactly. Where all
-/// vertices lie exactly on the line nothing is divided, and no triangle is where one of its parts
-/// would turn over. Passes over what the builder refuses later.
+/// vertices lie exactly on the line nothing is divided. Passes over what the builder refuses later.
 /// @param threads  as many meshes are looked at at once
 /// @throws Cancelled
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                          const Execution& execution = {});
 
 /// A mesh of a surface (three columns) or a region (two) with snapped coordinates, its edges
-/// divided. The numbers of triangles that were not divided stay; the first part of a divided one
-/// has its number, the others come after all. Passes over what the builder refuses later.
+/// divided, but for those of a triangle of which a part would turn over. The numbers of triangles
+/// that were not divided stay; the first part of a divided one has its number, the others come
+/// after all. Passes over what the builder refuses later.
 /// @throws Cancelled
 JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
                        std::size_t columns, const PlanSnapping& snapping,

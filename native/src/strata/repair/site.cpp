@@ -165,8 +165,9 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
     site.geometry.expect_vertices(vertices);
     site.geometry.expect_planes(triangles + rocks.size());
     for (const StackInput& rock : rocks) {
-        site.rocks.push_back(
+        EnteredRock& own = site.rocks.emplace_back(
             enter_rock(site.geometry, rock, site.surfaces, snapping, warnings, execution));
+        own.number = static_cast<std::int32_t>(site.rocks.size()) - 1;
         site.surfaces += static_cast<std::int32_t>(rock.surfaces.size());
     }
     if (site.is_empty()) return entered;
@@ -177,11 +178,11 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
     for (EnteredRock& rock : site.rocks) {
         rock.plans = plan_surfaces(site.geometry, rock.surfaces, site.frame, execution);
         for (const SurfacePlan& plan : rock.plans)
-            site.is_single_valued &= plan.filling.has_value();
+            site.is_single_valued &= plan.filling && !plan.filling->is_covered_twice();
         if (rock.region) {
             rock.region_border = link_triangles(*rock.region, execution.progress).border;
             auto filling = fill_frame(site.geometry, rock.region_border, site.frame);
-            site.is_single_valued &= filling.has_value();
+            site.is_single_valued &= filling && !filling->is_covered_twice();
             if (filling) rock.region_filling = std::move(*filling);
         }
         if (rock.window) rock.window_plan = plan_window(site, *rock.window, execution.progress);
@@ -191,8 +192,13 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
 
 void Site::check_regions() const {
     for (const EnteredRock& rock : rocks) {
-        if (!rock.region || !rock.region_filling.triangles.empty()) continue;
-        throw InputError("crossing", "edges of the region's border cross", rock.first_surface);
+        if (!rock.region) continue;
+        const bool crosses = rock.region_filling.triangles.empty();
+        if (!crosses && !rock.region_filling.is_covered_twice()) continue;
+        throw InputError(
+            "bad_region",
+            crosses ? "edges of the region's border cross" : "triangles of the region overlap", -1,
+            {rock.number});
     }
 }
 
@@ -204,7 +210,7 @@ void check_base(const EnteredRock& rock, const std::array<double, 3>& lowest) {
                          " is not below the whole rock mass, whose lowest point is " + "(" +
                          std::to_string(lowest[0]) + ", " + std::to_string(lowest[1]) + ", " +
                          std::to_string(lowest[2]) + "); choose a lower base_elevation",
-                     rock.first_surface, {}, lowest);
+                     -1, {rock.number}, lowest);
 }
 
 }  // namespace realmodel::strata

@@ -14,6 +14,7 @@ namespace realmodel::strata {
 
 /// A rock mass whose vertices are entered.
 struct EnteredRock {
+    std::int32_t number = 0;
     std::int32_t first_surface = 0;  ///< counted through all rock masses
     std::vector<EnteredSurface> surfaces;
     std::vector<SurfacePlan> plans;  ///< of the surfaces
@@ -41,10 +42,11 @@ struct Site {
     std::optional<Window> window;                ///< of a tile, or nothing
     std::optional<WantedBoxes> wanted;           ///< of columns, or all of them are
     bool is_local = false;  ///< of columns: edges have all vertices that lie on them
-    /// Whether no surface covers a position twice, and no border of a region crosses itself.
+    /// Whether no surface and no region covers a position twice.
     bool is_single_valued = true;
 
-    /// @throws InputError kind crossing, where the border of a region crosses itself
+    /// @throws InputError kind bad_region (items: the rock mass), where the border of a region
+    /// crosses itself, or its triangles overlap
     void check_regions() const;
     bool is_empty() const { return geometry.point_count() == 0; }
 };
@@ -55,8 +57,8 @@ struct Site {
 std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                                  std::vector<Warning>& warnings, const Execution& execution);
 
-/// @throws InputError kind base_not_below, where the lowest position of a rock mass is not above
-/// its base
+/// @throws InputError kind base_not_below (items: the rock mass), where the lowest position of a
+/// rock mass is not above its base
 void check_base(const EnteredRock& rock, const std::array<double, 3>& lowest);
 
 }  // namespace realmodel::strata

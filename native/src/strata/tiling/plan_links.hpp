@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -40,6 +41,10 @@ using Frame = std::vector<exact::VertexId>;
 struct FrameTriangles {
     std::vector<PlanTriangle> triangles;
     std::vector<std::int32_t> covered;  ///< how many of the linked triangles lie over each of them
+
+    bool is_covered_twice() const {
+        return std::ranges::any_of(covered, [](std::int32_t times) { return times > 1; });
+    }
 };
 
 /// Where the linked triangles lie and where they do not. Outside of the border nothing is covered,

@@ -32,7 +32,7 @@ Points varied() {
 
 TEST(NearestOfSome, AsATreeOfAllFindsThem) {
     const Points points = varied();
-    const Positions positions{points.size(), [&](std::size_t i) {
+    const DistinctPoints positions{points.size(), [&](std::size_t i) {
                                   return Position{points[i][0], points[i][1]};
                               }};
     std::vector<std::int32_t> asked = even_part(points.size(), 700);
@@ -45,7 +45,7 @@ TEST(NearestOfSome, AsATreeOfAllFindsThem) {
         for (const std::size_t most : {1U, 50U, 900U, 4000U})
             EXPECT_EQ(nearest_of_some(positions, asked, count, {1, nullptr}, most), expected);
     }
-    const Positions three{3, positions.at};
+    const DistinctPoints three{3, positions.at};
     const auto of_three = nearest_of_some(three, std::vector<std::int32_t>{1}, 33, {1, nullptr}, 2);
     EXPECT_EQ(of_three, nearest_of_some(three, std::vector<std::int32_t>{1}, 33, {1, nullptr}));
     EXPECT_EQ(of_three.size(), 3U);

@@ -43,8 +43,9 @@ TEST(WeightedFit, TheSillAloneByHand) {
     EXPECT_EQ(fit_sill(e, {.range = 2}, 100).partial_sill, 0);
 }
 
-TEST(Curve, WithARougherPart) {
-    const Curve curve{VariogramModel::kGaussian, 100, VariogramModel::kExponential, 0.5, 0.25};
+TEST(VariogramCurve, WithARougherPart) {
+    const VariogramCurve curve{VariogramModel::kGaussian, 100, VariogramModel::kExponential, 0.5,
+                               0.25};
     EXPECT_NEAR(curve(40),
                 0.75 * structure(VariogramModel::kGaussian, 0.4) +
                     0.25 * structure(VariogramModel::kExponential, 0.8),

@@ -172,7 +172,7 @@ TEST(IntervalCurves, AreTheEdgesOverEachInterval) {
         EXPECT_NE(pair[0].left, pair[1].left);
         EXPECT_EQ(pair[0].start, static_cast<std::int32_t>(i) + 1);
         EXPECT_EQ(pair[0].end, static_cast<std::int32_t>(i) + 2);
-        for (const Curve& curve : pair) {
+        for (const IntervalCurve& curve : pair) {
             EXPECT_EQ(curve.above, curve.left ? 0 : 1);
             EXPECT_EQ(curve.left, curve.face == 0);
         }
@@ -182,10 +182,11 @@ TEST(IntervalCurves, AreTheEdgesOverEachInterval) {
 
 using Gap = std::array<std::int32_t, 4>;  // the vertices at the start, the cells left and right
 
-std::vector<Gap> gaps_of(const std::vector<Curve>& curves) {
+std::vector<Gap> gaps_of(const std::vector<IntervalCurve>& curves) {
     std::vector<Gap> gaps;
     for_each_gap(curves, true,
-                 [&](const Curve& low, const Curve& high, std::int32_t left, std::int32_t right) {
+                 [&](const IntervalCurve& low, const IntervalCurve& high, std::int32_t left,
+                     std::int32_t right) {
                      gaps.push_back({low.start, high.start, left, right});
                  });
     return gaps;
@@ -193,18 +194,18 @@ std::vector<Gap> gaps_of(const std::vector<Curve>& curves) {
 
 TEST(IntervalCurves, GapsLieBetweenTheCellsOfTheTwoSides) {
     // on the left two columns, on the right one that is as high
-    const std::vector<Curve> curves{{0, 0, 0, 7, -1, false},
-                                    {0, 0, 1, 5, -1, true},
-                                    {1, 1, 2, 6, 5, true},
-                                    {2, 2, 3, -1, 7, false},
-                                    {2, 2, 4, -1, 6, true}};
+    const std::vector<IntervalCurve> curves{{0, 0, 0, 7, -1, false},
+                                            {0, 0, 1, 5, -1, true},
+                                            {1, 1, 2, 6, 5, true},
+                                            {2, 2, 3, -1, 7, false},
+                                            {2, 2, 4, -1, 6, true}};
     EXPECT_EQ(gaps_of(curves), (std::vector<Gap>{{0, 1, 5, 7}, {1, 2, 6, 7}}));
 }
 
 TEST(IntervalCurves, AFaceThatGoesOnAcrossTheLineEndsCellsOnBothSides) {
     // from 0 to 1 a column on the left; then one on both sides, whose bottom goes on across the
     // line
-    const std::vector<Curve> curves{
+    const std::vector<IntervalCurve> curves{
         {0, 0, 0, 5, -1, true},
         {1, 1, 1, -1, 5, true},
         {2, 2, 2, -1, 6, false},
@@ -215,10 +216,10 @@ TEST(IntervalCurves, AFaceThatGoesOnAcrossTheLineEndsCellsOnBothSides) {
     EXPECT_EQ(gaps_of(curves),
               (std::vector<Gap>{{0, 1, 5, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 4, 8, -1}}));
     // a column on both sides whose top goes on across the line, and a later one on the left
-    const std::vector<Curve> later{{0, 0, 0, 5, -1, false},
-                                   {0, 0, 1, 5, -1, true},
-                                   {2, 2, 2, 8, -1, true},
-                                   {3, 3, 3, -1, 8, true}};
+    const std::vector<IntervalCurve> later{{0, 0, 0, 5, -1, false},
+                                           {0, 0, 1, 5, -1, true},
+                                           {2, 2, 2, 8, -1, true},
+                                           {3, 3, 3, -1, 8, true}};
     EXPECT_EQ(gaps_of(later), (std::vector<Gap>{{0, 2, 5, 5}, {2, 3, 8, -1}}));
 }
 

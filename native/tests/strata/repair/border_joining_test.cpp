@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -57,6 +58,18 @@ TEST(BorderJoining, PartsOfOneSurfaceDoNotOverlapByRounding) {
         EXPECT_NEAR(columns.volumes[0], area, 1e-6 * area);
         EXPECT_EQ(columns.cell_block.size(), columns.warnings.empty() ? 3u : 4u);
     }
+}
+
+TEST(BorderJoining, DividesAnEdgeInBothOfItsTrianglesOrInNone) {
+    Outline needle(0, 0.45), plain(1);
+    needle.triangles = {0, 1, 2,
+                        0, 3, 1};  // the vertex is beyond the edge, in a triangle of its own
+    const std::vector<Outline> outlines{needle, plain};
+    const StackInput input = stack_of(outlines);
+    const JoinedBorders joined = join_borders({&input, 1}, {}, find_chains({&input, 1}, {}));
+    const auto& surfaces = joined.rocks.at(0).surfaces;
+    EXPECT_TRUE(std::ranges::equal(surfaces[0].triangles, needle.triangles));
+    EXPECT_EQ(surfaces[1].triangles.size(), 6u);
 }
 
 TEST(BorderJoining, LeavesVerticesOnTheLineAndFarFromItAlone) {

@@ -14,7 +14,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import Step
 from ...base.units import other_units
-from .points import Table, open_table
+from .points import TextTable, open_table
 from .table_layout import Expected, fields, is_number, plain_name
 
 _HOLE = ("hole", "hole_id", "holeid", "bhid", "borehole", "well", "well_id", "name", "id")
@@ -115,7 +115,7 @@ class Reading(Protocol):
 
 @dataclass(frozen=True)
 class Row:
-    table: Table
+    table: TextTable
     line: int
     entries: list[str]
     columns: dict[str, int]
@@ -205,7 +205,7 @@ def columns_in(given: Reading, file: Path, known: Columns) -> dict[str, str]:
     return {meaning: names[at] if at < len(names) else "" for meaning, at in found.items()}
 
 
-def _opened(given: Reading, file: Path, known: Columns) -> Table:
+def _opened(given: Reading, file: Path, known: Columns) -> TextTable:
     names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
     names.update(alias for aliases in known.values() for alias in aliases)
     return open_table(file, Expected(given.separator, (), names, 1, 2))
@@ -223,7 +223,7 @@ def joined(name: str) -> str:
     return re.sub(r"[\s_-]+", "_", name.strip().lower())
 
 
-def _columns(given: Reading, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
+def _columns(given: Reading, table: TextTable, known: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     written = table.layout.names or ()
     names = [joined(plain_name(name)) for name in written]

@@ -94,7 +94,7 @@ def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces =
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """An open table of text: its content and its layout."""
 
     file: Path
@@ -106,15 +106,15 @@ class Table:
         return column_number(self.file, self.layout, name)
 
 
-def open_table(file: Path, expected: Expected) -> Table:
+def open_table(file: Path, expected: Expected) -> TextTable:
     """A table of text. Raises InputRefused where there are no rows."""
     raw = text_content(file)
     start = len(BOM) if raw[: len(BOM)] == BOM else 0
     encoding = encoding_of(raw)
-    return Table(file, raw, encoding, table_layout(file, raw, start, encoding, expected))
+    return TextTable(file, raw, encoding, table_layout(file, raw, start, encoding, expected))
 
 
-def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
+def wanted_columns(table: TextTable, columns: Sequence[str | int] | None) -> list[int]:
     """The numbers from 0 of the columns of x, y and z. Raises InputRefused."""
     if columns is not None:
         return [table.column(column) for column in columns]
@@ -135,7 +135,7 @@ def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[in
     return [names.index(alias) for alias in found.values() if alias]
 
 
-def _guessed_names(table: Table) -> tuple[str, ...]:
+def _guessed_names(table: TextTable) -> tuple[str, ...]:
     """The names of the first three columns where the header names the columns of the table, and none of them
     as a coordinate."""
     names = table.layout.names or ()
@@ -154,7 +154,7 @@ def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
 
 
 def _read_rows(
-    table: Table, given: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
+    table: TextTable, given: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
 ) -> PointRows:
     """The points of a table. columns: of x, y and z."""
     native = native_module()
@@ -179,7 +179,7 @@ def _read_rows(
 
 
 def _pieces(
-    table: Table, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: JoinPieces
+    table: TextTable, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: JoinPieces
 ) -> PointRows:
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
     beginning of the file. reading: its decimal mark, columns, filters and missing values."""
@@ -227,24 +227,24 @@ def _in_order(
         yield waiting.popleft()
 
 
-def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:
+def _head_entries(table: TextTable, columns: Sequence[int], most: int = 2000) -> list[str]:
     """The entries of some columns in the first rows."""
     return [row[column] for row in head_rows(table, most) for column in columns if column < len(row)]
 
 
-def head_rows(table: Table, most: int) -> list[list[str]]:
+def head_rows(table: TextTable, most: int) -> list[list[str]]:
     """The entries of the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
     return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
 
 
-def body_rows(table: Table) -> Iterator[list[str]]:
+def body_rows(table: TextTable) -> Iterator[list[str]]:
     """The entries of each row of a table that is not blank."""
     body = table.raw[table.layout.body :].decode(table.encoding, "replace")
     return (table.layout.fields(line) for line in body.splitlines() if line.strip())
 
 
-def _has_decimal_commas(table: Table, columns: Sequence[int], error: NativeError) -> bool:
+def _has_decimal_commas(table: TextTable, columns: Sequence[int], error: NativeError) -> bool:
     entry = _entry(table, error)
     if "," not in entry:
         return False
@@ -260,12 +260,12 @@ def _has_decimal_commas(table: Table, columns: Sequence[int], error: NativeError
     return bool(is_comma)
 
 
-def _entry(table: Table, error: NativeError) -> str:
+def _entry(table: TextTable, error: NativeError) -> str:
     begin, end = error.items[2:4]
     return table.raw[begin:end].decode(table.encoding, "replace").strip()
 
 
-def _refused(table: Table, columns: Sequence[int], decimal: str, error: NativeError) -> InputRefused:
+def _refused(table: TextTable, columns: Sequence[int], decimal: str, error: NativeError) -> InputRefused:
     line = error.items[0]
     if error.kind == "too_few":
         needed = max(columns) + 1
@@ -292,7 +292,7 @@ def _refused(table: Table, columns: Sequence[int], decimal: str, error: NativeEr
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 
 
-def _nothing_matches(table: Table, where: Mapping) -> InputRefused:
+def _nothing_matches(table: TextTable, where: Mapping) -> InputRefused:
     """The error that no row matches `where`; it lists the values that there are."""
     conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
     there = []

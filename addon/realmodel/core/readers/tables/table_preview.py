@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from .points import KNOWN, Table, head_rows, open_table, wanted_columns
+from .points import KNOWN, TextTable, head_rows, open_table, wanted_columns
 from .table_layout import Expected, is_any_number, plain_name
 
 _ROWS = 3
@@ -67,7 +67,7 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
     return found
 
 
-def _sampled_rows(table: Table) -> list[list[str]]:
+def _sampled_rows(table: TextTable) -> list[list[str]]:
     """All rows of a table, or of a long one those of pieces of it."""
     body = np.arange(table.layout.body, len(table.raw), _PIECE)
     if len(body) > _PIECES:

@@ -77,7 +77,7 @@ class CompartmentSheets:
                     self.waited.add(family.key)
                     throws.tell(self.number, family, free.sheets(family), self._rank(family))
 
-    def neighbors(self, family: Family, throws: Throws) -> list[Source]:
+    def neighbors(self, family: Family, throws: Throws) -> list[SheetSource]:
         """From which families across one fault one without enough data may take its sheets now: those where
         the throw is known best; where it is not known the one with most data."""
         if family in self.own or not self._is_ready():
@@ -86,11 +86,11 @@ class CompartmentSheets:
         for source in sorted(self.every, key=self._amount, reverse=True):
             fault = throws.fault_between(source, family) if source.key in self.made else None
             if fault is not None:
-                found.append(Source(source, fault, throws.shift(self.number, fault, source, family)))
+                found.append(SheetSource(source, fault, throws.shift(self.number, fault, source, family)))
         best = min((source.rank for source in found), default=UNKNOWN)
         return [source for source in found if source.rank == best][: 1 if best == UNKNOWN else None]
 
-    def borrow(self, family: Family, sources: list[Source], throws: Throws) -> None:
+    def borrow(self, family: Family, sources: list[SheetSource], throws: Throws) -> None:
         """Makes the sheets of a family from those of others, the first of which has most data."""
         taken = [self._from(source, family, throws) for source in sources]
         trends = taken[0]
@@ -111,7 +111,7 @@ class CompartmentSheets:
             self.made[family.key] = self.surface.sheets(family, trends)
         self.entry.divided().warnings.append((list(family.members), self._warning(family, sources)))
 
-    def _from(self, source: Source, family: Family, throws: Throws) -> Sheets:
+    def _from(self, source: SheetSource, family: Family, throws: Throws) -> Sheets:
         """The sheets of another family by the sides of this one, whose faults that die out may differ."""
         sheets = self.made[source.family.key]
         first = next(iter(sheets.values()))
@@ -135,7 +135,7 @@ class CompartmentSheets:
             if family.key in self.few:
                 self.made[family.key] = self.surface.sheets(family)
             else:
-                self.borrow(family, [Source(most)], throws)
+                self.borrow(family, [SheetSource(most)], throws)
 
     def _amount(self, family: Family) -> tuple:
         """By which families are compared: how many data they have."""
@@ -204,7 +204,7 @@ class CompartmentSheets:
             return FEW
         return OWN if family in self.own else TAKEN
 
-    def _warning(self, family: Family, sources: list[Source]) -> BuildWarning:
+    def _warning(self, family: Family, sources: list[SheetSource]) -> BuildWarning:
         structure, rock = self.entry.divided(), self.entry.rock
         names = [structure.names[next(iter(each.members))] for each in (family, *(s.family for s in sources))]
         here, *there = (f"'{name}'" for name in names)
@@ -230,7 +230,7 @@ class CompartmentSheets:
 
 
 @dataclass(frozen=True)
-class Source:
+class SheetSource:
     """A family whose sheets another one takes over, across a fault; shift: by its throw, None where that is
     not known."""
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "booleans/pieces.hpp"
+#include "booleans/triangle_pieces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ protected:
         return inputs;
     }
     const Mesh p = square({0, 0, 0}, 2), q = square({0, 0, 1}, 2);
-    Pieces pieces{{p.view(), q.view()}, {1}};
+    TrianglePieces pieces{{p.view(), q.view()}, {1}};
 };
 
 TEST_F(TwoSquares, AreInputsOfTwoSourcesInARow) {
@@ -35,7 +35,7 @@ TEST_F(TwoSquares, AreInputsOfTwoSourcesInARow) {
 }
 
 TEST_F(TwoSquares, AnInputMayBeDividedAndIsStillFound) {
-    const Corners whole = pieces.of(0)[0].corners;
+    const TriangleCorners whole = pieces.of(0)[0].corners;
     const SpacePointId middle = pieces.points.add(exact::SpacePosition{1, 1, 0});
     pieces.replace(0,
                    {{{whole[0], whole[1], middle}, true}, {{whole[0], middle, whole[2]}, false}});
@@ -45,7 +45,7 @@ TEST_F(TwoSquares, AnInputMayBeDividedAndIsStillFound) {
     EXPECT_EQ(pieces.of(1).size(), 1U);
     int near = 0;
     pieces.find({{0, 1.5, 0}, {0.1, 2, 0}},
-                [&](const Piece& piece) { near += piece.corners[2] == whole[2]; });
+                [&](const TrianglePiece& piece) { near += piece.corners[2] == whole[2]; });
     EXPECT_EQ(near, 2);  // a part of the first, and the second
     const std::string path = testing::TempDir() + "TwoSquares.obj";
     dump_pieces(pieces, path.c_str());
@@ -65,8 +65,8 @@ TEST_F(TwoSquares, WhatMayHaveMovedIsLookedForFartherAway) {
 
 TEST(InOrder, TellsWhetherCornersAreTurnedOver) {
     const SpacePointId a(0), b(1), c(2);
-    EXPECT_EQ(in_order({b, c, a}), std::pair(Corners{a, b, c}, false));
-    EXPECT_EQ(in_order({b, a, c}), std::pair(Corners{a, b, c}, true));
+    EXPECT_EQ(in_order({b, c, a}), std::pair(TriangleCorners{a, b, c}, false));
+    EXPECT_EQ(in_order({b, a, c}), std::pair(TriangleCorners{a, b, c}, true));
 }
 
 }  // namespace

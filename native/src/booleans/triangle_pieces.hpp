@@ -16,8 +16,8 @@
 namespace realmodel::booleans {
 
 /// A triangle of the inputs as a whole, or a part of one.
-struct Piece {
-    Corners corners;
+struct TrianglePiece {
+    TriangleCorners corners;
     bool is_fresh = false;  ///< changed since it was last known to meet others in order
 };
 
@@ -29,10 +29,10 @@ struct PieceId {
 
 /// The triangles of both surfaces, and the pieces of those that were divided. Corners are points of
 /// `points`, all of them given by doubles.
-class Pieces {
+class TrianglePieces {
 public:
     /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large
-    Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
+    TrianglePieces(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
 
     SpacePoints points;
 
@@ -44,19 +44,21 @@ public:
     std::int32_t row(std::int32_t input) const {
         return source(input) == 0 ? input : input - static_cast<std::int32_t>(second_);
     }
-    std::span<const Piece> of(std::int32_t input) const {
+    std::span<const TrianglePiece> of(std::int32_t input) const {
         const std::int32_t list = list_[index(input)];
         return list < 0 ? std::span(&whole_[index(input)], 1)
                         : std::span(lists_[index(list)].pieces);
     }
-    const Piece& operator[](const PieceId& id) const { return of(id.input)[index(id.piece)]; }
-    Piece& operator[](const PieceId& id) {
+    const TrianglePiece& operator[](const PieceId& id) const {
+        return of(id.input)[index(id.piece)];
+    }
+    TrianglePiece& operator[](const PieceId& id) {
         const std::int32_t list = list_[index(id.input)];
         return list < 0 ? whole_[index(id.input)] : lists_[index(list)].pieces[index(id.piece)];
     }
-    void replace(std::int32_t input, std::vector<Piece>&& pieces);
+    void replace(std::int32_t input, std::vector<TrianglePiece>&& pieces);
 
-    spatial::Box box(const Corners& corners) const {
+    spatial::Box box(const TriangleCorners& corners) const {
         spatial::Box found;
         for (const SpacePointId v : corners)
             found.include(points.rounded(v));
@@ -79,7 +81,7 @@ public:
                 });
                 return;
             }
-            for (const Piece& piece : of(input)) {
+            for (const TrianglePiece& piece : of(input)) {
                 if (near.meets(box(piece.corners))) visit(piece);
             }
         });
@@ -91,11 +93,11 @@ public:
 
 private:
     struct List {
-        std::vector<Piece> pieces;
+        std::vector<TrianglePiece> pieces;
         std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
     };
     Progress* progress_;
-    std::vector<Piece> whole_;
+    std::vector<TrianglePiece> whole_;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
     std::vector<List> lists_;
     std::size_t second_ = 0;  ///< the first triangle of the second surface
@@ -105,7 +107,7 @@ private:
 };
 
 /// The corners in order, and whether that turns the triangle over.
-inline std::pair<Corners, bool> in_order(Corners corners) {
+inline std::pair<TriangleCorners, bool> in_order(TriangleCorners corners) {
     bool odd = false;
     const auto exchange = [&](std::size_t i, std::size_t j) {
         if (corners[j] < corners[i]) {
@@ -119,7 +121,7 @@ inline std::pair<Corners, bool> in_order(Corners corners) {
     return {corners, odd};
 }
 
-inline bool has_equal_corners(const Corners& c) {
+inline bool has_equal_corners(const TriangleCorners& c) {
     return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "booleans/pieces.hpp"
+#include "booleans/triangle_pieces.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -33,7 +33,8 @@ void check(const TriangleView& mesh, int surface) {
 
 }  // namespace
 
-Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
+TrianglePieces::TrianglePieces(const std::array<TriangleView, 2>& surfaces,
+                               const Execution& execution)
     : progress_(execution.progress) {
     for (std::uint8_t source = 0; source < 2; ++source) {
         const TriangleView& mesh = surfaces[source];
@@ -43,7 +44,7 @@ Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& exe
         std::vector<SpacePointId> number(mesh.vertices.size() / 3, kNone);
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
             poll(execution.progress, t);
-            Piece piece;
+            TrianglePiece piece;
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t v = index(mesh.triangles[3 * t + k]);
                 if (!number[v].has_value())
@@ -69,9 +70,9 @@ Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& exe
     tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution);
 }
 
-void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
-    assert(
-        std::ranges::none_of(pieces, [](const Piece& p) { return has_equal_corners(p.corners); }));
+void TrianglePieces::replace(std::int32_t input, std::vector<TrianglePiece>&& pieces) {
+    assert(std::ranges::none_of(
+        pieces, [](const TrianglePiece& p) { return has_equal_corners(p.corners); }));
     std::int32_t& list = list_[index(input)];
     if (list < 0) {
         list = static_cast<std::int32_t>(lists_.size());
@@ -83,7 +84,7 @@ void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
     if (own.pieces.size() < kMany) return;
     std::vector<spatial::Box> boxes(own.pieces.size());
     std::transform(own.pieces.begin(), own.pieces.end(), boxes.begin(),
-                   [this](const Piece& piece) { return box(piece.corners); });
+                   [this](const TrianglePiece& piece) { return box(piece.corners); });
     own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
 }
 

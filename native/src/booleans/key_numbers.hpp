@@ -15,7 +15,7 @@ namespace realmodel::booleans {
 
 /// Numbers things by arrays of numbers.
 template <class Key>
-class NumberTable {
+class KeyNumbers {
 public:
     std::size_t size() const { return keys_.size(); }
     const Key& operator[](std::int32_t number) const { return keys_[index(number)]; }
