@@ -36,6 +36,13 @@ def overturned(points):
     return v - 140.0 * np.sin(u / 110.0)
 
 
+def refolded(points):
+    """A fold across another one, whose axial plane it bends."""
+    x, y, z = (points - [500.0, 500.0, 400.0]).T
+    z = z - 70.0 * np.sin(y / 90.0 + 0.4)
+    return z - 90.0 * np.sin((0.6 * x + 0.8 * z) / 100.0)
+
+
 def cylinder(points):
     """A parallel fold about a level axis."""
     x, y, z = points.T
@@ -84,7 +91,9 @@ def _solve(data, lattice=LATTICE, **options):
 
 
 @pytest.mark.parametrize(
-    ("function", "least"), [(overturned, 0.97), (cylinder, 0.97), (dome, 0.95)], ids=lambda v: str(v)[:20]
+    ("function", "least"),
+    [(overturned, 0.97), (cylinder, 0.97), (dome, 0.95), (refolded, 0.98)],
+    ids=lambda v: str(v)[:20],
 )
 def test_folds_of_closed_form(function, least):
     field = _solve(_data(function))
@@ -92,7 +101,7 @@ def test_folds_of_closed_form(function, least):
     assert (np.diff(field.levels) > 0).all()
     assert not len(field.critical_points)
     assert not len(field.dips_missed)
-    assert field.misfit < 1e-4
+    assert field.misfit < 1e-3  # a millionth of the lattice
 
 
 def test_an_overturned_fold_bends_less_along_its_axis_and_in_its_axial_plane():
@@ -101,11 +110,11 @@ def test_an_overturned_fold_bends_less_along_its_axis_and_in_its_axial_plane():
     anisotropy = _solve(data).anisotropy
     azimuth, tilt = np.radians(25.0), np.radians(40.0)
     axis = np.array([np.sin(azimuth), np.cos(azimuth), 0.0])
-    assert abs(axis @ anisotropy.axes[0]) == pytest.approx(1.0, abs=1e-6)
     up = np.array([np.cos(azimuth) * np.sin(tilt), -np.sin(azimuth) * np.sin(tilt), np.cos(tilt)])
-    assert abs(up @ anisotropy.axes[1]) > 0.99
-    assert anisotropy.ratios[0] < 0.1
-    assert anisotropy.ratios[1] < 0.5
+    assert abs(np.cross(axis, up) @ anisotropy.axes[2]) > 0.99
+    ratios = np.array(anisotropy.ratios) / anisotropy.ratios[2]
+    assert ratios[0] < 0.1
+    assert ratios[1] < 0.5
 
 
 def test_along_dips_the_field_does_not_change():
@@ -172,7 +181,7 @@ def test_bounds_that_contradict_other_data_are_left_out():
         assert 1 <= len(against) <= 4
         assert ("bound", row) not in against
         away = np.linalg.norm(given[against[0][0]][against[0][1]] - points[row])
-        assert away < 400.0  # of a kilometer
+        assert away < 600.0  # of a kilometer: along the fold axis nothing changes
     right = np.searchsorted(field.levels, field.at(points)) == block
     assert right[np.setdiff1d(np.arange(150), wrong)].all()
     assert _share_right(overturned, field) > 0.97
@@ -345,4 +354,4 @@ def test_between_rough_surfaces_the_field_does_not_turn_back():
     assert np.abs(share - 0.5).max() < 0.15
     assert len(field.critical_points) <= 4
     smooth = _solve(_data(overturned))
-    assert smooth.order == 3
+    assert smooth.order == 5

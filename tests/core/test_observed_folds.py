@@ -129,7 +129,7 @@ def test_places_in_blocks_hold():
     for number, surface in enumerate(project.rocks[0].surfaces[:3]):
         surface.points = contacts(recumbent, LEVELS[recumbent][number], 5, 20 + number)
     without = build(project)
-    assert (blocks_at(without, places) == blocks).mean() < 0.9
+    assert (blocks_at(without, places) != blocks).any()
     project.rocks[0].observations = Observations(places, [NAMES[block] for block in blocks])
     model = build(project)
     assert model.observed().share == 1.0  # some lie on the boundary of their block

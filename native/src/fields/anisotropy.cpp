@@ -21,6 +21,11 @@ namespace {
 // So much the logarithm of the likelihood has to rise for a ratio and a direction more.
 constexpr double kWorth = 4;
 constexpr double kLeastRatio = 0.01;
+// Of the fifth order one over the least range.
+constexpr double kLargestRatio = 32;
+// Of the fifth order, of whose variance they are: without them its systems would be singular to
+// rounding where ranges are long. A hundred thousandth of how much folds rise and fall.
+constexpr Errors kLeastErrors{1e-10, 1e-8};
 // Scales of further coordinates: with the least one the sides of a fault hardly differ but by its
 // throw, with the largest one says little of the other.
 constexpr double kLeastLift = 1.0 / 64;
@@ -157,6 +162,79 @@ void search_second(const Search& search, Candidate& best) {
     Search::improve(best, found, kWorth);
 }
 
+/// Turned about one of its axes.
+Anisotropy turned_about(Anisotropy of, std::size_t axis, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    Vec3& second = of.axes[(axis + 1) % 3];
+    Vec3& third = of.axes[(axis + 2) % 3];
+    second =
+        unit(plus(times(elementary::cos(angle), second), times(elementary::sin(angle), third)));
+    third = cross(of.axes[axis], second);
+    return of;
+}
+
+/// Those near one: turned about each axis, and with other ratios along two of them, or with ranges
+/// along three.
+std::vector<Anisotropy> near(const Anisotropy& of, int order, double degrees, double factor) {
+    const std::size_t ratios = order == 5 ? 3 : 2;
+    const double largest = order == 5 ? kLargestRatio : 1;
+    std::vector<Anisotropy> out;
+    for (const double sign : {1.0, -1.0}) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out.push_back(turned_about(of, axis, sign * degrees));
+        for (std::size_t axis = 0; axis < ratios; ++axis) {
+            Anisotropy& other = out.emplace_back(of);
+            double& ratio = other.ratios[axis];
+            ratio = std::clamp(sign > 0 ? ratio * factor : ratio / factor, kLeastRatio, largest);
+        }
+    }
+    return out;
+}
+
+/// With its axes in the order of their ratios, right-handed.
+Anisotropy sorted(const Anisotropy& of) {
+    std::array<std::size_t, 3> order{0, 1, 2};
+    std::ranges::stable_sort(order, {}, [&](std::size_t axis) { return of.ratios[axis]; });
+    Anisotropy out;
+    for (std::size_t n = 0; n < 3; ++n) {
+        out.axes[n] = of.axes[order[n]];
+        out.ratios[n] = of.ratios[order[n]];
+    }
+    out.axes[2] = cross(Vec3{out.axes[0]}, Vec3{out.axes[1]});
+    return out;
+}
+
+/// The best near one: smaller and smaller steps as long as they pay.
+Candidate climbed(const Search& search, Candidate found) {
+    const Likely rest = found.what;
+    double step = 20, factor = 0.5;
+    while (step > 2) {
+        const double before = found.likelihood;
+        Search::improve(
+            found, search.best(near(found.what.anisotropy, rest.order, step, factor), rest), 0);
+        if (found.likelihood > before) continue;
+        step /= 2;
+        factor = std::sqrt(factor);
+    }
+    found.what.anisotropy = sorted(found.what.anisotropy);
+    return found;
+}
+
+/// Any directions: rocks that are folded twice have no fold axis in common, but beds may have been
+/// moved along one direction.
+void search_any(const Search& search, Candidate& best) {
+    std::vector<Anisotropy> tried;
+    for (const double second : {1.0, 0.3}) {
+        for (const Vec3& direction : main_directions()) {
+            tried.push_back(along_axis(direction, 0.3));
+            tried.back().ratios[1] = second;
+        }
+    }
+    const Candidate other = climbed(search, search.best(tried, best.what));
+    Search::improve(best, other, 2 * kWorth);
+    Search::improve(best, climbed(search, best), 2 * kWorth);
+}
+
 /// Other errors with the anisotropy of the best.
 void search_errors(const Search& search, Candidate& best) {
     std::vector<Likely> tried;
@@ -258,6 +336,36 @@ Likely most_likely(std::span<const Functional> known, std::span<const Vec3> norm
     search_errors(search, rough);
     Candidate best = climb(start);
     if (rough.likelihood > start.likelihood) Search::improve(best, climb(rough), kWorth);
+    return best.what;
+}
+
+Likely most_likely_anywhere(std::span<const Functional> known, const Likely& likely, double error,
+                            const Execution& execution) {
+    const Search search(known, error, execution);
+    Candidate best = search.best(std::array{likely});
+    search_any(search, best);
+    search_errors(search, best);
+    return best.what;
+}
+
+Likely most_likely_smooth(std::span<const Functional> known, const Likely& likely, double error,
+                          const Execution& execution) {
+    const Search search(known, error, execution);
+    std::vector<Likely> starts;
+    for (const Anisotropy& shape : {likely.anisotropy, kIsotropic}) {
+        for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
+            Likely& start = starts.emplace_back(likely);
+            start.order = 5;
+            start.errors = {std::max(likely.errors.value, kLeastErrors.value),
+                            std::max(likely.errors.slope, kLeastErrors.slope)};
+            start.anisotropy = shape;
+            for (double& ratio : start.anisotropy.ratios)
+                ratio *= factor;
+            start.lift *= factor;
+        }
+    }
+    Candidate best = search.best(std::array{likely});
+    Search::improve(best, climbed(search, search.best(starts)), 2 * kWorth);
     return best.what;
 }
 

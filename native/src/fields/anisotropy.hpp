@@ -20,7 +20,7 @@ Map3 map_of(const Anisotropy& anisotropy);
 struct Likely {
     Anisotropy anisotropy = kIsotropic;
     Errors errors;
-    int order = 3;               ///< of the derivatives that are least
+    int order = 3;               ///< of the derivatives that are least: see Kernel
     double lift = 1;             ///< of further coordinates
     std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
 
@@ -36,5 +36,14 @@ struct Likely {
 /// @param error  of values, as of Spline::log_likelihood
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
                    std::span<const Vec3> faults, double error, const Execution& execution);
+
+/// The same, with an anisotropy along any directions. It takes about three times as long.
+Likely most_likely_anywhere(std::span<const Functional> known, const Likely& likely, double error,
+                            const Execution& execution);
+
+/// The same with the fifth order, whose ratios are one over ranges: `likely` where that is
+/// likelier.
+Likely most_likely_smooth(std::span<const Functional> known, const Likely& likely, double error,
+                          const Execution& execution);
 
 }  // namespace realmodel::fields

@@ -138,8 +138,9 @@ private:
             numbers.dip_errors.size() != 2 * known_.data().dips.size())
             throw InputError("option", "a function is drawn of numbers for each line and dip");
         const double rough = kRough * 2 * known_.half_spacing();
-        drawn_.emplace(likely_.smoothness(), kind.scale, 1 + 2 * rough + farthest_lift(), rough,
-                       numbers);
+        const double most = *std::ranges::max_element(kind.anisotropy.ratios);
+        const double reach = std::max(most, 1.0) + 2 * rough + farthest_lift();
+        drawn_.emplace(likely_.smoothness(), kind.scale, reach, rough, numbers);
         begin(0.0, 0.7, "field through the data");
     }
 

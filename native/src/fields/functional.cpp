@@ -10,23 +10,24 @@ namespace {
 double between(const ValueAtom& a, const ValueAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r2 = dot(d, d) + squared(a.lift, b.lift);
-    if (!(r2 > 0)) return a.measured && b.measured ? kernel.error * a.weight * b.weight : 0;
-    return a.weight * b.weight * kernel.of_squared(r2);
+    const double error = !(r2 > 0) && a.measured && b.measured ? kernel.error : 0;
+    return a.weight * b.weight * (kernel.value(std::sqrt(r2)) + error);
 }
 
-double between(const ValueAtom& a, const SlopeAtom& b) {
+double between(const ValueAtom& a, const SlopeAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
-    return -3 * a.weight * r * (dot(d, b.along) + along(a.lift, b.lift, b.along_lift));
+    return -a.weight * kernel.rise(r) * (dot(d, b.along) + along(a.lift, b.lift, b.along_lift));
 }
 
-double between(const SlopeAtom& a, const SlopeAtom& b) {
+double between(const SlopeAtom& a, const SlopeAtom& b, const Kernel& kernel) {
     const Vec3 d = minus(a.at, b.at);
     const double r = std::sqrt(dot(d, d) + squared(a.lift, b.lift));
-    if (!(r > 0)) return 0;
-    return -3 * (r * (dot(a.along, b.along) + product(a.along_lift, b.along_lift)) +
-                 (dot(d, a.along) + along(a.lift, b.lift, a.along_lift)) *
-                     (dot(d, b.along) + along(a.lift, b.lift, b.along_lift)) / r);
+    const double straight =
+        kernel.rise(r) * (dot(a.along, b.along) + product(a.along_lift, b.along_lift));
+    if (!(r > 0)) return -straight;
+    return -(straight + kernel.bend(r) * (dot(d, a.along) + along(a.lift, b.lift, a.along_lift)) *
+                            (dot(d, b.along) + along(a.lift, b.lift, b.along_lift)));
 }
 
 Lift scaled(double factor, Lift lift) {
@@ -99,13 +100,13 @@ double Functional::with(const Functional& other, const Kernel& kernel) const {
         for (const ValueAtom& b : other.values)
             sum += between(a, b, kernel);
         for (const SlopeAtom& b : other.slopes)
-            sum += between(a, b);
+            sum += between(a, b, kernel);
     }
     for (const SlopeAtom& a : slopes) {
         for (const ValueAtom& b : other.values)
-            sum += between(b, a);
+            sum += between(b, a, kernel);
         for (const SlopeAtom& b : other.slopes)
-            sum += between(a, b);
+            sum += between(a, b, kernel);
     }
     return sum;
 }

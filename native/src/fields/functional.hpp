@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vectors.hpp"
+#include "interpolation/kriging/decay.hpp"
 
 namespace realmodel::fields {
 
@@ -60,15 +61,29 @@ inline Vec3 mapped(const Map3& map, Vec3 v, std::span<const double> lift,
 }
 
 /// Of functions of which derivatives of one order are least, integrated over all of space, with the
-/// variance of measured values: -r for the second derivatives, r^3 for the third.
+/// variance of measured values: -r for the second derivatives, r^3 for the third. With order 5 all
+/// derivatives up to the fifth are least together, those of less order by far in the large: the
+/// covariance of Matern with smoothness 7/2, of places as many ranges apart as they have units
+/// (Rasmussen and Williams 2006, equation 4.14).
 struct Kernel {
-    int order = 3;  ///< 2 or 3
+    int order = 3;  ///< 2, 3 or 5
     double error = 0;
 
-    /// At a distance, by its square.
-    double of_squared(double squared) const {
-        const double r = std::sqrt(squared);
-        return order == 2 ? -r : squared * r;
+    /// At a distance.
+    double value(double r) const {
+        if (order == 2) return -r;
+        if (order == 3) return r * r * r;
+        return interpolation::decay(r) * (1 + r * (1 + r * (0.4 + r / 15)));
+    }
+    /// Its derivative by the distance, divided by this.
+    double rise(double r) const {
+        if (order == 2) return -1 / r;
+        if (order == 3) return 3 * r;
+        return -interpolation::decay(r) * (0.2 + r * (0.2 + r / 15));
+    }
+    /// The derivative of rise(), divided by the distance: of the orders 3 and 5.
+    double bend(double r) const {
+        return order == 3 ? 3 / r : interpolation::decay(r) * (1 + r) / 15;
     }
 };
 

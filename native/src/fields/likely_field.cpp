@@ -30,6 +30,8 @@ constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kSampledForOrder = 
 // how many nodes they are counted.
 constexpr double kPerCriticalPoint = 20;
 constexpr std::size_t kMostCounted = 50000;
+// So many dips tell how the field runs between surfaces.
+constexpr std::size_t kLeastDips = 10;
 
 /// The box of a lattice with nodes farther apart, at most about `most` of them.
 Lattice coarsened(const Lattice& lattice, std::size_t most) {
@@ -84,9 +86,21 @@ private:
     }
 
     void look() {
-        likely_ = most_likely(sampled(gaps_, 3), known_.data().normals, known_.data().slits.normals,
+        const std::vector<Functional> sample = sampled(gaps_, 3);
+        likely_ = most_likely(sample, known_.data().normals, known_.data().slits.normals,
                               known_.error(), execution_);
-        choose_order();
+        std::vector<Likely> others;
+        if (is_told_by_dips()) {
+            others.push_back(most_likely_anywhere(sample, likely_, known_.error(), execution_));
+            others.push_back(most_likely_smooth(sample, others[0], known_.error(), execution_));
+        }
+        choose_order(std::move(others));
+    }
+
+    /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands.
+    bool is_told_by_dips() const {
+        const FieldData& data = known_.data();
+        return data.dips.size() >= kLeastDips && data.contacts.size() <= kSampledForOrder;
     }
 
     /// @param apart  how far each surface is from the next
@@ -127,10 +141,18 @@ private:
     /// Between rough surfaces the function whose third derivatives are least overshoots, and has
     /// critical points. That whose second ones are least bends at contacts instead. It is taken
     /// where it has so many fewer of them that the data may be less likely.
-    void choose_order() {
+    /// @param others  with which the sample is likelier, or the same
+    void choose_order(std::vector<Likely> others) {
         Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
         if (known_.error() > 0) rough.errors.value = likely_.errors.value;
-        if (log_probability(rough) > log_probability(likely_)) likely_ = rough;
+        others.push_back(rough);
+        double best = log_probability(likely_);
+        for (const Likely& other : others) {
+            const double probability = log_probability(other);
+            if (!(probability > best)) continue;
+            best = probability;
+            likely_ = other;
+        }
     }
 
     double log_probability(const Likely& likely) const {
@@ -147,7 +169,10 @@ private:
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
-        return *likelihood - kPerCriticalPoint * static_cast<double>(points.size());
+        const double cost = kPerCriticalPoint * static_cast<double>(points.size());
+        // Where a field does not change along an axis they come in lines.
+        const double most = is_told_by_dips() ? static_cast<double>(known.size()) : HUGE_VAL;
+        return *likelihood - std::min(cost, most);
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.

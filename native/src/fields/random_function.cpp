@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::fields {
 
 namespace {
@@ -36,8 +38,10 @@ RandomFunction::RandomFunction(const Smoothness& smoothness, double scale, doubl
     // A kernel |t|^a on lines is one of r^a times the mean of |u|^a. That of a Brownian motion is
     // -|t| / 2, of its integral |t|^3 / 12.
     const double mean = mean_coordinate(dimensions_);
-    const double variance =
-        smoothness.order == 2 ? 2 / mean : 12 / (mean * 2 / static_cast<double>(dimensions_ + 1));
+    const double variance = smoothness.order == 5 ? 1
+                            : smoothness.order == 2
+                                ? 2 / mean
+                                : 12 / (mean * 2 / static_cast<double>(dimensions_ + 1));
     factor_ = std::sqrt(scale * variance / static_cast<double>(lines_));
     const double size = std::sqrt(step_);
     const std::size_t middle = steps_ / 2;
@@ -51,14 +55,31 @@ RandomFunction::RandomFunction(const Smoothness& smoothness, double scale, doubl
         const double* const by = &drawn.steps[line * steps_];
         double* const value = &values_[line * (steps_ + 1)];
         double* const integral = &integrals_[line * (steps_ + 1)];
-        for (std::size_t n = middle; n < steps_; ++n) {
-            value[n + 1] = value[n] + size * by[n];
+        if (smoothness.order == 5) {
+            wave(std::sqrt(squared), by, {value, steps_ + 1});
+        } else {
+            for (std::size_t n = middle; n < steps_; ++n)
+                value[n + 1] = value[n] + size * by[n];
+            for (std::size_t n = middle; n-- > 0;)
+                value[n] = value[n + 1] - size * by[n];
+        }
+        for (std::size_t n = middle; n < steps_; ++n)
             integral[n + 1] = integral[n] + 0.5 * step_ * (value[n] + value[n + 1]);
-        }
-        for (std::size_t n = middle; n-- > 0;) {
-            value[n] = value[n + 1] - size * by[n];
+        for (std::size_t n = middle; n-- > 0;)
             integral[n] = integral[n + 1] - 0.5 * step_ * (value[n] + value[n + 1]);
-        }
+    }
+}
+
+/// The derivative of a wave along a line, at its steps.
+/// @param size  of the normal numbers that are the line's direction
+void RandomFunction::wave(double size, const double* normal, std::span<double> rises) const {
+    double chi = 0;
+    for (int n = 0; n < 7; ++n)
+        chi += normal[n] * normal[n];
+    const double frequency = size / std::sqrt(chi);
+    for (std::size_t n = 0; n < rises.size(); ++n) {
+        const double t = frequency * (step_ * static_cast<double>(n) - reach_);
+        rises[n] = frequency * (normal[7] * elementary::cos(t) - normal[8] * elementary::sin(t));
     }
 }
 
@@ -124,7 +145,7 @@ double RandomFunction::of(const Functional& functional) const {
     const Functional here =
         functional.mapped_by(smoothness_.map, smoothness_.lift, smoothness_.throws);
     for (const SlopeAtom& atom : here.slopes) {
-        assert(smoothness_.order == 3);
+        assert(smoothness_.order != 2);
         double rise = 0;
         for (std::size_t line = 0; line < lines_; ++line)
             rise += on_line(line, along(line, atom.at, atom.lift)).rise *

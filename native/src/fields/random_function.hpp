@@ -14,7 +14,10 @@ namespace realmodel::fields {
 /// A random function in space, drawn by turning bands (Matheron 1973): a sum of processes on lines
 /// in all directions, with a spline's kernel as generalized covariance. On a line that of r^3 is
 /// an integrated Brownian motion, and that of -r a Brownian motion (Matheron 1973, "The intrinsic
-/// random functions"; Chiles and Delfiner 2012, section 7.4).
+/// random functions"; Chiles and Delfiner 2012, section 7.4). That of the fifth order is a sum of
+/// waves, one on each line, whose frequencies have the spectral density of Matern's covariance:
+/// that of the t distribution with 7 degrees of freedom (Rasmussen and Williams 2006,
+/// equation 4.15).
 class RandomFunction {
 public:
     /// @param scale   variance per unit of the kernel
@@ -37,6 +40,7 @@ private:
         double value, rise;
     };
 
+    void wave(double size, const double* normal, std::span<double> rises) const;
     double along(std::size_t line, const Vec3& at, const Lift& lift) const;
     double integral(std::size_t line, double t) const;
     OnLine on_line(std::size_t line, double t) const;

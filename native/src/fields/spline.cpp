@@ -19,13 +19,21 @@ constexpr double kProducts = 100;
 // Of a row's variance: what the rows before it leave of a row that follows from them.
 constexpr double kRedundant = 1e-13;
 constexpr Eigen::Index kBlock = 64;
+using Lanes = Eigen::Array<double, kBlock, 1>;
+
+Lanes decayed(const Lanes& r) {
+    Lanes out;
+    for (Eigen::Index n = 0; n < kBlock; ++n)
+        out(n) = interpolation::decay(r(n));
+    return out;
+}
 
 }  // namespace
 
 Spline::Spline(std::span<const Functional> known, const Smoothness& smoothness,
                const Execution& execution)
     : smoothness_(smoothness) {
-    assert(smoothness.order == 2 || smoothness.order == 3);
+    assert(smoothness.order == 2 || smoothness.order == 3 || smoothness.order == 5);
     known_.reserve(known.size());
     for (const Functional& f : known)
         known_.push_back(f.mapped_by(smoothness.map, smoothness.lift, smoothness.throws));
@@ -191,7 +199,7 @@ void Spline::collect_centers() {
             if (atom.measured) measured_[{atom.at, atom.lift}] += forces_[i] * atom.weight;
         }
         // the kernel -r has no derivatives at its center
-        assert(smoothness_.order == 3 || known_[i].slopes.empty());
+        assert(smoothness_.order != 2 || known_[i].slopes.empty());
         for (const SlopeAtom& atom : known_[i].slopes) {
             auto& [along, up] = slopes[{atom.at, atom.lift}];
             along = moved(along, forces_[i], atom.along);
@@ -219,14 +227,15 @@ Vec3 Spline::place(const Vec3& at, std::span<const double> lift) const {
 double Spline::value(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);
     const Lift q = scaled(lift);
+    const Kernel kernel = smoothness_.kernel();
     double sum = dot(tilt_, p) + product(q, lift_tilt_);
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
-        sum += atom.weight * smoothness_.kernel().of_squared(dot(d, d) + squared(q, atom.lift));
+        sum += atom.weight * kernel.value(std::sqrt(dot(d, d) + squared(q, atom.lift)));
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
-        sum -= 3 * std::sqrt(dot(d, d) + squared(q, atom.lift)) *
+        sum -= kernel.rise(std::sqrt(dot(d, d) + squared(q, atom.lift))) *
                (dot(d, atom.along) + along(q, atom.lift, atom.along_lift));
     }
     return sum;
@@ -234,7 +243,6 @@ double Spline::value(const Vec3& at, const Lift& lift) const {
 
 void Spline::values_at(std::span<const Vec3> positions, std::span<const double> lifts,
                        std::span<double> values) const {
-    using Lanes = Eigen::Array<double, kBlock, 1>;
     const std::size_t further = positions.empty() ? 0 : lifts.size() / positions.size();
     std::vector<Lanes> up(further, Lanes::Zero());
     for (std::size_t first = 0; first < positions.size(); first += kBlock) {
@@ -257,22 +265,28 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
                 (x - atom.at[0]).square() + (y - atom.at[1]).square() + (z - atom.at[2]).square();
             for (std::size_t k = 0; k < further; ++k)
                 squared += (up[k] - atom.lift[k]).square();
+            const Lanes r = squared.sqrt();
             if (smoothness_.order == 2)
-                sum -= atom.weight * squared.sqrt();
+                sum -= atom.weight * r;
+            else if (smoothness_.order == 3)
+                sum += atom.weight * squared * r;
             else
-                sum += atom.weight * squared * squared.sqrt();
+                sum += atom.weight * decayed(r) * (1 + r * (1 + r * (0.4 + r / 15)));
         }
         for (const SlopeAtom& atom : slope_centers_) {
             const Lanes dx = x - atom.at[0], dy = y - atom.at[1], dz = z - atom.at[2];
             Lanes squared = dx.square() + dy.square() + dz.square();
-            Lanes rise =
-                dx * (3 * atom.along[0]) + dy * (3 * atom.along[1]) + dz * (3 * atom.along[2]);
+            Lanes rise = dx * atom.along[0] + dy * atom.along[1] + dz * atom.along[2];
             for (std::size_t k = 0; k < further; ++k) {
                 const Lanes dk = up[k] - atom.lift[k];
                 squared += dk.square();
-                rise += dk * (3 * atom.along_lift[k]);
+                rise += dk * atom.along_lift[k];
             }
-            sum -= squared.sqrt() * rise;
+            const Lanes r = squared.sqrt();
+            if (smoothness_.order == 3)
+                sum -= 3 * r * rise;
+            else
+                sum += decayed(r) * (0.2 + r * (0.2 + r / 15)) * rise;
         }
         std::copy_n(sum.data(), count, values.data() + first);
     }
@@ -281,6 +295,7 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
 std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);
     const Lift q = scaled(lift);
+    const Kernel kernel = smoothness_.kernel();
     Vec3 sum = tilt_;
     Lift rise = q.empty() ? Lift{} : lift_tilt_;
     const auto add = [&](double weight, const Vec3& d, const Lift& from) {
@@ -291,16 +306,17 @@ std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) 
     for (const ValueAtom& atom : value_centers_) {
         const Vec3 d = minus(p, atom.at);
         const double r = std::sqrt(dot(d, d) + squared(q, atom.lift));
-        if (r > 0) add(atom.weight * (smoothness_.order == 2 ? -1 / r : 3 * r), d, atom.lift);
+        if (r > 0) add(atom.weight * kernel.rise(r), d, atom.lift);
     }
     for (const SlopeAtom& atom : slope_centers_) {
         const Vec3 d = minus(p, atom.at);
         const double r = std::sqrt(dot(d, d) + squared(q, atom.lift));
         if (r > 0)
-            add(-3 * (dot(d, atom.along) + along(q, atom.lift, atom.along_lift)) / r, d, atom.lift);
-        sum = moved(sum, -3 * r, atom.along);
+            add(-kernel.bend(r) * (dot(d, atom.along) + along(q, atom.lift, atom.along_lift)), d,
+                atom.lift);
+        sum = moved(sum, -kernel.rise(r), atom.along);
         for (std::size_t k = 0; k < rise.size(); ++k)
-            rise[k] -= 3 * r * atom.along_lift[k];
+            rise[k] -= kernel.rise(r) * atom.along_lift[k];
     }
     return {sum, rise};
 }

@@ -23,14 +23,14 @@ struct Errors {
 struct Smoothness {
     Map3 map{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< of space: it bends less along some directions
     Errors errors{};
-    int order = 3;    ///< of the derivatives that are least: 2 (no slopes are known), or 3
+    int order = 3;    ///< of the derivatives that are least: 2 (no slopes are known), 3 or 5
     double lift = 1;  ///< of further coordinates
     std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
 
     Kernel kernel() const { return {order, errors.value}; }
 };
 
-/// The function in space that meets functionals and whose second or third derivatives are least,
+/// The function in space that meets functionals and whose derivatives are least (see Kernel),
 /// integrated over all of space: sum w_i L_i K + b . x with the kernel K (Duchon 1977; with
 /// derivatives as data: Wahba 1990, "Spline models for observational data", sections 1.3 and 2.4).
 /// Space is mapped first. Where data have errors it passes near them, as likely as the errors are.

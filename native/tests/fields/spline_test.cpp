@@ -46,6 +46,13 @@ Smoothness rough(const Map3& map) {
     return {map, {}, 2};
 }
 
+/// Of a quarter of the range.
+Smoothness smooth(Map3 map) {
+    for (Vec3& row : map)
+        row = times(4, row);
+    return {map, {}, 5};
+}
+
 double wave(const Vec3& p) {
     return p[2] + 0.2 * std::sin(3 * p[0]);
 }
@@ -70,6 +77,9 @@ TEST(Spline, MeetsValuesAndSlopes) {
         const Spline second(differences, rough(map), {});
         for (const Functional& f : differences)
             EXPECT_NEAR(second.of(f), f.right, 1e-9);
+        const Spline fifth(known, smooth(map), {});
+        for (const Functional& f : known)
+            EXPECT_NEAR(fifth.of(f), f.right, 1e-8);
     }
 }
 
@@ -84,16 +94,17 @@ TEST(Spline, APlaneComesOutAsItIs) {
     EXPECT_NEAR(gradient[2], 0.5, 1e-8);
 }
 
-std::vector<Spline> of_both_orders() {
+std::vector<Spline> of_all_orders() {
     const std::vector<Functional> known = known_of(wave, wave_slope);
     std::vector<Spline> out;
     out.emplace_back(known, Smoothness{kStretched}, Execution{});
     out.emplace_back(by_differences(known), rough(kStretched), Execution{});
+    out.emplace_back(known, smooth(kStretched), Execution{});
     return out;
 }
 
 TEST(Spline, GradientsAreThoseOfTheValues) {
-    for (const Spline& spline : of_both_orders()) {
+    for (const Spline& spline : of_all_orders()) {
         const Vec3 at{0.31, -0.22, 0.47};
         const Vec3 gradient = spline.gradient(at);
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -106,7 +117,7 @@ TEST(Spline, GradientsAreThoseOfTheValues) {
 }
 
 TEST(Spline, ManyValuesAtOnceAreThoseOfEach) {
-    for (const Spline& spline : of_both_orders()) {
+    for (const Spline& spline : of_all_orders()) {
         std::vector<Vec3> at;
         for (int n = 0; n < 150; ++n)
             at.push_back({0.01 * n, 0.5 - 0.003 * n, 0.2});
@@ -277,6 +288,9 @@ TEST(Spline, TheLikelihoodIsThatOfContrasts) {
         const double second = likelihood_by_contrasts(differences, map, 2);
         EXPECT_NEAR(*Spline(differences, rough(map), {}).log_likelihood(), second,
                     1e-6 * std::abs(second));
+        const double fifth = likelihood_by_contrasts(known, smooth(map).map, 5);
+        EXPECT_NEAR(*Spline(known, smooth(map), {}).log_likelihood(), fifth,
+                    1e-6 * std::abs(fifth));
     }
 }
 

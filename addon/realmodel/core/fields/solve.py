@@ -87,7 +87,8 @@ class LevelSetData:
 @dataclass(frozen=True)
 class Anisotropy:
     """A field bends less along some directions. axes: orthonormal, the fold axis first. ratios: how much, 1
-    as across them, 0.01 a hundredth of it."""
+    as across them, 0.01 a hundredth of it; of order 5 one over the ranges, in units of half of the lattice's
+    diagonal."""
 
     axes: tuple[tuple[float, float, float], ...]
     ratios: tuple[float, float, float]
@@ -111,11 +112,12 @@ class FieldDraw:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolvedField(ScalarField):
     """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
-    2 where surfaces are rough; how many contacts carry the field; the largest distance of a contact from its
-    surface, nearly; rows of the dips and bounds that contradict other data and do not hold; where the field
-    has critical points inside, (C, 3), none of one that is drawn; the fields on the other combinations of
-    sides of slits; the kind of random function, of which the native module draws others; and of each of the
-    missed bounds what it contradicts: "contact", "dip" or "bound", and the row."""
+    2 where surfaces are rough, or 5: all up to it, where the data are smooth; how many contacts carry the
+    field; the largest distance of a contact from its surface, nearly; rows of the dips and bounds that
+    contradict other data and do not hold; where the field has critical points inside, (C, 3), none of one
+    that is drawn; the fields on the other combinations of sides of slits; the kind of random function, of
+    which the native module draws others; and of each of the missed bounds what it contradicts: "contact",
+    "dip" or "bound", and the row."""
 
     anisotropy: Anisotropy
     order: int

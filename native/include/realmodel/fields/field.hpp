@@ -49,14 +49,14 @@ struct FieldData {
 /// How much less f may bend along some directions than across them.
 struct Anisotropy {
     std::array<std::array<double, 3>, 3> axes;  ///< orthonormal; the first is the fold axis
-    std::array<double, 3> ratios;               ///< 1: as across; 0.01: a hundredth of it
+    std::array<double, 3> ratios;  ///< 1: as across; 0.01: a hundredth; with order 5 1 / range
 };
 
 /// What kind of random function a field is, as its data say. Lengths and values are in units of
 /// half of the lattice's diagonal.
 struct FunctionKind {
     Anisotropy anisotropy;
-    int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough
+    int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough; 5: all to it
     double value_error = 0, slope_error = 0;    ///< variances of errors, in units of the kernel
     double lift = 1;                            ///< by how much further coordinates are scaled
     std::vector<std::array<double, 3>> throws;  ///< by how much places move for each unit of them
@@ -112,7 +112,8 @@ struct Field {
 
 /// The smoothest field that honors the data: its third derivatives, integrated over all of space,
 /// are least, or its second ones, where surfaces are so rough that it would else have critical
-/// points (Duchon 1977; Lajaunie, Courrioux and Manuel 1997 with other covariances). On each
+/// points (Duchon 1977), or all up to the fifth, where dips say that it is smoother, with a range
+/// (Matern's covariance; Lajaunie, Courrioux and Manuel 1997 with others). On each
 /// surface it has one value, which is free; along a dip's plane it does not change, and how fast it
 /// rises across it is free, too: only the mean over all dips is given. Bounds, rising levels and
 /// polarities are inequalities, met by active sets (Nocedal and Wright 2006, section 16.5).
