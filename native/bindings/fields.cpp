@@ -38,7 +38,8 @@ using SlitsTuple =
                Array<double>, Array<double>, Array<std::int64_t>, Indices>;
 /// Tolerance, most centers, and what is known of the anisotropy.
 using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
-/// Anisotropy, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left out.
+/// Axes and ratios, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left
+/// out.
 using KindTuple =
     std::tuple<AnisotropyTuple, int, double, double, double, std::vector<std::array<double, 3>>,
                double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
@@ -78,7 +79,7 @@ fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
     const auto& [kind, directions, steps, errors] = given;
     const auto& [anisotropy, order, value, slope, lift, throws, scale, gaps, centers, left_out] =
         kind;
-    return {{std::make_from_tuple<fields::Anisotropy>(anisotropy), order, value, slope, lift,
+    return {{std::make_from_tuple<fields::AxisRatios>(anisotropy), order, value, slope, lift,
              throws, scale, gaps, centers, left_out},
             {3 + slits, view(directions), view(steps), view(errors)}};
 }
@@ -106,8 +107,8 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                       view(of_bound)};
     }
     const auto& [tolerance, most_centers, anisotropy] = given;
-    std::optional<fields::Anisotropy> known;
-    if (anisotropy) known = std::make_from_tuple<fields::Anisotropy>(*anisotropy);
+    std::optional<fields::AxisRatios> known;
+    if (anisotropy) known = std::make_from_tuple<fields::AxisRatios>(*anisotropy);
     std::optional<fields::FieldDraw> draw;
     if (drawn) draw = draw_of(*drawn, data.slits.count);
     const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr,

@@ -132,6 +132,16 @@ def test_scripts_find_what_they_import():
                     assert hasattr(module, name) or find_spec(f"{node.module}.{name}"), (file.name, name)
 
 
+def test_types_of_native_headers_have_names_of_their_own():
+    native = PACKAGE.parents[1] / "native"
+    headers = {}
+    for file in sorted([*native.glob("src/**/*.hpp"), *native.glob("include/**/*.hpp")]):
+        defined = re.findall(r"^(?:class|struct|enum class) (\w+)[^;{]*{", file.read_text(), re.MULTILINE)
+        for name in defined:
+            headers.setdefault(name, []).append(file.name)
+    assert {name: found for name, found in headers.items() if len(found) > 1} == {}
+
+
 def test_public_classes_have_names_of_their_own():
     modules = {}
     for name, file in _modules(PACKAGE).items():

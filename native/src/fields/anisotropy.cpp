@@ -63,7 +63,7 @@ public:
         return {of[at], found[at]};
     }
     /// The best of some with the anisotropies in the place of theirs.
-    Candidate best(std::span<const Anisotropy> of, const Likely& rest) const {
+    Candidate best(std::span<const AxisRatios> of, const Likely& rest) const {
         std::vector<Likely> all(of.size(), rest);
         for (std::size_t n = 0; n < of.size(); ++n)
             all[n].anisotropy = of[n];
@@ -96,13 +96,13 @@ Vec3 fold_axis(std::span<const Vec3> normals) {
     return unit({sign * axis(0), sign * axis(1), sign * axis(2)});
 }
 
-Anisotropy along_axis(const Vec3& axis, double ratio) {
+AxisRatios along_axis(const Vec3& axis, double ratio) {
     const Vec3 second = perpendicular(axis);
     return {{axis, second, cross(axis, second)}, {ratio, 1, 1}};
 }
 
 /// With its second axis turned about the first, and another ratio along it.
-Anisotropy turned(const Anisotropy& of, double degrees, double ratio) {
+AxisRatios turned(const AxisRatios& of, double degrees, double ratio) {
     const double angle = degrees * std::numbers::pi / 180;
     const Vec3 second = unit(
         plus(times(elementary::cos(angle), of.axes[1]), times(elementary::sin(angle), of.axes[2])));
@@ -119,7 +119,7 @@ std::vector<Vec3> main_directions() {
 
 void search_first(const Search& search, std::span<const Vec3> normals, Candidate& best) {
     const Likely rest = best.what;
-    std::vector<Anisotropy> tried;
+    std::vector<AxisRatios> tried;
     if (normals.size() >= 3) {
         const Vec3 axis = fold_axis(normals);
         for (const double ratio : {0.5, 0.25, 0.1, 0.05, 0.02, kLeastRatio})
@@ -139,8 +139,8 @@ void search_first(const Search& search, std::span<const Vec3> normals, Candidate
 
 void search_second(const Search& search, Candidate& best) {
     const Likely rest = best.what;
-    std::vector<Anisotropy> tried;
-    const Anisotropy first = best.what.anisotropy;
+    std::vector<AxisRatios> tried;
+    const AxisRatios first = best.what.anisotropy;
     for (int degrees = 0; degrees < 180; degrees += 20) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
@@ -148,7 +148,7 @@ void search_second(const Search& search, Candidate& best) {
     Candidate found = search.best(tried, rest);
     double step = 12, factor = 0.6;
     for (int round = 0; round < 8; ++round) {
-        const Anisotropy at = found.what.anisotropy;
+        const AxisRatios at = found.what.anisotropy;
         const double ratio = at.ratios[1];
         tried = {turned(at, step, ratio), turned(at, -step, ratio),
                  turned(at, 0, std::max(kLeastRatio, ratio * factor)),
@@ -163,7 +163,7 @@ void search_second(const Search& search, Candidate& best) {
 }
 
 /// Turned about one of its axes.
-Anisotropy turned_about(Anisotropy of, std::size_t axis, double degrees) {
+AxisRatios turned_about(AxisRatios of, std::size_t axis, double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     Vec3& second = of.axes[(axis + 1) % 3];
     Vec3& third = of.axes[(axis + 2) % 3];
@@ -175,15 +175,15 @@ Anisotropy turned_about(Anisotropy of, std::size_t axis, double degrees) {
 
 /// Those near one: turned about each axis, and with other ratios along two of them, or with ranges
 /// along three.
-std::vector<Anisotropy> near(const Anisotropy& of, int order, double degrees, double factor) {
+std::vector<AxisRatios> near(const AxisRatios& of, int order, double degrees, double factor) {
     const std::size_t ratios = order == 5 ? 3 : 2;
     const double largest = order == 5 ? kLargestRatio : 1;
-    std::vector<Anisotropy> out;
+    std::vector<AxisRatios> out;
     for (const double sign : {1.0, -1.0}) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             out.push_back(turned_about(of, axis, sign * degrees));
         for (std::size_t axis = 0; axis < ratios; ++axis) {
-            Anisotropy& other = out.emplace_back(of);
+            AxisRatios& other = out.emplace_back(of);
             double& ratio = other.ratios[axis];
             ratio = std::clamp(sign > 0 ? ratio * factor : ratio / factor, kLeastRatio, largest);
         }
@@ -192,10 +192,10 @@ std::vector<Anisotropy> near(const Anisotropy& of, int order, double degrees, do
 }
 
 /// With its axes in the order of their ratios, right-handed.
-Anisotropy sorted(const Anisotropy& of) {
+AxisRatios sorted(const AxisRatios& of) {
     std::array<std::size_t, 3> order{0, 1, 2};
     std::ranges::stable_sort(order, {}, [&](std::size_t axis) { return of.ratios[axis]; });
-    Anisotropy out;
+    AxisRatios out;
     for (std::size_t n = 0; n < 3; ++n) {
         out.axes[n] = of.axes[order[n]];
         out.ratios[n] = of.ratios[order[n]];
@@ -223,7 +223,7 @@ Candidate climbed(const Search& search, Candidate found) {
 /// Any directions: rocks that are folded twice have no fold axis in common, but beds may have been
 /// moved along one direction.
 void search_any(const Search& search, Candidate& best) {
-    std::vector<Anisotropy> tried;
+    std::vector<AxisRatios> tried;
     for (const double second : {1.0, 0.3}) {
         for (const Vec3& direction : main_directions()) {
             tried.push_back(along_axis(direction, 0.3));
@@ -303,7 +303,7 @@ void search_throws(const Search& search, std::span<const Vec3> normals, Candidat
 
 }  // namespace
 
-Map3 map_of(const Anisotropy& anisotropy) {
+Map3 map_of(const AxisRatios& anisotropy) {
     Map3 map{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Vec3& direction = anisotropy.axes[axis];
@@ -352,7 +352,7 @@ Likely most_likely_smooth(std::span<const Functional> known, const Likely& likel
                           const Execution& execution) {
     const Search search(known, error, execution);
     std::vector<Likely> starts;
-    for (const Anisotropy& shape : {likely.anisotropy, kIsotropic}) {
+    for (const AxisRatios& shape : {likely.anisotropy, kIsotropic}) {
         for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
             Likely& start = starts.emplace_back(likely);
             start.order = 5;

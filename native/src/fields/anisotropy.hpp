@@ -11,14 +11,14 @@
 
 namespace realmodel::fields {
 
-inline constexpr Anisotropy kIsotropic{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {1, 1, 1}};
+inline constexpr AxisRatios kIsotropic{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {1, 1, 1}};
 
 /// Scales space by the ratios along the axes.
-Map3 map_of(const Anisotropy& anisotropy);
+Map3 map_of(const AxisRatios& anisotropy);
 
 /// What kind of random function data are most likely to be of.
 struct Likely {
-    Anisotropy anisotropy = kIsotropic;
+    AxisRatios anisotropy = kIsotropic;
     Errors errors;
     int order = 3;               ///< of the derivatives that are least: see Kernel
     double lift = 1;             ///< of further coordinates

@@ -323,7 +323,7 @@ TEST(Spline, WeightsSayWhatAValueIsMadeOf) {
 
 TEST(Anisotropy, MapsScaleAlongTheAxes) {
     const double half = std::sqrt(0.5);
-    const Anisotropy of{{{{half, half, 0}, {-half, half, 0}, {0, 0, 1}}}, {0.1, 1, 0.5}};
+    const AxisRatios of{{{{half, half, 0}, {-half, half, 0}, {0, 0, 1}}}, {0.1, 1, 0.5}};
     const Vec3 along = mapped(map_of(of), {half, half, 2});
     EXPECT_NEAR(along[0], 0.1 * half, 1e-15);
     EXPECT_NEAR(along[1], 0.1 * half, 1e-15);
@@ -338,7 +338,7 @@ TEST(Anisotropy, IsFoundAlongTheFoldAxis) {
     for (const int threads : {1, 4}) {
         const Likely likely = most_likely(known, normals, {}, 0, {threads, nullptr});
         EXPECT_EQ(likely.errors.value, 0);
-        const Anisotropy& found = likely.anisotropy;
+        const AxisRatios& found = likely.anisotropy;
         EXPECT_NEAR(std::abs(found.axes[0][1]), 1, 1e-9);
         EXPECT_LE(found.ratios[0], 0.1);
         // and upwards, along which the wave is only moved

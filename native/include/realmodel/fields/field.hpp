@@ -47,7 +47,7 @@ struct FieldData {
 };
 
 /// How much less f may bend along some directions than across them.
-struct Anisotropy {
+struct AxisRatios {
     std::array<std::array<double, 3>, 3> axes;  ///< orthonormal; the first is the fold axis
     std::array<double, 3> ratios;  ///< 1: as across; 0.01: a hundredth; with order 5 1 / range
 };
@@ -55,7 +55,7 @@ struct Anisotropy {
 /// What kind of random function a field is, as its data say. Lengths and values are in units of
 /// half of the lattice's diagonal.
 struct FunctionKind {
-    Anisotropy anisotropy;
+    AxisRatios anisotropy;
     int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough; 5: all to it
     double value_error = 0, slope_error = 0;    ///< variances of errors, in units of the kernel
     double lift = 1;                            ///< by how much further coordinates are scaled
@@ -86,7 +86,7 @@ struct FieldOptions {
     double tolerance = 0;     ///< distance by which surfaces may miss contacts; 0: only by rounding
     int most_centers = 2500;  ///< at most so many contacts carry the field
     /// Found before; null: the one under which the data are most likely.
-    const Anisotropy* anisotropy = nullptr;
+    const AxisRatios* anisotropy = nullptr;
     const FieldDraw* draw = nullptr;  ///< null: the smoothest field, the mean of all
 };
 
