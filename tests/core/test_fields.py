@@ -355,3 +355,5 @@ def test_between_rough_surfaces_the_field_does_not_turn_back():
     assert len(field.critical_points) <= 4
     smooth = _solve(_data(overturned))
     assert smooth.order == 5
+    coarse = _solve(_data(overturned), lattice=Lattice((0.0, 0.0, 0.0), (100.0, 100.0, 100.0), (11, 11, 9)))
+    assert coarse.order == 3  # of a live edit, which is not to wait

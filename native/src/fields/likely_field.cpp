@@ -32,6 +32,7 @@ constexpr double kPerCriticalPoint = 20;
 constexpr std::size_t kMostCounted = 50000;
 // So many dips tell how the field runs between surfaces.
 constexpr std::size_t kLeastDips = 10;
+constexpr std::size_t kLeastNodes = 4000;
 
 /// The box of a lattice with nodes farther apart, at most about `most` of them.
 Lattice coarsened(const Lattice& lattice, std::size_t most) {
@@ -97,10 +98,12 @@ private:
         choose_order(std::move(others));
     }
 
-    /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands.
+    /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands. A
+    /// coarse lattice, of what follows the user's hand, shows less than a longer search finds.
     bool is_told_by_dips() const {
         const FieldData& data = known_.data();
-        return data.dips.size() >= kLeastDips && data.contacts.size() <= kSampledForOrder;
+        return data.dips.size() >= kLeastDips && data.contacts.size() <= kSampledForOrder &&
+               known_.lattice().nodes() >= kLeastNodes;
     }
 
     /// @param apart  how far each surface is from the next
