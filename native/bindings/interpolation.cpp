@@ -382,49 +382,8 @@ dips          as krige
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
 }
 
-}  // namespace
-
-void bind_interpolation(py::module_& module) {
+void bind_fits(py::module_& module) {
     using py::arg;
-    bind_estimators(module);
-    module.def(
-        "mean_spacing", &mean_spacing, arg("points"), arg("are_apart") = false,
-        R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.
-
-are_apart   no two points have one place, and all are finite: they stay where they are
-
-Raises InputError as krige does for points.)");
-    module.def(
-        "dip_baseline",
-        [](const py::dict& variogram, double spacing) {
-            return interpolation::dip_baseline(variogram_of(variogram), spacing);
-        },
-        arg("variogram"), arg("spacing"),
-        R"(The baseline of slopes with which they say most of heights under a variogram, as krige takes it.
-
-spacing     the mean spacing of points and dips together)");
-    module.def(
-        "buffer_of_clusters", &buffer_of_clusters, arg("points"), arg("execution") = py::none(),
-        R"(How far others should be from one of clustered points (P, 3) that is left out; else 0.
-
-It is then predicted from as far as the places between the points are. Raises InputError as krige does
-for points; Cancelled.)");
-    module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
-               arg("execution") = py::none(),
-               R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
-
-Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
-    module.def("line_sums", &line_sums, arg("nodes"), arg("directions"), arg("starts"),
-               arg("values"), arg("step"), arg("execution") = py::none(),
-               R"(Sums of processes on lines, by linear interpolation of their samples.
-
-nodes       (N, 2) float64
-directions  (L, 2) float64: on line l a node p is at p . d
-starts      (L,) float64: where the first sample of each line is
-values      (L, M) float64: samples at equal steps
-step        between samples
-
-Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"),
                arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
                arg("neighbours") = 32, arg("are_apart") = false, arg("dips") = py::none(),
@@ -473,6 +432,52 @@ variance of each thickness between two of them in units of its sill; constants (
 each lies above the first point; and points, how many of them counted. None where the data are too
 few.
 Raises InputError as fit_variogram; Cancelled.)");
+}
+
+}  // namespace
+
+void bind_interpolation(py::module_& module) {
+    using py::arg;
+    bind_estimators(module);
+    module.def(
+        "mean_spacing", &mean_spacing, arg("points"), arg("are_apart") = false,
+        R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.
+
+are_apart   no two points have one place, and all are finite: they stay where they are
+
+Raises InputError as krige does for points.)");
+    module.def(
+        "dip_baseline",
+        [](const py::dict& variogram, double spacing) {
+            return interpolation::dip_baseline(variogram_of(variogram), spacing);
+        },
+        arg("variogram"), arg("spacing"),
+        R"(The baseline of slopes with which they say most of heights under a variogram, as krige takes it.
+
+spacing     the mean spacing of points and dips together)");
+    module.def(
+        "buffer_of_clusters", &buffer_of_clusters, arg("points"), arg("execution") = py::none(),
+        R"(How far others should be from one of clustered points (P, 3) that is left out; else 0.
+
+It is then predicted from as far as the places between the points are. Raises InputError as krige does
+for points; Cancelled.)");
+    module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
+               arg("execution") = py::none(),
+               R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
+
+Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
+    module.def("line_sums", &line_sums, arg("nodes"), arg("directions"), arg("starts"),
+               arg("values"), arg("step"), arg("execution") = py::none(),
+               R"(Sums of processes on lines, by linear interpolation of their samples.
+
+nodes       (N, 2) float64
+directions  (L, 2) float64: on line l a node p is at p . d
+starts      (L,) float64: where the first sample of each line is
+values      (L, M) float64: samples at equal steps
+step        between samples
+
+Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
+    bind_fits(module);
 }
 
 }  // namespace realmodel::bindings

@@ -245,6 +245,54 @@ std::pair<Array<std::int32_t>, Array<double>> crowded_data(
     return {to_array(std::move(found.numbers)), to_array(std::move(found.room))};
 }
 
+void bind_ties(py::module_& module) {
+    using py::arg;
+    module.def(
+        "ties", &ties, arg("nodes"), arg("triangles"), arg("sheets"), arg("data"), arg("tolerance"),
+        arg("execution") = py::none(),
+        R"(A correction of sheets over a planar mesh, nodes (N, 2), triangles (T, 3), to honor data.
+
+sheets     heights (S, N), NaN where there are none; sides (S, F) of faults, -1, +1, or 0 for both;
+           weights (F, N): where 0, both sides of a fault are corrected alike, where 1 by themselves
+data       places (C, 2); lower and upper bounds (C,), equal for contacts; the sheet of each (C,)
+tolerance  heights so near to what is asked for are right
+
+Returns a dict: radii (L,), positions (M, 2), sided (M F,), coefficients (L M,), for tied_heights; before
+and after, (C,): how far the sheet lies below each datum, above it negative, NaN where it has no triangle.
+Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
+    module.def("tied_heights", &tied_heights, arg("heights"), arg("nodes"), arg("sided"),
+               arg("terms"), arg("execution") = py::none(),
+               R"(Heights (N,) of a sheet at nodes (N, 2), corrected.
+
+sided  (N, F): the sheet's sides of faults times their weights at the nodes
+terms  radii (L,), positions (M, 2), sided (M, F), coefficients (L, M), of ties
+
+Returns (N,). Those of some nodes are the same as among all, to the last bit.)");
+    module.def(
+        "raised_heights", &raised_heights, arg("nodes"), arg("triangles"), arg("heights"),
+        arg("data"), arg("tolerance"), arg("execution") = py::none(),
+        R"(The heights of a sheet that was raised at nodes, so that it honors data within triangles, too.
+
+heights    at nodes (N, 2), of triangles (T, 3): as raised (N,), and the least ones (N,), NaN where there is none
+data       places (C, 2); lower and upper bounds (C,); margins (C,), by how much these are narrowed
+tolerance  heights so near to what is asked for are right
+
+Returns (N,). Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
+    module.def(
+        "nodes_around", &nodes_around, arg("nodes"), arg("triangles"), arg("places"),
+        R"(The nodes (K,) of the triangles that places (C, 2) lie in, of nodes (N, 2), triangles (T, 3).
+
+Ascending. Raises InputError: kind "not_finite", "bad_index".)");
+    module.def("crowded_data", &crowded_data, arg("nodes"), arg("triangles"), arg("data"),
+               arg("least"),
+               R"(The data that a mesh, nodes (N, 2), triangles (T, 3), cannot honor beside others.
+
+data  places (C, 2); lower and upper bounds (C,), equal for contacts
+
+Returns their numbers (K,), ascending, and room (K,): how far the nearest of the data that count is.
+Raises InputError: kind "not_finite", "bad_index".)");
+}
+
 }  // namespace
 
 void bind_surfaces(py::module_& module) {
@@ -306,50 +354,7 @@ dips_missed, as of points; bounds_missed, the number of point_bounds that are no
 converged, whether they ended because nothing was left to improve.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "bad_index", "option";
 Cancelled.)");
-    module.def(
-        "ties", &ties, arg("nodes"), arg("triangles"), arg("sheets"), arg("data"), arg("tolerance"),
-        arg("execution") = py::none(),
-        R"(A correction of sheets over a planar mesh, nodes (N, 2), triangles (T, 3), to honor data.
-
-sheets     heights (S, N), NaN where there are none; sides (S, F) of faults, -1, +1, or 0 for both;
-           weights (F, N): where 0, both sides of a fault are corrected alike, where 1 by themselves
-data       places (C, 2); lower and upper bounds (C,), equal for contacts; the sheet of each (C,)
-tolerance  heights so near to what is asked for are right
-
-Returns a dict: radii (L,), positions (M, 2), sided (M F,), coefficients (L M,), for tied_heights; before
-and after, (C,): how far the sheet lies below each datum, above it negative, NaN where it has no triangle.
-Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
-    module.def("tied_heights", &tied_heights, arg("heights"), arg("nodes"), arg("sided"),
-               arg("terms"), arg("execution") = py::none(),
-               R"(Heights (N,) of a sheet at nodes (N, 2), corrected.
-
-sided  (N, F): the sheet's sides of faults times their weights at the nodes
-terms  radii (L,), positions (M, 2), sided (M, F), coefficients (L, M), of ties
-
-Returns (N,). Those of some nodes are the same as among all, to the last bit.)");
-    module.def(
-        "raised_heights", &raised_heights, arg("nodes"), arg("triangles"), arg("heights"),
-        arg("data"), arg("tolerance"), arg("execution") = py::none(),
-        R"(The heights of a sheet that was raised at nodes, so that it honors data within triangles, too.
-
-heights    at nodes (N, 2), of triangles (T, 3): as raised (N,), and the least ones (N,), NaN where there is none
-data       places (C, 2); lower and upper bounds (C,); margins (C,), by how much these are narrowed
-tolerance  heights so near to what is asked for are right
-
-Returns (N,). Raises InputError: kind "not_finite", "bad_index"; Cancelled.)");
-    module.def(
-        "nodes_around", &nodes_around, arg("nodes"), arg("triangles"), arg("places"),
-        R"(The nodes (K,) of the triangles that places (C, 2) lie in, of nodes (N, 2), triangles (T, 3).
-
-Ascending. Raises InputError: kind "not_finite", "bad_index".)");
-    module.def("crowded_data", &crowded_data, arg("nodes"), arg("triangles"), arg("data"),
-               arg("least"),
-               R"(The data that a mesh, nodes (N, 2), triangles (T, 3), cannot honor beside others.
-
-data  places (C, 2); lower and upper bounds (C,), equal for contacts
-
-Returns their numbers (K,), ascending, and room (K,): how far the nearest of the data that count is.
-Raises InputError: kind "not_finite", "bad_index".)");
+    bind_ties(module);
 }
 
 }  // namespace realmodel::bindings
