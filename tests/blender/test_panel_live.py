@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The live rebuild: what starts it, what it keeps, and that it ends."""
 
+import time
 from unittest import mock
 
 import bpy
@@ -27,6 +28,18 @@ class Live(PanelCase):
         self.live_is_done()
         self.assertAlmostEqual(volume(self.block().data), 15e4, delta=1.0)
         self.assertAlmostEqual(self.volumes()["S2 block"], 15e4, delta=1.0)
+
+    def test_an_edit_that_blender_has_not_reported_when_a_build_ends(self):
+        raise_by(self.items[2], 5.0)
+        while not live._work._jobs:
+            time.sleep(live._work.look())
+        for job, _ in live._work._jobs.values():
+            job.wait()
+        for vertex in self.items[2].data.vertices:
+            vertex.co.z += 2.0
+        self.items[2].data.update()  # Blender evaluates it later
+        self.live_is_done()
+        self.assertAlmostEqual(volume(self.block().data), 17e4, delta=1.0)
 
     def test_moving_the_object_and_a_setting(self):
         self.items[2].location.z += 2.0

@@ -136,16 +136,21 @@ def _finish(name, job, changed_at):
 
 @contextmanager
 def _our_own(scene):
-    """Changes made within are the add-on's own, not edits. Blender runs timers after it has reported all
-    earlier edits."""
+    """Changes made within are the add-on's own, not edits."""
     global _at_work
+    _report(scene)  # edits that Blender has not evaluated yet would be taken for ours
     _at_work = True
     try:
         yield
     finally:
-        for layer in scene.view_layers if scene is not None else ():
-            layer.update()  # Blender reports the changes now
+        _report(scene)
         _at_work = False
+
+
+def _report(scene):
+    """Blender reports the changes of a scene now."""
+    for layer in scene.view_layers if scene is not None else ():
+        layer.update()
 
 
 def _begin(name, _changed_at):

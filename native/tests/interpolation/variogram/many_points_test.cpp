@@ -33,8 +33,8 @@ Points varied() {
 TEST(NearestOfSome, AsATreeOfAllFindsThem) {
     const Points points = varied();
     const DistinctPoints positions{points.size(), [&](std::size_t i) {
-                                  return Position{points[i][0], points[i][1]};
-                              }};
+                                       return Position{points[i][0], points[i][1]};
+                                   }};
     std::vector<std::int32_t> asked = even_part(points.size(), 700);
     asked.push_back(static_cast<std::int32_t>(points.size()) - 1);
     for (const std::size_t count : {1U, 2U, 33U}) {
