@@ -146,7 +146,7 @@ private:
     std::vector<std::vector<std::size_t>> sheets_of_;    ///< of each history
     std::vector<std::int32_t> position_of_;              ///< of each vertex: its plan position
     std::vector<PlanPosition> positions_;
-    std::vector<std::uint32_t> column_of_;  ///< of each position, in the history at hand
+    std::vector<std::uint32_t> column_of_;  ///< of each position, in the history that is replayed
     std::vector<std::size_t> first_layer_;  ///< of each history, among the buckets of corners
     Buckets<Corner> corners_;  ///< by history and layer; those in no layer before all layers
 };

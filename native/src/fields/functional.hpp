@@ -61,10 +61,10 @@ inline Vec3 mapped(const Map3& map, Vec3 v, std::span<const double> lift,
 }
 
 /// Of functions of which derivatives of one order are least, integrated over all of space, with the
-/// variance of measured values: -r for the second derivatives, r^3 for the third. With order 5 all
-/// derivatives up to the fifth are least together, those of less order by far in the large: the
-/// covariance of Matern with smoothness 7/2, of places as many ranges apart as they have units
-/// (Rasmussen and Williams 2006, equation 4.14).
+/// variance of measured values: -r for the second derivatives, r^3 for the third. With order 5 the
+/// sum of all derivatives up to the fifth is least, each times a power of the range: this is the
+/// covariance of Matern with smoothness 7/2, of distances in ranges (Rasmussen and Williams 2006,
+/// equation 4.14).
 struct Kernel {
     int order = 3;  ///< 2, 3 or 5
     double error = 0;

@@ -30,7 +30,7 @@ constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kSampledForOrder = 
 // how many nodes they are counted.
 constexpr double kPerCriticalPoint = 20;
 constexpr std::size_t kMostCounted = 50000;
-// So many dips tell how the field runs between surfaces.
+// So many dips tell how the field runs between surfaces, on a lattice of so many nodes.
 constexpr std::size_t kLeastDips = 10;
 constexpr std::size_t kLeastNodes = 4000;
 
@@ -98,8 +98,8 @@ private:
         choose_order(std::move(others));
     }
 
-    /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands. A
-    /// coarse lattice, of what follows the user's hand, shows less than a longer search finds.
+    /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands of
+    /// contacts. Live edits, whose lattices are coarse, are not to wait for a longer search.
     bool is_told_by_dips() const {
         const FieldData& data = known_.data();
         return data.dips.size() >= kLeastDips && data.contacts.size() <= kSampledForOrder &&

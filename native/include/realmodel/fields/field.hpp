@@ -56,7 +56,7 @@ struct AxisRatios {
 /// half of the lattice's diagonal.
 struct FunctionKind {
     AxisRatios anisotropy;
-    int order = 3;  ///< of the derivatives that are least: 2 where surfaces are rough; 5: all to it
+    int order = 3;  ///< of the derivatives that are least: 2 where rough, 5: all up to the fifth
     double value_error = 0, slope_error = 0;    ///< variances of errors, in units of the kernel
     double lift = 1;                            ///< by how much further coordinates are scaled
     std::vector<std::array<double, 3>> throws;  ///< by how much places move for each unit of them
