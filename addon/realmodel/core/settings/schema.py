@@ -62,7 +62,9 @@ ROCK = {
         check=_without(edge_length_fault),
         zero_is_none=True,
         needed="if a surface has `points`, unless `triangles` is given",
-        more='`"auto"`: half the spacing of the points of the surfaces, where they lie',
+        more="Where points lie much closer together than it is long, they become [nodes "
+        'themselves](methods.md#ties). `"auto"`: half the spacing of the points of the surfaces, '
+        "where they lie",
     ),
     "triangles": Setting(
         kind="whole",
