@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from realmodel.core.base.work import run
-from realmodel.core.fields import FieldDraws, Lattice, LevelSetData
+from realmodel.core.fields import FieldDraws, Lattice
 from realmodel.core.heights.turning_bands import Noise
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,10 +47,13 @@ def cases():
     lattice = Lattice((0.0, 0.0, 0.0), (250.0, 250.0, 250.0), (33, 33, 23))
     for name in ("n_upright", "n_unconformity"):
         data, places, truth = folds.noddy(name)
-        some = LevelSetData(
-            data.names, data.contacts[::3], data.contact_surfaces[::3], data.dips[::3], data.normals[::3]
+        yield (
+            f"{name}, Noddy, a third of the data",
+            folds.some_of(data, 3),
+            lattice,
+            places[:PLACES],
+            truth[:PLACES],
         )
-        yield f"{name}, Noddy, a third of the data", some, lattice, places[:PLACES], truth[:PLACES]
 
 
 def main():

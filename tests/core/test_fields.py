@@ -104,6 +104,28 @@ def test_folds_of_closed_form(function, least):
     assert field.misfit < 1e-3  # a millionth of the lattice
 
 
+def _with_errors(data, degrees, meters):
+    rng = np.random.default_rng(5)
+    normals = data.normals + np.radians(degrees) * rng.normal(size=data.normals.shape)
+    return replace(
+        data,
+        contacts=data.contacts + meters * rng.normal(size=data.contacts.shape),
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+    )
+
+
+@pytest.mark.parametrize(
+    ("function", "holes", "dips", "least"),
+    [(overturned, 8, 30, 0.94), (dome, 8, 30, 0.96), (refolded, 16, 60, 0.97)],
+)
+def test_errors_of_dips_are_not_taken_for_folds(function, holes, dips, least):
+    """The search for the kind of field ended at ranges as short as the distances of the data: 0.51 of the
+    overturned fold was right."""
+    field = _solve(_with_errors(_data(function, holes=holes, dips=dips), 5.0, 0.5))
+    assert _share_right(function, field) > least
+    assert not len(field.critical_points)
+
+
 def test_an_overturned_fold_bends_less_along_its_axis_and_in_its_axial_plane():
     data = _data(overturned)
     assert (data.normals[:, 2] < 0).any()
@@ -322,13 +344,28 @@ def noddy(name):
         return data, truth["points"][block >= 0], block[block >= 0]
 
 
+def some_of(data, every):
+    return replace(
+        data,
+        contacts=data.contacts[::every],
+        contact_surfaces=data.contact_surfaces[::every],
+        dips=data.dips[::every],
+        normals=data.normals[::every],
+    )
+
+
 @pytest.mark.skipif(not FOLDS.exists(), reason="shared/data/folds is not here")
-@pytest.mark.parametrize("name", ["n_upright", "n_unconformity"])
-def test_folds_of_known_truth(name):
+@pytest.mark.parametrize(
+    ("name", "every", "least"),
+    [("n_upright", 1, 0.993), ("n_unconformity", 1, 0.993), ("n_upright", 3, 0.975)],
+)
+def test_folds_of_known_truth(name, every, least):
+    """A third of the data is likelier with a field that folds back between them: 0.35 was right."""
     data, places, block = noddy(name)
+    data = some_of(data, every)
     field = _solve(data, Lattice((0.0, 0.0, 0.0), (250.0, 250.0, 250.0), (33, 33, 23)))
     found = np.searchsorted(field.levels, field.at(places))
-    assert (found == block).mean() > 0.993
+    assert (found == block).mean() > least
     assert not len(field.critical_points)
 
 

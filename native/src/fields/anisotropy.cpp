@@ -36,6 +36,9 @@ constexpr std::array kThrows{0.02, 0.05, 0.1, 0.16, 0.24};
 constexpr int kSweeps = 2;
 constexpr double kLeastThrow = 0.002;
 constexpr double kFirstError = 1e-6;  // of values, in units of the kernel, where they have some
+// Of dips, of the fifth order: with none at first the search ends at ranges so short that the
+// errors are taken for folds.
+constexpr double kFirstSlopeError = 1e-3;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 struct Candidate {
@@ -173,20 +176,28 @@ AxisRatios turned_about(AxisRatios of, std::size_t axis, double degrees) {
     return of;
 }
 
-/// Those near one: turned about each axis, and with other ratios along two of them, or with ranges
-/// along three.
-std::vector<AxisRatios> near(const AxisRatios& of, int order, double degrees, double factor) {
-    const std::size_t ratios = order == 5 ? 3 : 2;
-    const double largest = order == 5 ? kLargestRatio : 1;
-    std::vector<AxisRatios> out;
-    for (const double sign : {1.0, -1.0}) {
+/// Those near one: turned about each axis, with other ratios along two of them, or with ranges
+/// along three, and with other errors.
+std::vector<Likely> near(const Likely& of, double degrees, double factor) {
+    const bool has_ranges = of.order == 5;
+    const std::size_t ratios = has_ranges ? 3 : 2;
+    const double largest = has_ranges ? kLargestRatio : 1;
+    const Errors least = has_ranges ? kLeastErrors : Errors{};
+    std::vector<Likely> out;
+    for (const double turn : {degrees, -degrees}) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            out.push_back(turned_about(of, axis, sign * degrees));
+            out.emplace_back(of).anisotropy = turned_about(of.anisotropy, axis, turn);
+    }
+    for (const double times : {factor, 1 / factor}) {
         for (std::size_t axis = 0; axis < ratios; ++axis) {
-            AxisRatios& other = out.emplace_back(of);
-            double& ratio = other.ratios[axis];
-            ratio = std::clamp(sign > 0 ? ratio * factor : ratio / factor, kLeastRatio, largest);
+            double& ratio = out.emplace_back(of).anisotropy.ratios[axis];
+            ratio = std::clamp(ratio * times, kLeastRatio, largest);
         }
+        // variances: squares of lengths, too
+        double& value = out.emplace_back(of).errors.value;
+        value = std::max(value * times * times, least.value);
+        double& slope = out.emplace_back(of).errors.slope;
+        slope = std::max(slope * times * times, least.slope);
     }
     return out;
 }
@@ -206,12 +217,10 @@ AxisRatios sorted(const AxisRatios& of) {
 
 /// The best near one: smaller and smaller steps as long as they pay.
 Candidate climbed(const Search& search, Candidate found) {
-    const Likely rest = found.what;
     double step = 20, factor = 0.5;
     while (step > 2) {
         const double before = found.likelihood;
-        Search::improve(
-            found, search.best(near(found.what.anisotropy, rest.order, step, factor), rest), 0);
+        Search::improve(found, search.best(near(found.what, step, factor)), 0);
         if (found.likelihood > before) continue;
         step /= 2;
         factor = std::sqrt(factor);
@@ -352,16 +361,18 @@ Likely most_likely_smooth(std::span<const Functional> known, const Likely& likel
                           const Execution& execution) {
     const Search search(known, error, execution);
     std::vector<Likely> starts;
-    for (const AxisRatios& shape : {likely.anisotropy, kIsotropic}) {
-        for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
-            Likely& start = starts.emplace_back(likely);
-            start.order = 5;
-            start.errors = {std::max(likely.errors.value, kLeastErrors.value),
-                            std::max(likely.errors.slope, kLeastErrors.slope)};
-            start.anisotropy = shape;
-            for (double& ratio : start.anisotropy.ratios)
-                ratio *= factor;
-            start.lift *= factor;
+    for (const double slope : {kLeastErrors.slope, kFirstSlopeError}) {
+        for (const AxisRatios& shape : {likely.anisotropy, kIsotropic}) {
+            for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
+                Likely& start = starts.emplace_back(likely);
+                start.order = 5;
+                start.errors = {std::max(likely.errors.value, kLeastErrors.value),
+                                std::max(likely.errors.slope, slope)};
+                start.anisotropy = shape;
+                for (double& ratio : start.anisotropy.ratios)
+                    ratio *= factor;
+                start.lift *= factor;
+            }
         }
     }
     Candidate best = search.best(std::array{likely});

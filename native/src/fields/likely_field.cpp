@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/disjoint_sets.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/neighbors.hpp"
 #include "realmodel/base/errors.hpp"
@@ -47,6 +48,36 @@ Lattice coarsened(const Lattice& lattice, std::size_t most) {
     return out;
 }
 
+/// How many connected parts critical points are.
+std::size_t connected_parts(const std::vector<CriticalPoint>& points, const Lattice& lattice) {
+    const std::int64_t row = lattice.counts[0], layer = row * lattice.counts[1];
+    DisjointSets sets(points.size());
+    const auto count = static_cast<std::int32_t>(points.size());
+    for (std::int32_t n = 0; n < count; ++n) {
+        for (int step = 14; step < 27; ++step) {
+            const std::int64_t neighbor =
+                points[n].node + step % 3 - 1 + row * (step / 3 % 3 - 1) + layer * (step / 9 - 1);
+            const auto found = std::ranges::lower_bound(points, neighbor, {}, &CriticalPoint::node);
+            if (found != points.end() && found->node == neighbor)
+                sets.join(n, static_cast<std::int32_t>(found - points.begin()));
+        }
+    }
+    std::size_t parts = 0;
+    for (std::int32_t n = 0; n < count; ++n)
+        parts += sets.find(n) == n ? 1 : 0;
+    return parts;
+}
+
+/// What speaks for a kind of field and against it.
+struct Judged {
+    double likelihood = -HUGE_VAL;  ///< its logarithm
+    std::size_t critical = 0;       ///< critical points
+
+    double less_cost() const {
+        return likelihood - kPerCriticalPoint * static_cast<double>(critical);
+    }
+};
+
 /// The search for it, by samples of the data.
 class LikelySearch {
 public:
@@ -58,7 +89,8 @@ public:
         look();
         if (known_.data().surfaces < 3) return {likely_, gaps_};
         const std::vector<double> apart = distances_between(known_, kSampledForDistance);
-        if (!is_uneven(apart)) return {likely_, gaps_};
+        const bool folds_back = is_told_by_dips() && likely_.order == 2;
+        if (!folds_back && !is_uneven(apart)) return {likely_, gaps_};
         find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift, likely_.throws});
         look();
         find_gaps(apart, likely_);
@@ -143,22 +175,25 @@ private:
 
     /// Between rough surfaces the function whose third derivatives are least overshoots, and has
     /// critical points. That whose second ones are least bends at contacts instead. It is taken
-    /// where it has so many fewer of them that the data may be less likely.
+    /// where it has so many fewer of them that the data may be less likely. The fifth order may
+    /// have no more of them: of short ranges the data can be likely though the field folds back
+    /// between them.
     /// @param others  with which the sample is likelier, or the same
     void choose_order(std::vector<Likely> others) {
         Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
         if (known_.error() > 0) rough.errors.value = likely_.errors.value;
         others.push_back(rough);
-        double best = log_probability(likely_);
+        Judged best = judged(likely_);
         for (const Likely& other : others) {
-            const double probability = log_probability(other);
-            if (!(probability > best)) continue;
-            best = probability;
+            const Judged own = judged(other);
+            if (!(own.less_cost() > best.less_cost())) continue;
+            if (other.order == 5 && own.critical > best.critical) continue;
+            best = own;
             likely_ = other;
         }
     }
 
-    double log_probability(const Likely& likely) const {
+    Judged judged(const Likely& likely) const {
         std::vector<Functional> known;
         for (const Functional& functional : with_some_dips(gaps_))
             known.push_back(known_.for_order(2, functional));
@@ -167,15 +202,13 @@ private:
         }
         const Spline spline(known, likely.smoothness(), execution_);
         const std::optional<double> likelihood = spline.log_likelihood(known_.error());
-        if (!likelihood) return -HUGE_VAL;
+        if (!likelihood) return {};
         const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
-        const double cost = kPerCriticalPoint * static_cast<double>(points.size());
-        // Where a field does not change along an axis they come in lines.
-        const double most = is_told_by_dips() ? static_cast<double>(known.size()) : HUGE_VAL;
-        return *likelihood - std::min(cost, most);
+        // where the field hardly changes along an axis they come in lines
+        return {*likelihood, is_told_by_dips() ? connected_parts(points, coarse) : points.size()};
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.
