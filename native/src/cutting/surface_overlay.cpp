@@ -33,6 +33,7 @@ SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& su
       execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {
+    find_same_faces(!groups.empty());
     find_active_faces(groups);
     divide_active_faces();
     overlay_all();
