@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "guide"
 WINDOWS = (  # (width, height), scale of the interface so that its letters are sharp in print, chapters
     ((1900, 2900), 3.0, chapters.OF_PANELS),
+    ((2300, 2200), 2.0, chapters.OF_DIALOGS),
     ((1900, 1400), 1.5, chapters.WITH_MANY_PANELS),
     ((1900, 1150), 1.5, chapters.WITH_PANELS),
     ((1900, 1000), 1.5, chapters.OF_VIEWPORTS),

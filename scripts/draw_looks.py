@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders the rock looks and weathering in background Blender: docs/images/looks.jpg, looks_close.jpg and
-weathering.jpg, and the previews of the asset library.
+"""Renders the rock looks and weathering in background Blender: docs/images/looks.jpg, looks_close.jpg,
+looks_ground.jpg and weathering.jpg, and the previews of the asset library.
 
-    build/venv/bin/python scripts/draw_looks.py [LOOK|close|weathering ...]   (default: all; it needs Pillow)
+    build/venv/bin/python scripts/draw_looks.py [LOOK|close|ground|weathering ...]
+                                                                             (default: all; it needs Pillow)
 
 BLENDER is the Blender that renders (default: blender), or a Python that has the module bpy. With a denoiser,
 which Debian's Blender lacks, pictures have no grain. Each look is drawn on the same block of folded beds, 30
@@ -25,6 +26,9 @@ NEAR, WEATHERING = "close", "weathering"
 NEAR_SIZE, AWAY = (720, 540), 2.0  # of the picture of a close-up, taken from so many meters
 NEAR_BLOCK = "Lower conglomerate"
 BAR, PART = 6, 0.05  # parts of the scale in it, and how long one is, meters
+GROUND = ROOT / "docs" / "images" / "looks_ground.jpg"
+FLOORS = ("Soil", "Grass", "Scree")  # at the reader's feet
+FLOOR_SIZE, FLOOR = (480, 420), 10.0  # of the picture of one; how wide it is, meters
 HALF = (800, 620)  # of the pictures before and after
 SIZE = (400, 325)  # of the picture of a look
 SMALL = (320, 260)  # in the sheet
@@ -59,21 +63,30 @@ def pictures_of(names):
 
 
 def put_together():
-    """Makes the sheet of looks, the previews, and the pair of pictures of weathering."""
-    from PIL import Image, ImageDraw, ImageFont
+    """Makes the sheet of looks, the previews, and the pictures of weathering and of ground."""
     from realmodel.core.project.looks import LOOKS
 
     if (pictures := pictures_of(LOOKS)) is not None:
         make_sheet(pictures, [look.label for look in LOOKS.values()])
     if (pictures := pictures_of([NEAR])) is not None:
         pictures[0].save(CLOSE, quality=88, optimize=True)
+    if (pictures := pictures_of([f"ground_{name}" for name in FLOORS])) is not None:
+        put_in_row(pictures, FLOORS, "white").save(GROUND, quality=84, optimize=True)
     if (pictures := pictures_of([f"{WEATHERING}_{name}" for name in ("before", "after")])) is not None:
-        pair = Image.new("RGB", (2 * HALF[0], HALF[1]))
-        pen, font = ImageDraw.Draw(pair), ImageFont.load_default(26)
-        for number, (picture, text) in enumerate(zip(pictures, ("As built", "Weathered"), strict=True)):
-            pair.paste(picture, (number * HALF[0], 0))
-            pen.text((number * HALF[0] + 24, 18), text, INK, font)
-        pair.save(WEATHERED, quality=82, optimize=True)
+        put_in_row(pictures, ("As built", "Weathered"), INK).save(WEATHERED, quality=82, optimize=True)
+
+
+def put_in_row(pictures, texts, color):
+    """A picture of several of one size beside one another, each with a text."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    width, height = pictures[0].size
+    row = Image.new("RGB", (len(pictures) * width, height))
+    pen, font = ImageDraw.Draw(row), ImageFont.load_default(26)
+    for number, (picture, text) in enumerate(zip(pictures, texts, strict=True)):
+        row.paste(picture, (number * width, 0))
+        pen.text((number * width + 24, 18), text, color, font)
+    return row
 
 
 def make_sheet(pictures, labels):
@@ -265,6 +278,48 @@ def draw_close(folder):
     render(folder, NEAR)
 
 
+def draw_ground(folder, name):
+    """Soil, grass with tufts, or scree with stones, as seen by somebody who stands on it."""
+    import math
+
+    import bpy
+    import gallery_picture
+    import numpy as np
+    from mathutils import Vector
+    from realmodel.bl.host import versions
+    from realmodel.bl.pictures import picture
+    from realmodel.bl.scene import built_scene
+    from realmodel.bl.shading import looks, weathering
+    from realmodel.core import Library, Property
+
+    scene = bpy.context.scene
+    x, y, triangles = grid(FLOOR, 60)
+    heights = 0.12 * np.sin(1.1 * x) * np.cos(0.9 * y) + 0.05 * np.sin(3.1 * x) * np.sin(2.7 * y)
+    library = Library([Property(1, name, color="#6a4a32", look="auto")])
+    built_scene.write_model(scene, beds((x, y, triangles), [0.0 * x - 1.0], heights, [0, 1], library))
+    scene.realmodel.view.show_legend = False
+    items = [row.object for row in scene.realmodel.results if row.object is not None]
+    for item in scene.objects:
+        item.hide_render = item not in items
+    if name in weathering.COVERS:
+        slopes = (math.radians(80.0) * (name == cover) for cover in ("Grass", "Scree"))
+        weathering.put_on(scene, items, weathering.Weathering(0.0, 0.0, 1.0, 3, *slopes, 0, 1.0))
+        for item in items:  # as in a model of 250 m
+            versions.set_group_input(weathering.modifier_of(item), "Scatter Size", 1.0)
+    for material in bpy.data.materials:
+        if looks.KEY in material:
+            looks.apply(material, material[looks.KEY], 1.0, 0, looks.UNITS)
+    corners = np.array([item.matrix_world @ Vector(c) for item in items for c in item.bound_box])
+    shown = gallery_picture.Picture((0.0, 0.0, 0.0), Path(folder), points=[corners])
+    shown.landscape(sun=(math.radians(215.0), math.radians(40.0)))
+    target = Vector((*corners.mean(axis=0)[:2], corners[:, 2].max() - 0.1))
+    shown.look(target + AWAY * Vector((0.3, -0.8, 0.75)).normalized(), target, lens=30.0)
+    scene.camera.data.clip_start = 0.01
+    picture.set_renderer(scene, "", FLOOR_SIZE, RAYS, SECONDS)
+    scene.view_settings.exposure = EXPOSURE
+    render(folder, f"ground_{name}")
+
+
 def put_scale(target, normal, back):
     """Puts a scale of black and white parts of 5 cm below the middle of the picture, on the rock."""
     import gallery_picture
@@ -324,17 +379,16 @@ def in_blender(folder, *names):
     from realmodel.core.project.looks import LOOKS
 
     realmodel.register_for_batch()
-    for draw, chosen in (
-        (draw_looks, [key for key in names or LOOKS if key in LOOKS]),
-        (draw_close, NEAR),
-        (draw_weathering, WEATHERING),
-    ):
-        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-        if isinstance(chosen, str):
-            if not names or chosen in names:
-                draw(folder)
-        elif chosen:
-            draw(folder, chosen)
+    drawn = [(draw_looks, [key for key in names or LOOKS if key in LOOKS])]
+    drawn += [(draw_ground, name) for name in FLOORS if not names or "ground" in names]
+    for draw, *given in drawn:
+        if given != [[]]:
+            bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+            draw(folder, *given)
+    for draw, name in ((draw_close, NEAR), (draw_weathering, WEATHERING)):
+        if not names or name in names:
+            bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+            draw(folder)
     sys.stdout.flush()
     os._exit(0)  # the module bpy may hang as it ends
 

@@ -98,18 +98,27 @@ def csv_panel(walk):
     yield from keep(walk, "csv_rocks", "UI", ["rocks"])
 
 
-def csv(walk):
-    """Two tables of points become a model."""
+def csv_dialog(walk):
+    """What the import of two tables asks."""
     import bpy
     from driver import save_picture
 
-    table = guide_scenes.SAMPLES / "two_layers" / "clay.csv"
+    walk.area.spaces.active.show_region_ui = False
+    folder, tables = guide_scenes.SAMPLES / "two_layers", [{"name": "clay.csv"}, {"name": "ground.csv"}]
     with viewport(walk):
-        bpy.ops.realmodel.surface_add("INVOKE_DEFAULT", filepath=str(table))
+        bpy.ops.realmodel.surface_add(
+            "INVOKE_DEFAULT", filepath=str(folder / "clay.csv"), directory=str(folder), files=tables
+        )
     yield walk.redrawn(3)
     save_picture(within_border(viewed(walk)), walk.folder / "csv_dialog.png")
     walk.key("ESC")
     yield walk.redrawn(3)
+
+
+def csv(walk):
+    """Two tables of points become a model."""
+    import bpy
+
     guide_scenes.import_tables()
     for item in bpy.data.objects:
         item.hide_set(item.name.endswith(" points"))
@@ -272,6 +281,7 @@ def structures(walk):
 
 
 OF_PANELS = (start, tour, csv_panel)  # pictures of the sidebar alone
+OF_DIALOGS = (csv_dialog,)
 WITH_PANELS = (csv, quality, sculpt_built, boreholes)  # of the viewport and the sidebar
 WITH_MANY_PANELS = (window, section)  # the same, with a longer sidebar
 OF_VIEWPORTS = (modes, sculpt_grids, fence, mapped, structures)  # of the viewport alone

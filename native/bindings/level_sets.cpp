@@ -39,7 +39,7 @@ py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
     py::list sets;
     for (fields::LevelSet& each : found)
         sets.append(py::make_tuple(to_array(std::move(each.vertices)),
-                                   to_array(std::move(each.triangles))));
+                                   to_array(std::move(each.triangles)), each.own));
     return sets;
 }
 
@@ -104,12 +104,12 @@ py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& 
 void bind_level_sets(py::module_& m) {
     m.def("level_sets", &level_sets, py::arg("lattice"), py::arg("values"), py::arg("points"),
           py::arg("levels"), py::arg("execution") = py::none(), R"doc(
-The boundaries of where a field is at most each of some levels, closed around its lattice.
+The boundaries of where a field is at most each of some levels, closed beyond the sides of its lattice.
 
 lattice: origin, spacing, counts. values: (N,) float64 of its nodes. points: (P, 3) float64 positions and
 (P,) float64 the values that the field has there. levels: (L,) float64, ascending.
-Returns a list of (vertices (V, 3) float64, triangles (T, 3) int32), seen counter-clockwise from where the
-field is greater.)doc");
+Returns a list of (vertices (V, 3) float64, triangles (T, 3) int32, how many of these are the level set itself),
+which are seen counter-clockwise from where the field is greater.)doc");
     m.def("moved_onto_levels", &moved_onto_levels, py::arg("lattice"), py::arg("values"),
           py::arg("levels"), R"doc(
 (N,) float64: the values of a field with those that are next to nothing beside a level moved onto it.)doc");

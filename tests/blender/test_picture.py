@@ -4,6 +4,7 @@
 import colorsys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -13,6 +14,7 @@ from made_projects import LIBRARY, other_rock, surface, two_rocks
 from mathutils import Matrix, Vector
 from panel_case import PanelCase, ops
 from realmodel.bl.display import colors, viewpoints
+from realmodel.bl.host import versions
 from realmodel.bl.pictures import batch, picture
 from realmodel.bl.scene import built_scene
 from realmodel.core import OutputFailed, Project, Rock, build
@@ -209,6 +211,12 @@ class SetUp(PanelCase):
         self.model.view.show_legend = False
         batch.render(self.folder / "none.png", (480, 300), samples=4)
         self.assertEqual((np.ptp(pixels(self.folder / "none.png")[-60:, 8:60], axis=2) > 0.3).mean(), 0.0)
+
+    def test_a_scene_that_writes_videos_since_blender_5_writes_pictures_then(self):
+        newer, older = SimpleNamespace(media_type="VIDEO"), SimpleNamespace()
+        for settings in (newer, older):
+            versions.write_images(settings)
+        self.assertEqual((vars(newer), vars(older)), ({"media_type": "IMAGE"}, {}))
 
 
 class Unasked(PanelCase):

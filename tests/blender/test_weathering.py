@@ -186,7 +186,6 @@ class Weathering(PanelCase):
         ops.weathering(strength=0.2, plants=2.0, scree_slope=math.radians(60.0))
         found = self.scattered(self.block(2))
         self.assertEqual(set(found), {"Grass Tuft", "Stone"})
-        self.assertGreater(len(found["Grass Tuft"]), 3 * len(found["Stone"]))
         points = self.evaluated(2)[0]
         for places in found.values():
             self.assertGreater(len(places), 20)
@@ -195,8 +194,8 @@ class Weathering(PanelCase):
         self.assertEqual(self.scattered(self.block(1)), {})  # which no ground is of
         self.assertFalse(any(item.get("realmodel_scatter") for item in self.scene.objects))
         counted = self.rendered_instances()
-        self.assertEqual(counted["Stone"], len(found["Stone"]))
-        self.assertGreater(counted["Grass Tuft"], 3 * len(found["Grass Tuft"]))  # the viewport shows fewer
+        for name, places in found.items():
+            self.assertGreater(counted[name], 3 * len(places))  # the viewport shows fewer
         ops.weathering(strength=0.2)
         self.assertEqual(self.scattered(self.block(2)), {})
 

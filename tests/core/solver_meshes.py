@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What holds for every mesh for solvers, computed from its elements alone."""
 
-from collections import Counter
-
 import numpy as np
 
 _TETRAHEDRA = {
@@ -35,75 +33,107 @@ def block_volumes(mesh):
     return total
 
 
+def in_order(corners):
+    """(F, 4) int64: faces of three or four corners, each from its least corner on; -1: there is no fourth."""
+    count = corners.shape[1]
+    turned = (corners.argmin(axis=1)[:, None] + np.arange(count)) % count
+    faces = np.full((len(corners), 4), -1, np.int64)
+    faces[:, :count] = np.take_along_axis(corners, turned, axis=1)
+    return faces
+
+
+def reverse(faces):
+    a, b, c, d = faces.T
+    return np.where((d < 0)[:, None], np.column_stack([a, c, b, d]), np.column_stack([a, d, c, b]))
+
+
+def numbered(count, *several):
+    """Whole numbers for the rows of several arrays of corners below count, the same for equal rows."""
+    rows = np.concatenate(several)
+    found = rows[:, 0]
+    for column in rows.T[1:]:
+        found = np.unique(found * (count + 1) + column + 1, return_inverse=True)[1]
+    return np.split(found, np.cumsum([len(some) for some in several])[:-1])
+
+
 def directed_faces(mesh):
-    """Every face of every element as it is seen from outside, from its least corner on, with its block and
-    compartment."""
+    """Every face of every element as it is seen from outside, with its block and compartment (F, 2)."""
+    faces, parts = [np.empty((0, 4), np.int64)], [np.empty((0, 2), np.int64)]
     for kind, elements in mesh.elements.items():
-        blocks = mesh.element_block[kind].tolist()
-        compartments = [0] * len(blocks)
+        part = np.zeros((len(elements), 2), np.int64)
+        part[:, 0] = mesh.element_block[kind]
         if mesh.element_compartment is not None:
-            compartments = mesh.element_compartment[kind].tolist()
+            part[:, 1] = mesh.element_compartment[kind]
         for face in _FACES[kind]:
-            for corners, *part in zip(elements[:, face].tolist(), blocks, compartments, strict=True):
-                first = corners.index(min(corners))
-                yield tuple(corners[first:] + corners[:first]), part
+            faces.append(in_order(elements[:, face]))
+            parts.append(part)
+    return np.concatenate(faces), np.concatenate(parts)
+
+
+def given_faces(mesh):
+    """The faces that a mesh gives, with their surfaces."""
+    faces = [np.empty((0, 4), np.int64), *map(in_order, mesh.faces.values())]
+    surfaces = [np.empty(0, np.int64), *(mesh.face_surface[kind] for kind in mesh.faces)]
+    return np.concatenate(faces), np.concatenate(surfaces)
 
 
 def check_solver_mesh(mesh):
-    """Elements are positive, share whole faces and leave no gap; faces are those outside and on surfaces."""
-    for kind in mesh.elements:
+    """Elements are positive, share whole faces and leave no gap; faces are those outside and on surfaces.
+    Returns the faces outside (F, 4), as in_order gives them."""
+    for kind, elements in mesh.elements.items():
         assert element_volumes(mesh, kind)[1].min() > 0, kind
-        assert all(len(set(row)) == len(row) for row in mesh.elements[kind].tolist())
-    seen = {}
-    for face, part in directed_faces(mesh):
-        assert face not in seen, f"{face} is a face of two elements on one side"
-        seen[face] = part
-    reverse = lambda face: (face[0], *face[:0:-1])  # noqa: E731
-    outside = {face for face in seen if reverse(face) not in seen}
-    edges = Counter()
-    for face in outside:
-        for a, b in zip(face, (*face[1:], face[0]), strict=True):
-            edges[a, b] += 1
-    assert all(edges[b, a] == count for (a, b), count in edges.items()), "the outside is not closed"
-    given = {}
-    for kind, faces in mesh.faces.items():
-        for corners, surface in zip(faces.tolist(), mesh.face_surface[kind].tolist(), strict=True):
-            first = corners.index(min(corners))
-            given[tuple(corners[first:] + corners[:first])] = surface
-    assert outside <= set(given), "a face outside is not given, or the other way round"
-    inner = {min(f, reverse(f)) for f in seen if reverse(f) in seen and seen[f] != seen[reverse(f)]}
-    rest = set(given) - outside
-    assert len(rest) == len(given) - len(outside)
-    for face in rest:
-        if given[face] >= 0 and mesh.surface_kind[given[face]] != 0:  # a fault divides a block, too
-            assert reverse(face) in seen
-        else:
-            assert min(face, reverse(face)) in inner
-    flat = {face for face in inner if min(face, reverse(face)) and not _is_upright(mesh, face)}
-    assert flat <= {min(f, reverse(f)) for f in rest}, "a face between blocks is not given"
-    used = np.zeros(len(mesh.points), bool)
+        assert np.diff(np.sort(elements, axis=1), axis=1).all()
+    faces, part = directed_faces(mesh)
+    given, surface = given_faces(mesh)
+    count = len(mesh.points)
+    seen, behind, given_seen, given_behind = numbered(count, faces, reverse(faces), given, reverse(given))
+    order = np.argsort(seen, kind="stable")
+    twice = order[1:][np.diff(seen[order]) == 0]
+    assert not len(twice), f"{faces[twice[:1]]} is a face of two elements on one side"
+    assert len(np.unique(given_seen)) == len(given), "a face is given twice"
+    is_outside = ~np.isin(behind, seen)
+    assert is_closed(faces[is_outside], count), "the outside is not closed"
+    assert np.isin(seen[is_outside], given_seen).all(), "a face outside is not given, or the other way round"
+    other = order[np.searchsorted(seen, behind, sorter=order) % max(len(seen), 1)]
+    inner = ~is_outside & (part != part[other]).any(axis=1)
+    rest = ~np.isin(given_seen, seen[is_outside])
+    kinds = np.append(mesh.surface_kind, 0)[surface]  # of faces on no surface: 0
+    in_block = rest & (surface >= 0) & (kinds != 0)  # a fault divides a block, too
+    assert np.isin(given_behind[in_block], seen).all()
+    assert np.isin(given_seen[rest & ~in_block], seen[inner]).all()
+    flat = inner & ~_is_upright(mesh, faces)
+    of_rest = np.concatenate([given_seen[rest], given_behind[rest]])
+    assert np.isin(seen[flat], of_rest).all(), "a face between blocks is not given"
+    used = np.zeros(count, bool)
     for rows in (*mesh.elements.values(), *mesh.faces.values()):
         used[rows] = True
     assert used.all()
     # vertices at one position would be a slit
-    assert len(np.unique(mesh.points, axis=0)) == len(mesh.points)
-    return outside
+    assert len(np.unique(mesh.points, axis=0)) == count
+    return faces[is_outside]
 
 
-def _is_upright(mesh, face):
-    x, y = mesh.points[list(face)][:, :2].T
-    return len(face) == 4 or len({*zip(x.tolist(), y.tolist(), strict=True)}) < 3
+def is_closed(faces, count):
+    """Whether each edge is there as often as the other way round."""
+    after = np.roll(faces, -1, axis=1)
+    after[faces[:, 3] < 0, 2] = faces[faces[:, 3] < 0, 0]
+    a, b = faces[faces >= 0], after[faces >= 0]
+    return np.array_equal(np.sort(a * count + b), np.sort(b * count + a))
+
+
+def _is_upright(mesh, faces):
+    """Faces of four corners, and those with two corners at one place in plan."""
+    a, b, c = (mesh.points[faces[:, k], :2] for k in range(3))
+    same = [(one == other).all(axis=1) for one, other in ((a, b), (b, c), (c, a))]
+    return (faces[:, 3] >= 0) | np.any(same, axis=0)
 
 
 def outside_volume(mesh, outside):
     """The volume that the outside encloses: that of all elements only where none is missing within."""
-    total = 0.0
-    origin = mesh.points.mean(axis=0)
-    for face in outside:
-        corners = mesh.points[list(face)] - origin
-        for i in range(1, len(corners) - 1):
-            total += np.dot(corners[0], np.cross(corners[i], corners[i + 1])) / 6
-    return total
+    corners = mesh.points - mesh.points.mean(axis=0)
+    four = outside[outside[:, 3] >= 0]
+    a, b, c = corners[np.concatenate([outside[:, :3], four[:, [0, 2, 3]]])].transpose(1, 0, 2)
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
 def least_angles(vertices, triangles):

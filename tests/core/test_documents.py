@@ -224,6 +224,9 @@ RUNNABLE = [
 def test_commands_run(command, table, tmp_path):
     (tmp_path / "blend_samples").symlink_to(ROOT / "blend_samples")
     (tmp_path / "build_model.py").symlink_to(ROOT / "build_model.py")
+    if "--ensemble" in command and not table:  # what it writes does not depend on how many there are
+        command = [*command]
+        command[command.index("--ensemble") + 1] = "4"
     run = subprocess.run(
         [sys.executable, *command[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=300
     )

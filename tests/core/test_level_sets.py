@@ -7,7 +7,7 @@ from folded_rocks import contacts, recumbent
 from realmodel.core import Lattice, ScalarField
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run
-from realmodel.core.fields import SharedCorners, are_on, fields_with_contacts, level_solids, within_lattice
+from realmodel.core.fields import SharedCorners, are_on, fields_with_contacts, level_solids
 
 LATTICE = Lattice((-0.3, -0.4, -0.2), (0.9, 0.8, 0.85), (13, 14, 13))
 LEVELS = np.array([1.5, 3.0])
@@ -43,8 +43,7 @@ def test_contacts_are_vertices_of_closed_level_sets(through):
     field, places, surfaces = through
     own = with_contacts(field, places, surfaces)
     solids = run(lambda work: level_solids(work, own))
-    for surface, solid in enumerate(solids):
-        level_set = within_lattice(own, solid)
+    for surface, (solid, level_set) in enumerate((each.boundary, each.level_set) for each in solids):
         assert are_on(places[surfaces == surface], level_set).all()
         assert 0 < len(level_set.triangles) < len(solid.triangles)
         edges = solid.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
@@ -64,7 +63,7 @@ def test_a_part_of_a_field_has_the_same_triangles_to_the_bit(through):
     def in_box(field):
         found = []
         for solid in run(lambda work: level_solids(work, field)):
-            corners = within_lattice(field, solid).corners
+            corners = solid.level_set.corners
             there = ((corners >= box[0]) & (corners <= box[1])).all(axis=(1, 2))
             found.append(corners[there].tolist())
         return found
@@ -84,7 +83,7 @@ def test_contacts_denser_than_nodes_are_vertices_and_bend_it_no_more_than_they_m
     own = with_contacts(field, places, surfaces)
     assert len(own.points) > 40
     np.testing.assert_array_equal(own.at(places), np.full(40, 4.9))
-    level_set = within_lattice(own, run(lambda work: level_solids(work, own))[0])
+    level_set = run(lambda work: level_solids(work, own))[0].level_set
     assert are_on(places, level_set).all()
     assert np.abs(own.values - field.values).max() < 0.2
     assert np.abs(level_set.vertices @ [0.2, 0.1, 1.0] - 4.9).max() < 0.2

@@ -343,8 +343,8 @@ def certain(points, arrays):
     return settings, np.ascontiguousarray(plan["vertices"][:, :2]), near["z"].tolist()
 
 with MappedArrays(folder / "arrays") as arrays:
-    points = arrays.gather(pieces(700_000), np.empty((0, 3)))
-    divided(points[:100_000], arrays, "kriging")  # the libraries are there then
+    points = arrays.gather(pieces(400_000), np.empty((0, 3)))
+    divided(points[:5_000], arrays, "kriging")  # the libraries are there then
     status = Path("/proc/self/status").read_text()
     now = int(status.split("VmData:")[1].split()[0]) * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (now + 45_000_000, -1))

@@ -176,8 +176,26 @@ def test_names_of_faults_are_not_over_one_another():
     model = build(Project("p", [Rock("r", levels)], faults=faults))
     drawing = draw_section(model.section((0.0, 3.0, 0.0), (0.0, -1.0, 0.0)))
     first, second = (item for item in drawing.items if isinstance(item, Text) and "A long" in item.text)
-    assert abs(first.x - second.x) < 0.1 * drawing.width
-    assert abs(first.y - second.y) > first.size
+    beside = abs(first.x - second.x) > text_width(first.text, first.size)
+    assert beside or abs(first.y - second.y) > first.size
+
+
+def test_names_of_faults_are_not_on_their_lines():
+    levels = [Surface(f"S{k}", *grid_surface(3, lambda x, y, k=k: 2.0 * k + 0 * x, 10.0)) for k in range(3)]
+    for lean in (0.8, -0.8):
+        fault = Fault("A name", *plane_fault(x=5.0, lean=lean))
+        model = build(Project("p", [Rock("r", levels)], faults=[fault]))
+        for exaggeration in (1.0, 3.0):
+            drawing = draw_section(model.section((0.0, 3.0, 0.0), (0.0, -1.0, 0.0)), exaggeration)
+            (name,) = (item for item in drawing.items if isinstance(item, Text) and item.text == "A name")
+            lines = [
+                item.points for item in drawing.items if isinstance(item, Line) and item.layer == "A name"
+            ]
+            along = np.linspace(0.0, 1.0, 50)[:, None]
+            places = np.concatenate([a + along * (b - a) for a, b in np.asarray(lines, float)])
+            x, y = (places - (name.x, name.y)).T
+            width = text_width("A name", name.size)
+            assert not ((x > 0) & (x < width) & (y > 0) & (y < name.size)).any()
 
 
 def ring_areas(section):

@@ -173,6 +173,13 @@ def test_the_sheets_of_a_surface_that_a_fault_displaces(tmp_path):
     assert set(sheet[: len(first)].tolist()) == {0, 1} and not sheet[len(first) :].any()
     assert np.array_equal(model.surface_triangle_sheet[: len(sheet)], sheet)
     assert not model.surface_triangle_sheet[len(sheet) :].any()
+    for number in range(3):
+        begin, end = model.surface_triangle_offsets[number : number + 2]
+        own = model.surface_triangle_sheet[begin:end]
+        of_sheets = model.sheet_triangles(number)
+        assert len(of_sheets) == own.max() + 1
+        for k, triangles in enumerate(of_sheets):
+            assert np.array_equal(triangles, model.surface(number)[1][own == k])
     surfaces.save(tmp_path / "s.npz")
     with np.load(tmp_path / "s.npz") as read:
         assert np.array_equal(read["surface_triangle_sheet"], sheet)

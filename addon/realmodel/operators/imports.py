@@ -283,16 +283,18 @@ def _read(surface, unit):
 
 
 def _draw_preview(box, preview):
+    """The first rows of a table, a box for each column, with what is taken for x, y and z."""
     box.label(text=preview.file.name, icon="FILE")
     row = box.row(align=True)
     for number, name in enumerate(preview.names[:_SHOWN]):
         column = row.column(align=True)
         axis = "xyz"[preview.xyz.index(name)] if name in preview.xyz else ""
-        column.label(text=f"{axis}: {name}" if axis else name, icon="CHECKMARK" if axis else "BLANK1")
+        text = name if not axis or name.casefold() == axis else f"{axis}: {name}"
+        column.label(text=text, icon="CHECKMARK" if axis else "BLANK1")
+        cells = column.box().column(align=True)
+        cells.active = bool(axis)
         for entries in preview.rows:
-            cell = column.row()
-            cell.active = bool(axis)
-            cell.label(text=entries[number] if number < len(entries) else "")
+            cells.label(text=entries[number] if number < len(entries) else "")
     if preview.problem:
         box.label(text=preview.problem[:100], icon="ERROR")
 

@@ -34,10 +34,10 @@ constexpr std::size_t kPositions = 512;    // plan positions that a thread takes
 constexpr std::size_t kPolygons = 16'384;  // polygons, likewise
 constexpr std::size_t kCorners = 16'384;   // corners, likewise
 
-/// A corner of a polygon, by their numbers.
+/// A corner of a polygon, by their numbers, and its vertex.
 struct Corner {
     std::uint32_t number;
-    std::int32_t polygon;
+    std::int32_t polygon, vertex;
 };
 
 /// A history at one plan position, as far as it was replayed.
@@ -112,13 +112,9 @@ private:
     Facing facing(const Polygon& polygon) const;
     PlanPosition beside(const PlanPosition& position, const Polygon& polygon) const;
 
-    std::int32_t vertex(const Corner& corner) const {
-        return vertex(polygons_[index(corner.polygon)],
-                      corner.number - begin_[index(corner.polygon)]);
-    }
-    double height_of(const Corner& corner) const { return complex_.vertex(vertex(corner))[2]; }
+    double height_of(const Corner& corner) const { return complex_.vertex(corner.vertex)[2]; }
     std::size_t position_of(const Corner& corner) const {
-        return index(position_of_[index(vertex(corner))]);
+        return index(position_of_[index(corner.vertex)]);
     }
 
     std::span<const Corner> corners_of(std::size_t history) const {
@@ -283,7 +279,8 @@ void Corners::sort_corners() {
                 const std::size_t history =
                     index(histories_of_corners_.empty() ? polygons_[n].history
                                                         : histories_of_corners_[corner]);
-                put(first_layer_[history] + layer, {corner, static_cast<std::int32_t>(n)});
+                put(first_layer_[history] + layer, {corner, static_cast<std::int32_t>(n),
+                                                    vertex(polygons_[n], corner - begin_[n])});
             }
         }
     };

@@ -2,10 +2,11 @@
 // A surface as a user gives it, made ready to cut: repeated triangles, borders that run along one
 // another, orientation, a seam beyond the border.
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
 
 #include "arrangement/edge_fan.hpp"
+#include "base/key_table.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
@@ -39,6 +40,8 @@ private:
     };
 
     EdgeUses edges_of(const std::vector<Triangle>& triangles) const;
+    bool has_repeated() const;
+    bool are_closed(const std::vector<Triangle>& triangles) const;
     bool drop_repeated();
     void divide_borders();
     void divide_triangle(std::size_t t, std::span<const OnEdge> on_edges);
@@ -57,7 +60,7 @@ SurfaceInput::SurfaceInput(const TriangleView& given) {
     const std::int32_t count =
         checked_number(given.vertices.size() / 3, "vertices of the surface that is to cut");
     checked_number(given.triangles.size(), "corners of the surface that is to cut");
-    std::map<Position, NodeId> same;
+    KeyTable same;
     std::vector<NodeId> first;
     for (std::int32_t v = 0; v < count; ++v) {
         Position p;
@@ -67,7 +70,10 @@ SurfaceInput::SurfaceInput(const TriangleView& given) {
                 throw InputError("not_finite", "a vertex of the surface is not finite", -1, {v});
         }
         surface_.vertices.push_back(p);
-        first.push_back(same.try_emplace(p, v).first->second);
+        const auto found =
+            same.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(p)), v,
+                             [&](NodeId other) { return at(other) == p; });
+        first.push_back(found.number);
     }
     for (std::size_t t = 0; t + 2 < given.triangles.size(); t += 3) {
         Triangle corners{};
@@ -93,9 +99,33 @@ EdgeUses SurfaceInput::edges_of(const std::vector<Triangle>& triangles) const {
                                  {1});
 }
 
+/// Whether some triangles have the same corners.
+bool SurfaceInput::has_repeated() const {
+    const auto key_of = [this](std::int32_t t) {
+        Triangle corners = surface_.triangles[index(t)];
+        std::ranges::sort(corners);
+        return KeyTable::Key{corners[0], corners[1], corners[2], 0};
+    };
+    KeyTable known;
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        if (!known.insert(key_of(t), key_of).is_new) return true;
+    }
+    return false;
+}
+
+/// Whether some triangles have each edge an even number of times.
+bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
+    const EdgeUses edges = edges_of(triangles);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() % 2 != 0) return false;
+    }
+    return !triangles.empty();
+}
+
 /// Where leaving out pairs of equal triangles leaves a closed surface: does that, and true. Else
 /// leaves one of each.
 bool SurfaceInput::drop_repeated() {
+    if (!has_repeated()) return are_closed(surface_.triangles);
     std::vector<std::pair<Triangle, std::size_t>> sorted;
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
         sorted.push_back({surface_.triangles[t], t});
@@ -112,10 +142,7 @@ bool SurfaceInput::drop_repeated() {
         odd.push_back(sorted[begin].first);
         kept.push_back(sorted[begin].second);
     }
-    const EdgeUses edges = edges_of(odd);
-    bool closed = !odd.empty();
-    for (std::size_t e = 0; e < edges.size(); ++e)
-        closed = closed && edges[e].size() % 2 == 0;
+    const bool closed = are_closed(odd);
     if (!closed) kept = std::move(all);
     std::ranges::sort(kept);
     std::vector<Triangle> triangles;

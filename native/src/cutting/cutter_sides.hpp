@@ -15,9 +15,9 @@ class PartSides {
 public:
     virtual ~PartSides() = default;
 
-    /// The part of its cells that a face's region bounds which does not lie on the surface: kAbove
-    /// or kBelow, kOn where it is left out.
-    virtual std::int8_t of_region(std::size_t region) const = 0;
+    /// The part of its cells that a region of a face bounds which does not lie on the surface:
+    /// kAbove or kBelow, kOn where it is left out.
+    virtual std::int8_t of_region(std::size_t region, std::size_t face) const = 0;
     /// The same of a face that has no regions.
     virtual std::int8_t of_face(std::size_t face) const = 0;
     /// The same of a cell at side 0 or 1 of a region of the surface.
@@ -60,7 +60,7 @@ public:
     /// @throws InputError kinds ends_inside, two_sides
     CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress);
 
-    std::int8_t of_region(std::size_t region) const override { return side(region); }
+    std::int8_t of_region(std::size_t region, std::size_t) const override { return side(region); }
     std::int8_t of_face(std::size_t face) const override { return side(overlay_.size() + face); }
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t) const override {
         return static_cast<std::int8_t>(side == 0 ? below(region) : -below(region));

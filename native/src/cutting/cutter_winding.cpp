@@ -233,9 +233,10 @@ std::int32_t CutterWinding::number(const Winding& winding) {
 
 /// What changes where a face's region is crossed to its side `entered`.
 void CutterWinding::cross(Winding& winding, std::size_t region, std::size_t entered) const {
-    const std::size_t face = overlay_.face_of(region);
-    add(winding, overlay_.model().cell(face, 1 - entered), -1);
-    add(winding, overlay_.model().cell(face, entered), 1);
+    for (const std::int32_t face : overlay_.faces_of(region)) {
+        add(winding, overlay_.model().cell(index(face), 1 - entered), -1);
+        add(winding, overlay_.model().cell(index(face), entered), 1);
+    }
 }
 
 /// Finds the sectors and regions around an edge, of which one region is known.

@@ -16,9 +16,9 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
     const auto reach = [&reaches](std::int32_t cell) {
         if (cell >= 0) reaches[index(cell)] = 1;
     };
-    for (const std::int32_t f : overlay.active_faces()) {
-        for (std::size_t k = 0; k < 2; ++k)
-            reach(overlay.model().cell(index(f), k));
+    for (std::size_t f = 0; f < overlay.model().face_count(); ++f) {
+        for (std::size_t k = 0; overlay.is_active(f) && k < 2; ++k)
+            reach(overlay.model().cell(f, k));
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!winding.counts(r)) continue;

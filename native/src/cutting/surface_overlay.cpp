@@ -34,6 +34,7 @@ SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& su
       execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {
+    find_same_faces(!groups.empty());
     find_active_faces(groups);
     name_surface();
     divide_active_faces();

@@ -27,7 +27,8 @@ public:
     /// @param least_rounding  what coordinates may be off by at least, where the model is a piece
     ///                        of one with larger coordinates
     /// @param groups  of triangles of the surface: of one group those that meet nothing are left
-    ///                undivided, and are no regions; none at all: there are no such triangles
+    ///                undivided, and are no regions; none at all: there are no such triangles, and
+    ///                no two faces of the model are the same
     SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
                    const Execution& execution, double least_rounding = 0,
                    std::span<const std::int32_t> groups = {});
@@ -43,15 +44,22 @@ public:
     std::int32_t cutter_triangle(std::size_t region) const {
         return divided_[index(triangle(region) - first_cutter_)];
     }
-    /// The face that a region is part of.
+    /// The face that a region is part of. Of faces with the same corners in the same order, as
+    /// several models in one have them, the first stands for all.
     std::size_t face_of(std::size_t region) const {
         return index(is_of_face(region) ? parts_.face_of_beside[region - of_triangles()]
                                         : parts_.face_of_triangle[index(triangle(region))]);
     }
+    /// All faces that a region is part of.
+    std::span<const std::int32_t> faces_of(std::size_t region) const {
+        return same_faces_[face_of(region)];
+    }
+    std::int32_t first_same(std::size_t face) const { return first_same_[face]; }
     /// The region's outline, then its holes, in nodes.
     Loops<NodeId> loops(std::size_t region) const { return loops_[region]; }
     /// Whether a face has regions; the others are away from the surface.
     bool is_active(std::size_t face) const { return active_[face] != 0; }
+    /// Of those that are the same the first.
     const std::vector<std::int32_t>& active_faces() const { return active_faces_; }
 
     Position position(NodeId node) const {
@@ -143,6 +151,7 @@ private:
         return arrangement_.regions().triangles[region];
     }
     class FacePlane;
+    void find_same_faces(bool are_there);
     void find_active_faces(std::span<const std::int32_t> groups);
     bool is_beside(std::span<const NodeId> polygon, std::int32_t triangle) const;
     template <class Visit>
@@ -195,7 +204,9 @@ private:
     std::unique_ptr<spatial::BoxTree> tree_;
     double margin_;
     spatial::Box model_box_;
-    std::vector<std::uint8_t> active_;
+    std::vector<std::int32_t> first_same_;  ///< of faces
+    Buckets<std::int32_t> same_faces_;      ///< of the first of those that are the same
+    std::vector<std::uint8_t> active_;      ///< of faces
     std::vector<std::int32_t> active_faces_;
     std::vector<SpacePointId>
         vertex_point_;                    ///< of the model's vertices, none away from the surface

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
 #include "cutting/plane_outline.hpp"
@@ -54,6 +56,23 @@ private:
     double margin_, reach_ = 0;
 };
 
+void SurfaceOverlay::find_same_faces(bool are_there) {
+    first_same_.resize(model_.face_count());
+    std::iota(first_same_.begin(), first_same_.end(), 0);
+    KeyTable first;
+    for (std::int32_t f = 0; are_there && index(f) < model_.face_count(); ++f) {
+        const auto own = model_.face(index(f));
+        const auto found = first.find_or_add(
+            arrangement::loop_hash(own), f,
+            [&](std::int32_t other) { return std::ranges::equal(own, model_.face(index(other))); });
+        first_same_[index(f)] = found.number;
+    }
+    same_faces_ = bucketize<std::int32_t>(model_.face_count(), [this](const auto& put) {
+        for (std::size_t f = 0; f < first_same_.size(); ++f)
+            put(index(first_same_[f]), static_cast<std::int32_t>(f));
+    });
+}
+
 /// The faces that come near the surface: near the box of one of its triangles, and not all to one
 /// side of the triangle's plane. And the triangles that nothing meets.
 void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
@@ -77,6 +96,7 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
     std::vector<std::uint8_t> meets(groups.size(), 0);  // of triangles: whether a face may
     parallel_ranges(active_.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
+            if (index(first_same_[f]) != f) continue;
             if (groups.empty()) {
                 active_[f] = first_passed(model_.face(f)) >= 0 ? 1 : 0;
                 continue;
@@ -94,7 +114,9 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
     if (!groups.empty())
         undivided_ = UndividedTriangles(surface_, *tree_, std::move(meets), groups, execution_);
     for (std::size_t f = 0; f < active_.size(); ++f) {
-        if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
+        active_[f] = active_[index(first_same_[f])];
+        if (active_[f] != 0 && index(first_same_[f]) == f)
+            active_faces_.push_back(static_cast<std::int32_t>(f));
     }
 }
 
@@ -401,7 +423,8 @@ void SurfaceOverlay::divide_active_faces() {
         std::vector<std::int32_t> fresh;
         for (std::size_t f = 0; f < model_.face_count(); ++f) {
             if (active_[f] != 0 || !has_edge(model_.face(f))) continue;
-            active_[f] = 1;
+            for (const std::int32_t same : same_faces_[f])
+                active_[index(same)] = 1;
             fresh.push_back(static_cast<std::int32_t>(f));
         }
         name_vertices_of(fresh);

@@ -2,6 +2,7 @@
 // What bounds the parts of cells, and which of it belongs together.
 #include "cutting/surface_parts.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "arrangement/joined_polygons.hpp"
@@ -152,28 +153,23 @@ void SurfaceParts::make_patches(Progress* progress) {
                 divider.divide(active[i], of_face[index(active[i])], divided_[begin / kChunk]);
         },
         1.0);
-    // active faces come in the order in which they were found to be active
-    auto of_active = active.begin();
-    auto chunk = divided_.begin();
-    std::size_t next = 0;  // patch in the chunk
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
+        const auto face = static_cast<std::int32_t>(f);
         if (!overlay_.is_active(f)) {
-            add_patch({static_cast<std::int32_t>(f), sides_.of_face(f)});
+            add_patch({face, sides_.of_face(f)});
             continue;
         }
-        const std::int32_t face = *of_active++;
-        while (chunk != divided_.end() && next == chunk->face.size()) {
-            ++chunk;
-            next = 0;
-        }
-        for (; chunk != divided_.end() && next < chunk->face.size() && chunk->face[next] == face;
-             ++next) {
-            const auto region = index(chunk->regions_of(next)[0]);
-            add_patch({face, sides_.of_region(region), &*chunk, next});
+        const std::int32_t first = overlay_.first_same(f);
+        const auto place = std::ranges::lower_bound(active, first) - active.begin();
+        const DividedFaces& own = divided_[static_cast<std::size_t>(place) / kChunk];
+        const auto [begin, end] = std::equal_range(own.face.begin(), own.face.end(), first);
+        for (auto patch = begin; patch != end; ++patch) {
+            const auto number = static_cast<std::size_t>(patch - own.face.begin());
+            const auto region = index(own.regions_of(number)[0]);
+            add_patch({face, sides_.of_region(region, f), &own, number});
         }
     }
-    assert(of_active == active.end() && (chunk == divided_.end() || next == chunk->face.size()));
 }
 
 /// Calls visit(use) for all edges of the slots of cells that reach the surface.

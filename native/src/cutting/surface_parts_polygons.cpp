@@ -209,9 +209,9 @@ void SurfaceParts::write_caps(Progress* progress) {
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (overlay_.of_cutter(r) || winding_.level(r) < 0) continue;
-        const std::size_t face = overlay_.face_of(r);
-        if (model.cell(face, 1) < 0)
-            outer_face[index(winding_.level(r))] = static_cast<std::int32_t>(face);
+        for (const std::int32_t face : overlay_.faces_of(r)) {
+            if (model.cell(index(face), 1) < 0) outer_face[index(winding_.level(r))] = face;
+        }
     }
     const DividedInChunks in_polygons(
         cap_places_.size(),

@@ -41,6 +41,34 @@ bool does_part(const Position& axis, const TrianglePositions& one, const Triangl
     return low > high_beyond + margin || low_beyond > high + margin;
 }
 
+/// Whether a plane at right angles to the way between their middles surely parts two triangles,
+/// whose first corner may be one.
+/// @param shares_corner  it is, and lies in the plane
+bool are_parted_between_middles(const TrianglePositions& one, const TrianglePositions& other,
+                                bool shares_corner) {
+    constexpr double kRounding = 0x1p-40;  // of lengths
+    TrianglePositions a{}, b{};
+    double size = 0;
+    Position axis{0, 0, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        a[i] = minus(one[i], one[0]);
+        b[i] = minus(other[i], one[0]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            axis[k] += a[i][k] - b[i][k];
+            size = std::max({size, std::abs(a[i][k]), std::abs(b[i][k])});
+        }
+    }
+    const double margin =
+        kRounding * size * (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]));
+    const std::size_t first = shares_corner ? 1 : 0;
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (std::size_t i = first; i < 3; ++i) {
+        least = std::min(least, dot(axis, a[i]));
+        most = std::max(most, dot(axis, b[i]));
+    }
+    return shares_corner ? least > margin && most < -margin : least > most + margin;
+}
+
 /// Whether planes along the edges of two triangles part them surely (the theorem of separating
 /// axes; S. Gottschalk, M. C. Lin and D. Manocha, 1996).
 bool are_parted_along_edges(const TrianglePositions& one, const TrianglePositions& other) {
@@ -162,6 +190,7 @@ bool are_surely_apart(const CutterSurface& surface, const Triangle& one, const T
                                  surface.vertices[index(t[2])]};
     };
     const TrianglePositions of_a = corners(a), of_b = corners(b);
+    if (shared < 2 && are_parted_between_middles(of_a, of_b, shared == 1)) return true;
     if (shared == 0)
         return is_beside_plane(of_a, of_b) || is_beside_plane(of_b, of_a) ||
                are_parted_along_edges(of_a, of_b);

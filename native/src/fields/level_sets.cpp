@@ -6,11 +6,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/key_table.hpp"
 #include "base/parallel.hpp"
-#include "base/parallel_sort.hpp"
 #include "fields/refined_lattice.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -19,9 +21,28 @@ namespace realmodel::fields {
 namespace {
 
 /// A vertex of a level set: where it passes between two corners, the lesser first, or twice the
-/// corner that it passes through.
+/// corner that it passes through. Twice -1 - side: the point beyond a side of the lattice from
+/// which that is closed.
 using Crossing = std::array<std::int64_t, 2>;
 using CrossingTriangle = std::array<Crossing, 3>;
+using Side = RefinedLattice::Side;
+
+/// An edge around what of a side of the lattice is inside, seen from beyond counter-clockwise.
+struct SideEdge {
+    Side side, along;  ///< along another side: it lies in both; along itself: on the level set
+    Crossing from, to;
+};
+
+/// What some cells have of the closed boundary of one level.
+struct LevelPieces {
+    std::vector<CrossingTriangle> triangles;
+    std::vector<SideEdge> edges;
+
+    void add(const LevelPieces& more) {
+        triangles.insert(triangles.end(), more.triangles.begin(), more.triangles.end());
+        edges.insert(edges.end(), more.edges.begin(), more.edges.end());
+    }
+};
 
 /// The corners of a tetrahedron in the order in which those of a mask come first, turned as before.
 std::array<std::uint8_t, 4> sorted_corners(std::size_t mask) {
@@ -47,15 +68,21 @@ std::array<std::uint8_t, 4> sorted_corners(std::size_t mask) {
 class CellLevelSets {
 public:
     CellLevelSets(const RefinedLattice& lattice, std::span<const double> levels)
-        : lattice_(lattice), levels_(levels), triangles_(levels.size()) {
+        : lattice_(lattice), levels_(levels), pieces_(levels.size()) {
         for (std::size_t mask = 0; mask < 16; ++mask)
             orders_[mask] = sorted_corners(mask);
     }
 
     void add_cell(const CellIndex& cell) {
+        std::size_t planes = 0;  // those of the lattice's sides that the cell is at
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            planes += (cell[axis] == 0) + (cell[axis] + 1 == lattice_.cells(axis));
+        const auto add_all = [&](const Tetrahedron& tetrahedron) {
+            add(tetrahedron);
+            if (planes > 0) add_sides(tetrahedron);
+        };
         if (const auto* tetrahedra = lattice_.divided(cell)) {
-            for (const Tetrahedron& tetrahedron : *tetrahedra)
-                add(tetrahedron);
+            std::ranges::for_each(*tetrahedra, add_all);
             return;
         }
         const auto corners = lattice_.corners(cell);
@@ -64,12 +91,12 @@ public:
             low = std::min(low, lattice_.value(corner));
             high = std::max(high, lattice_.value(corner));
         }
-        if (first_level(low) == first_level(high)) return;
+        if (first_level(low) == first_level(high) && planes < 2) return;
         for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
-            add(RefinedLattice::tetrahedron(corners, number));
+            add_all(RefinedLattice::tetrahedron(corners, number));
     }
 
-    std::vector<std::vector<CrossingTriangle>>& triangles() { return triangles_; }
+    std::vector<LevelPieces>& pieces() { return pieces_; }
 
 private:
     /// The first level that is at least some value.
@@ -104,7 +131,7 @@ private:
             return unordered(own, tetrahedron[order[out]]);
         };
         const auto triangle = [&](const Crossing& a, const Crossing& b, const Crossing& c) {
-            if (a != b && b != c && c != a) triangles_[level].push_back({a, b, c});
+            if (a != b && b != c && c != a) pieces_[level].triangles.push_back({a, b, c});
         };
         if (inside == 1) {
             triangle(between(0, 1), between(0, 2), between(0, 3));
@@ -117,14 +144,89 @@ private:
         }
     }
 
+    /// The faces of a tetrahedron in the sides of the lattice.
+    void add_sides(const Tetrahedron& tetrahedron) {
+        constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+            {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};  // outward
+        std::array<unsigned, 4> sides{};
+        for (std::size_t i = 0; i < 4; ++i)
+            sides[i] = lattice_.sides(tetrahedron[i]);
+        for (const auto& [a, b, c] : kFaces) {
+            const unsigned own = sides[a] & sides[b] & sides[c];
+            if (own == 0) continue;
+            for (std::size_t level = 0; level < levels_.size(); ++level)
+                add_face({tetrahedron[a], tetrahedron[b], tetrahedron[c]},
+                         static_cast<Side>(std::countr_zero(own)), level);
+        }
+    }
+
+    /// Of a triangle in a side of the lattice the edges that are on the level set, or in another
+    /// side, around what is inside.
+    void add_face(const std::array<std::int64_t, 3>& corners, Side side, std::size_t level) {
+        std::optional<Crossing> leaving, entering;
+        const auto put = [&](Side along, const Crossing& from, const Crossing& to) {
+            if (from != to) pieces_[level].edges.push_back({side, along, from, to});
+        };
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int64_t a = corners[i], b = corners[(i + 1) % 3];
+            const bool has_a = lattice_.value(a) <= levels_[level];
+            const bool has_b = lattice_.value(b) <= levels_[level];
+            if (!has_a && !has_b) continue;
+            Crossing from{a, a}, to{b, b};
+            if (has_a != has_b) {
+                const std::int64_t in = has_a ? a : b;
+                const bool is_at = lattice_.value(in) == levels_[level];
+                const Crossing crossing = is_at ? Crossing{in, in} : unordered(a, b);
+                (has_a ? to : from) = crossing;
+                (has_a ? leaving : entering) = crossing;
+            }
+            const unsigned others = lattice_.sides(a) & lattice_.sides(b) & ~(1U << side);
+            if (others != 0) put(static_cast<Side>(std::countr_zero(others)), from, to);
+        }
+        if (leaving) put(side, *leaving, *entering);
+    }
+
     const RefinedLattice& lattice_;
     std::span<const double> levels_;
     std::array<std::array<std::uint8_t, 4>, 16> orders_{};
-    std::vector<std::vector<CrossingTriangle>> triangles_;
+    std::vector<LevelPieces> pieces_;
 };
+
+/// Closes a level set: what of a side of the lattice is inside is the base of a pyramid, whose tip
+/// lies beyond the middle of the side. Along an edge of the lattice corners between others count
+/// for nothing, on both sides alike.
+/// @return how many triangles are the level set itself
+std::size_t close(LevelPieces& pieces) {
+    const std::size_t own = pieces.triangles.size();
+    const auto add = [&](Side side, const Crossing& from, const Crossing& to) {
+        const std::int64_t tip = -1 - side;
+        pieces.triangles.push_back({from, to, {tip, tip}});
+    };
+    std::map<std::pair<Side, Side>, std::map<Crossing, int>> ends;  // less beginnings
+    for (const SideEdge& edge : pieces.edges) {
+        if (edge.along == edge.side) {
+            add(edge.side, edge.from, edge.to);
+        } else {
+            auto& line = ends[{edge.side, edge.along}];
+            --line[edge.from];
+            ++line[edge.to];
+        }
+    }
+    for (const auto& [sides, line] : ends) {
+        std::vector<Crossing> from, to;
+        for (const auto& [crossing, count] : line)
+            (count < 0 ? from : to)
+                .insert((count < 0 ? from : to).end(), index(std::abs(count)), crossing);
+        assert(from.size() == to.size());
+        for (std::size_t i = 0; i < from.size(); ++i)
+            add(sides.first, from[i], to[i]);
+    }
+    return own;
+}
 
 /// Where a level set passes between two corners.
 Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double level) {
+    if (crossing[0] < 0) return lattice.beyond(static_cast<Side>(-1 - crossing[0]));
     const Vec3 a = lattice.position(crossing[0]);
     if (crossing[0] == crossing[1]) return a;
     const Vec3 b = lattice.position(crossing[1]);
@@ -137,16 +239,19 @@ Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double
     return p;
 }
 
-/// Takes away equal triangles that face each other: between them a level set touches itself.
-void cancel_equal(std::vector<std::array<std::int32_t, 3>>& triangles) {
+/// Takes away equal triangles that face each other: between them a level set touches itself. Only
+/// those can be equal whose corners are all at nodes.
+/// @return how many of the first `own` are left
+std::size_t cancel_equal(std::vector<CrossingTriangle>& triangles, std::size_t own) {
     struct Turned {
-        std::array<std::int32_t, 3> corners;
+        CrossingTriangle corners;
         int turn;
         std::size_t number;
     };
     std::vector<Turned> sorted;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         auto corners = triangles[t];
+        if (!std::ranges::all_of(corners, [](const Crossing& c) { return c[0] == c[1]; })) continue;
         std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
         const int turn = corners[1] < corners[2] ? 1 : -1;
         if (turn < 0) std::swap(corners[1], corners[2]);
@@ -160,37 +265,46 @@ void cancel_equal(std::vector<std::array<std::int32_t, 3>>& triangles) {
         is_gone[sorted[i].number] = is_gone[sorted[i + 1].number] = 1;
         ++i;
     }
-    std::size_t kept = 0;
+    std::size_t kept = 0, kept_own = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (is_gone[t] == 0) triangles[kept++] = triangles[t];
+        if (is_gone[t] != 0) continue;
+        kept_own += t < own ? 1 : 0;
+        triangles[kept++] = triangles[t];
     }
     triangles.resize(kept);
+    return kept_own;
 }
 
-LevelSet numbered(const RefinedLattice& lattice, double level,
-                  const std::vector<CrossingTriangle>& triangles, const Execution& execution) {
-    std::vector<Crossing> crossings;
-    crossings.reserve(3 * triangles.size());
-    for (const CrossingTriangle& triangle : triangles)
-        crossings.insert(crossings.end(), triangle.begin(), triangle.end());
-    parallel_sort(crossings, std::less<>(), execution);
-    crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
-    checked_number(crossings.size(), "vertices of a level set");
+LevelSet numbered(const RefinedLattice& lattice, double level, LevelPieces pieces) {
     LevelSet found;
-    found.vertices.resize(crossings.size());
-    parallel_ranges(crossings.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v)
-            found.vertices[v] = position_of(lattice, crossings[v], level);
-    });
-    found.triangles.resize(triangles.size());
-    parallel_ranges(triangles.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            for (std::size_t i = 0; i < 3; ++i)
-                found.triangles[t][i] = static_cast<std::int32_t>(
-                    std::ranges::lower_bound(crossings, triangles[t][i]) - crossings.begin());
+    const std::size_t own = close(pieces);
+    found.own = cancel_equal(pieces.triangles, own);
+    std::vector<std::pair<Crossing, std::int32_t>> crossings;  // and the number that each had first
+    KeyTable known;
+    for (const CrossingTriangle& triangle : pieces.triangles) {
+        auto& numbers = found.triangles.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Crossing& crossing = triangle[i];
+            const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(crossing);
+            const std::int32_t next = checked_number(crossings.size(), "vertices of a level set");
+            const auto [number, is_new] = known.find_or_add(
+                KeyTable::hash(words), next,
+                [&](std::int32_t other) { return crossings[index(other)].first == crossing; });
+            if (is_new) crossings.push_back({crossing, number});
+            numbers[i] = number;
         }
-    });
-    cancel_equal(found.triangles);
+    }
+    std::ranges::sort(crossings);
+    found.vertices.resize(crossings.size());
+    std::vector<std::int32_t> place(crossings.size());
+    for (std::size_t v = 0; v < crossings.size(); ++v) {
+        found.vertices[v] = position_of(lattice, crossings[v].first, level);
+        place[index(crossings[v].second)] = static_cast<std::int32_t>(v);
+    }
+    for (auto& triangle : found.triangles) {
+        for (std::int32_t& v : triangle)
+            v = place[index(v)];
+    }
     return found;
 }
 
@@ -200,22 +314,22 @@ std::vector<LevelSet> level_sets(const LatticeField& field, std::span<const doub
                                  const Execution& execution) {
     const RefinedLattice lattice(field, levels);
     const auto slabs = static_cast<std::size_t>(lattice.cells(2));
-    std::vector<std::vector<std::vector<CrossingTriangle>>> of_slabs(slabs);
+    std::vector<std::vector<LevelPieces>> of_slabs(slabs);
     parallel_chunks(slabs, execution, [&](std::size_t slab) {
         CellLevelSets sets(lattice, levels);
-        for (std::int32_t j = -1; j < lattice.cells(1) - 1; ++j) {
-            for (std::int32_t i = -1; i < lattice.cells(0) - 1; ++i)
-                sets.add_cell({i, j, static_cast<std::int32_t>(slab) - 1});
+        for (std::int32_t j = 0; j < lattice.cells(1); ++j) {
+            for (std::int32_t i = 0; i < lattice.cells(0); ++i)
+                sets.add_cell({i, j, static_cast<std::int32_t>(slab)});
         }
-        of_slabs[slab] = std::move(sets.triangles());
+        of_slabs[slab] = std::move(sets.pieces());
     });
-    std::vector<LevelSet> found;
-    for (std::size_t level = 0; level < levels.size(); ++level) {
-        std::vector<CrossingTriangle> triangles;
+    std::vector<LevelSet> found(levels.size());
+    parallel_chunks(levels.size(), execution, [&](std::size_t level) {
+        LevelPieces pieces;
         for (const auto& slab : of_slabs)
-            triangles.insert(triangles.end(), slab[level].begin(), slab[level].end());
-        found.push_back(numbered(lattice, levels[level], triangles, execution));
-    }
+            pieces.add(slab[level]);
+        found[level] = numbered(lattice, levels[level], std::move(pieces));
+    });
     return found;
 }
 
@@ -277,8 +391,7 @@ TetrahedraAt tetrahedra_at(const LatticeField& field, std::span<const double> po
                 if (!own)
                     throw InputError("outside", "a position is outside of the lattice", -1,
                                      {static_cast<std::int64_t>(i)}, p);
-                for (std::size_t k = 0; k < 4; ++k)
-                    found.corners[i][k] = lattice.number_of(own->corners[k]);
+                found.corners[i] = own->corners;
                 found.weights[i] = own->weights;
             }
         });

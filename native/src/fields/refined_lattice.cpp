@@ -55,34 +55,13 @@ RefinedLattice::RefinedLattice(const LatticeField& field, std::span<const double
       spacing_(field.lattice.spacing),
       counts_(field.lattice.counts) {
     check_field(field, levels);
-    stride_ = {1, counts_[0] + 2, (counts_[0] + 2L) * (counts_[1] + 2L)};
-    nodes_ = stride_[2] * (counts_[2] + 2);
-    add_layer(field, levels);
+    stride_ = {1, counts_[0], std::int64_t{counts_[0]} * counts_[1]};
+    nodes_ = stride_[2] * counts_[2];
+    values_.assign(field.values.begin(), field.values.end());
     for (std::size_t p = 0; p < field.point_values.size(); ++p) {
         points_.push_back({field.points[3 * p], field.points[3 * p + 1], field.points[3 * p + 2]});
         point_values_.push_back(field.point_values[p]);
         add_point(p, points_.back());
-    }
-}
-
-void RefinedLattice::add_layer(const LatticeField& field, std::span<const double> levels) {
-    double low = field.values[0], high = low;
-    for (const auto& numbers : {field.values, field.point_values, levels}) {
-        for (const double number : numbers) {
-            low = std::min(low, number);
-            high = std::max(high, number);
-        }
-    }
-    const double beyond =
-        std::max(high + std::max(high - low, 1.0), std::nextafter(high, HUGE_VAL));
-    assert(beyond > high);
-    values_.assign(static_cast<std::size_t>(nodes_), beyond);
-    auto from = field.values.begin();
-    for (std::int32_t k = 0; k < counts_[2]; ++k) {
-        for (std::int32_t j = 0; j < counts_[1]; ++j) {
-            std::copy_n(from, counts_[0], values_.begin() + node({0, j, k}));
-            from += counts_[0];
-        }
     }
 }
 
@@ -91,7 +70,26 @@ Vec3 RefinedLattice::position(std::int64_t corner) const {
     const auto x = static_cast<std::int32_t>(corner % stride_[1]);
     const auto y = static_cast<std::int32_t>(corner % stride_[2] / stride_[1]);
     const auto z = static_cast<std::int32_t>(corner / stride_[2]);
-    return {coordinate(0, x - 1), coordinate(1, y - 1), coordinate(2, z - 1)};
+    return {coordinate(0, x), coordinate(1, y), coordinate(2, z)};
+}
+
+unsigned RefinedLattice::sides(std::int64_t corner) const {
+    const Vec3 p = position(corner);
+    unsigned found = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (p[axis] == coordinate(axis, 0)) found |= 1U << axis;
+        if (p[axis] == coordinate(axis, counts_[axis] - 1)) found |= 8U << axis;
+    }
+    return found;
+}
+
+Vec3 RefinedLattice::beyond(Side side) const {
+    Vec3 p{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        p[axis] = origin_[axis] + spacing_[axis] * (counts_[axis] - 1) / 2;
+    const std::size_t axis = side % 3;
+    p[axis] = coordinate(axis, side < 3 ? -1 : counts_[axis]);
+    return p;
 }
 
 std::array<std::int64_t, 8> RefinedLattice::corners(const CellIndex& cell) const {
@@ -113,16 +111,14 @@ Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corne
     return found;
 }
 
-std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p, bool with_layer) const {
+std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
     std::array<std::vector<std::int32_t>, 3> along;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto last = counts_[axis] - 2;
         if (!(p[axis] >= coordinate(axis, 0) && p[axis] <= coordinate(axis, last + 1))) return {};
         // rounding may be off by one
         const auto near = static_cast<std::int32_t>((p[axis] - origin_[axis]) / spacing_[axis]);
-        const std::int32_t beyond = with_layer ? 1 : 0;
-        for (std::int32_t i = std::max(near - 2, -beyond); i <= std::min(near + 2, last + beyond);
-             ++i) {
+        for (std::int32_t i = std::max(near - 2, 0); i <= std::min(near + 2, last); ++i) {
             if (p[axis] >= coordinate(axis, i) && p[axis] <= coordinate(axis, i + 1))
                 along[axis].push_back(i);
         }
@@ -172,7 +168,7 @@ std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedr
 }
 
 void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
-    const auto cells = cells_at(p, true);
+    const auto cells = cells_at(p);
     if (cells.empty())
         throw InputError("outside", "a point is outside of the lattice", -1,
                          {static_cast<std::int64_t>(point)}, p);
@@ -228,10 +224,8 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
         }
         make_divided(cell) = std::move(divided);
     }
-    // its own tetrahedron, the two beside its face, or those around its edge
-    assert(simplex->size() == 4   ? replaced == 1
-           : simplex->size() == 3 ? replaced == 2
-                                  : replaced > 2);
+    // its own tetrahedron, the two beside its face but in a side, or those around its edge
+    assert(simplex->size() == 4 ? replaced == 1 : replaced > 0);
 }
 
 /// Of those that are flat but for rounding their neighbors have the same values.
@@ -267,7 +261,7 @@ Located RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra
 }
 
 std::optional<Located> RefinedLattice::located(const Vec3& p) const {
-    const auto cells = cells_at(p, false);
+    const auto cells = cells_at(p);
     if (cells.empty()) return std::nullopt;
     const CellIndex& cell = cells.front();
     if (const auto* tetrahedra = divided(cell)) return in_tetrahedra(*tetrahedra, p);
@@ -302,7 +296,7 @@ bool RefinedLattice::is_between(std::size_t point) const {
             greater |= value(other) > own;
         }
     };
-    for (const CellIndex& cell : cells_at(points_[point], true)) {
+    for (const CellIndex& cell : cells_at(points_[point])) {
         if (const auto* tetrahedra = divided(cell)) {
             std::ranges::for_each(*tetrahedra, look);
             continue;
@@ -312,14 +306,6 @@ bool RefinedLattice::is_between(std::size_t point) const {
             look(tetrahedron(all, number));
     }
     return lesser && greater;
-}
-
-std::int64_t RefinedLattice::number_of(std::int64_t corner) const {
-    if (corner >= nodes_)
-        return corner - nodes_ + static_cast<std::int64_t>(counts_[0]) * counts_[1] * counts_[2];
-    const std::int64_t i = corner % stride_[1] - 1, j = corner % stride_[2] / stride_[1] - 1,
-                       k = corner / stride_[2] - 1;
-    return i + counts_[0] * (j + counts_[1] * k);
 }
 
 }  // namespace realmodel::fields

@@ -32,25 +32,31 @@ inline constexpr std::array<std::array<CellIndex, 4>, 6> kTetrahedraOfCell{{
     {{{0, 0, 0}, {1, 0, 1}, {1, 0, 0}, {1, 1, 1}}},
 }};
 
-/// The tetrahedra of a field, with a layer of cells around its lattice, beyond which it is greater
-/// than any level and any value in the lattice. Corners are the nodes of lattice and layer, then
+/// The tetrahedra of a field. Corners are the nodes of the lattice, as LatticeField has them, then
 /// the points. A point in a tetrahedron, in a face or on an edge divides all tetrahedra that have
 /// these in common; one in a node gives it its value.
 class RefinedLattice {
 public:
+    /// Of the box of the lattice: where the coordinate of an axis is least, or 3 + the axis where
+    /// it is greatest.
+    using Side = std::uint8_t;
+
     /// @throws InputError  as level_sets does
     RefinedLattice(const LatticeField& field, std::span<const double> levels);
 
-    /// How many cells there are along an axis, those of the layer, too.
-    std::int32_t cells(std::size_t axis) const { return counts_[axis] + 1; }
+    std::int32_t cells(std::size_t axis) const { return counts_[axis] - 1; }
     std::int64_t node(const CellIndex& at) const {
-        return (at[0] + 1) + stride_[1] * (at[1] + 1) + stride_[2] * (at[2] + 1);
+        return at[0] + stride_[1] * at[1] + stride_[2] * at[2];
     }
     double value(std::int64_t corner) const {
         return corner < nodes_ ? values_[static_cast<std::size_t>(corner)]
                                : point_values_[static_cast<std::size_t>(corner - nodes_)];
     }
     Vec3 position(std::int64_t corner) const;
+    /// A bit for each side that a corner lies in.
+    unsigned sides(std::int64_t corner) const;
+    /// A point beyond the middle of a side.
+    Vec3 beyond(Side side) const;
     /// The tetrahedra of a cell that points divide, nullptr for any other cell.
     const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
         const auto found = divided_.find(node(cell));
@@ -66,18 +72,14 @@ public:
     /// Whether beside a point there are corners with lesser and with greater values: then the level
     /// set of its value passes through it.
     bool is_between(std::size_t point) const;
-    /// The number of a corner of the lattice: that of a node, as LatticeField has them, and of a
-    /// point, counted after all nodes.
-    std::int64_t number_of(std::int64_t corner) const;
 
 private:
     double coordinate(std::size_t axis, std::int32_t step) const {
         return origin_[axis] + spacing_[axis] * step;
     }
-    void add_layer(const LatticeField& field, std::span<const double> levels);
     void add_point(std::size_t point, const Vec3& p);
-    /// The cells whose boxes contain a position of the lattice, with or without those of the layer.
-    std::vector<CellIndex> cells_at(const Vec3& p, bool with_layer) const;
+    /// The cells whose boxes contain a position of the lattice.
+    std::vector<CellIndex> cells_at(const Vec3& p) const;
     std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
     std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
                                                      exact::SpacePointId p);
@@ -87,7 +89,7 @@ private:
     std::array<double, 3> origin_, spacing_;
     std::array<std::int32_t, 3> counts_;
     std::array<std::int64_t, 3> stride_;
-    std::int64_t nodes_;  ///< of lattice and layer
+    std::int64_t nodes_;
     std::vector<double> values_;
     std::vector<Vec3> points_;
     std::vector<double> point_values_;

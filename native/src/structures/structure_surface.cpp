@@ -299,21 +299,42 @@ public:
     void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
     void add(const std::array<Position, 3>& corners, bool is_continuation) {
         if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
-        all_.surface.triangles.push_back({node(corners[0]), node(corners[1]), node(corners[2])});
-        all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
-        all_.is_continuation.push_back(is_continuation ? 1 : 0);
-        add_to_single(corners);
-    }
-    /// One that is away from all rock, and cuts nothing.
-    void add_to_single(const std::array<Position, 3>& corners) {
+        put({node(corners[0]), node(corners[1]), node(corners[2])}, is_continuation);
         CutterSurface& single = all_.single.back();
         const auto first = static_cast<NodeId>(single.vertices.size());
         single.vertices.insert(single.vertices.end(), corners.begin(), corners.end());
         single.triangles.push_back({first, first + 1, first + 2});
     }
+    /// @param rock  what of the body is away from it cuts nothing; nullopt: all cuts
+    void add_body(const CutterSurface& body, const std::optional<Box>& rock) {
+        std::vector<NodeId> nodes(body.vertices.size(), -1);
+        for (const auto& t : body.triangles) {
+            const std::array corners{body.vertices[index(t[0])], body.vertices[index(t[1])],
+                                     body.vertices[index(t[2])]};
+            Box box;
+            for (const Position& p : corners)
+                box.include(p);
+            if ((rock && !box.meets(*rock)) ||
+                cutting::in_one_line(corners[0], corners[1], corners[2]))
+                continue;
+            std::array<NodeId, 3> own{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                NodeId& known = nodes[index(t[i])];
+                if (known < 0) known = node(corners[i]);
+                own[i] = known;
+            }
+            put(own, false);
+        }
+        all_.single.back() = body;
+    }
     StructureSurface surface() && { return std::move(all_); }
 
 private:
+    void put(const std::array<NodeId, 3>& triangle, bool is_continuation) {
+        all_.surface.triangles.push_back(triangle);
+        all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
+        all_.is_continuation.push_back(is_continuation ? 1 : 0);
+    }
     NodeId node(const Position& p) {
         auto& vertices = all_.surface.vertices;
         const Position key = plus(p, Position{0, 0, 0});  // both zeros alike
@@ -352,19 +373,16 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
     for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];
         all.begin(own.is_closed);
-        for (const auto& t : own.triangles) {
-            const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
-                                     own.vertices[index(t[2])]};
-            Box box;
-            for (const Position& p : corners)
-                box.include(p);
-            if (!own.is_closed || extent_of.has_all_of_bodies || box.meets(near)) {
-                all.add(corners, false);
-            } else {
-                all.add_to_single(corners);
-            }
+        if (own.is_closed) {
+            all.add_body(own, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
+            continue;
         }
-        if (!structures[index(s)].is_body && (extent_of.continues_all || !divides(own, rock))) {
+        for (const auto& t : own.triangles) {
+            all.add(
+                {own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
+                false);
+        }
+        if (extent_of.continues_all || !divides(own, rock)) {
             for (const auto& t : continuation(structures, given, s, size))
                 all.add(t, true);
         }

@@ -42,9 +42,10 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
     faces_on_.resize(overlay.size());
     is_same_.assign(overlay.size(), 0);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
-        if (!overlay.of_cutter(r) && winding.level(r) >= 0)
-            faces_on_[index(winding.level(r))].push_back(
-                static_cast<std::int32_t>(overlay.face_of(r)));
+        if (overlay.of_cutter(r) || winding.level(r) < 0) continue;
+        auto& on = faces_on_[index(winding.level(r))];
+        const auto own = overlay.faces_of(r);
+        on.insert(on.end(), own.begin(), own.end());
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r))
@@ -61,10 +62,6 @@ std::int8_t WantedParts::of_item(std::size_t item, std::size_t face) const {
     assert(sides_.part_of(item) < model_of_part_.size());
     const std::int32_t model = model_of_cell_[index(overlay_.model().cell(face, 0))];
     return model_of_part_[sides_.part_of(item)] == model ? kAbove : kOn;
-}
-
-std::int8_t WantedParts::of_region(std::size_t region) const {
-    return of_item(region, overlay_.face_of(region));
 }
 
 std::int8_t WantedParts::of_face(std::size_t face) const {

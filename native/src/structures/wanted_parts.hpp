@@ -19,7 +19,9 @@ public:
                 std::span<const std::int32_t> model_of_cell, std::span<const Sides> model_sides,
                 std::span<const std::uint8_t> acts);
 
-    std::int8_t of_region(std::size_t region) const override;
+    std::int8_t of_region(std::size_t region, std::size_t face) const override {
+        return of_item(region, face);
+    }
     std::int8_t of_face(std::size_t face) const override;
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const override;
     bool separates(std::size_t region) const override { return is_same_[region] == 0; }

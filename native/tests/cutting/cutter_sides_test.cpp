@@ -44,7 +44,8 @@ TEST(CutterSides, RegionsOfAWallHaveTheSideTheyAreOn) {
         for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
             if (cut.overlay.of_cutter(r)) continue;
             const double z = cut.overlay.points().rounded(cut.overlay.inner_point(r))[2];
-            EXPECT_EQ(cut.sides.of_region(r), (z > 0.5) == upward ? kAbove : kBelow);
+            EXPECT_EQ(cut.sides.of_region(r, cut.overlay.face_of(r)),
+                      (z > 0.5) == upward ? kAbove : kBelow);
         }
     }
 }

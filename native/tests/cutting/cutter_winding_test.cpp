@@ -37,6 +37,34 @@ TEST(CutterWinding, ThroughACellItIsOnBothSides) {
     EXPECT_EQ(Wound(level_cutter(1.5)).around(), (Around{{kUpper, kUpper}}));
 }
 
+TEST(CutterWinding, CellsOfSeveralModelsShareTheRegionsOfTheirFaces) {
+    validation::OwnedComplex twice = validation::two_cubes();
+    const std::size_t faces = twice.loops.size();
+    for (std::size_t f = 0; f < faces; ++f) {
+        const std::array own = twice.cells[f];
+        twice.add_face(twice.loops[f], own[0] + 2, own[1] < 0 ? -1 : own[1] + 2, twice.surface[f]);
+    }
+    twice.block.insert(twice.block.end(), {0, 0});
+    const ComplexView model = twice.view();
+    const CutterSurface surface = level_cutter(0.5);
+    SurfaceOverlay overlay(model, surface, {1, nullptr}, 0, std::vector<std::int32_t>{0});
+    EXPECT_EQ(overlay.size(), Wound(surface).overlay.size());
+    EXPECT_EQ(overlay.active_faces(), (std::vector<std::int32_t>{3, 4, 5, 6}));
+    EXPECT_TRUE(overlay.is_active(faces + 3));
+    const CutterWinding winding(overlay, nullptr);
+    const Winding both{{0, 1}, {2, 1}};
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (!overlay.of_cutter(r)) {
+            const auto all = overlay.faces_of(r);
+            EXPECT_EQ(std::vector(all.begin(), all.end()),
+                      (std::vector{all[0], all[0] + static_cast<std::int32_t>(faces)}));
+        } else if (winding.touches_model(r)) {
+            EXPECT_EQ(winding.around(r, 0), both);
+            EXPECT_EQ(winding.around(r, 1), both);
+        }
+    }
+}
+
 TEST(CutterWinding, BetweenTwoCellsEachIsOnItsSide) {
     // two regions, as the face there is two triangles
     EXPECT_EQ(Wound(level_cutter(1)).around(), (Around{{kLower, kUpper}, {kLower, kUpper}}));

@@ -88,16 +88,53 @@ TEST(LevelSetsTest, BallsHaveTheVolumesThatTheyMust) {
     }
 }
 
-TEST(LevelSetsTest, APlaneIsClosedAroundTheLattice) {
+TEST(LevelSetsTest, APlaneIsClosedBeyondTheSidesOfTheLattice) {
     Sampled slope({5, 6, 7}, {1, 0.5, 0.7}, [](const Point& p) { return p[2] + 0.1 * p[0]; });
-    const auto sets = slope.at({2.0});
-    expect_closed(sets[0]);
-    EXPECT_GT(volume(sets[0]), 4 * 2.5 * 1.5);  // all that is below in the lattice, and more
-    for (const Point& p : sets[0].vertices) {
-        const bool is_within = p[0] > -1 && p[0] < 3 && p[1] > 2 && p[1] < 4.5 && p[2] > 0.5;
-        if (is_within) {
-            EXPECT_NEAR(p[2] + 0.1 * p[0], 2.0, 1e-12);
+    const LevelSet set = slope.at({2.0})[0];
+    expect_closed(set);
+    // what is below in the lattice, and pyramids a step high over it on five sides
+    const double ends = 2.5 * (1.6 + 1.2), beside = 2 * 4 * 1.4, base = 4 * 2.5;
+    EXPECT_NEAR(volume(set), 4 * 2.5 * 1.4 + (ends + 0.5 * beside + 0.7 * base) / 3, 1e-12);
+    EXPECT_LT(set.triangles.size() - set.own, 60U);  // each where the level set ends, or the box
+    for (std::size_t t = 0; t < set.triangles.size(); ++t) {
+        double beyond = 0;  // how far all corners are beyond a side, or in it
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (const std::int32_t v : set.triangles[t]) {
+                const Point& p = set.vertices[static_cast<std::size_t>(v)];
+                low = std::min(low, p[axis]);
+                high = std::max(high, p[axis]);
+                if (t < set.own) {
+                    EXPECT_NEAR(p[2] + 0.1 * p[0], 2.0, 1e-12);
+                }
+            }
+            const Point last = slope.node({4, 5, 6});
+            const bool is_out = high <= slope.node({0, 0, 0})[axis] || low >= last[axis];
+            beyond = std::max(beyond, is_out ? high - low : 0.0);
         }
+        EXPECT_EQ(beyond > 0, t >= set.own);
+    }
+}
+
+TEST(LevelSetsTest, AFieldThatIsNowhereAboveALevelIsTheLatticeAndAPyramidOverEachSide) {
+    Sampled all({3, 4, 5}, {1, 1, 1}, [](const Point& p) { return p[0]; });
+    all.add({-1, 2.5, 0.5}, 0.25);  // within an edge of the box
+    const LevelSet set = all.at({9.0})[0];
+    expect_closed(set);
+    EXPECT_EQ(set.own, 0U);
+    EXPECT_EQ(set.triangles.size(), 24U);
+    EXPECT_NEAR(volume(set), 24 + 2 * (6 + 8 + 12) / 3.0, 1e-12);
+}
+
+/// Values of few kinds, so that levels pass through nodes, edges and whole faces of the sides.
+TEST(LevelSetsTest, AnyValuesAreClosed) {
+    std::mt19937 random(11);
+    for (int n = 0; n < 300; ++n) {
+        Sampled any({3, 3, 4}, {1, 0.5, 0.75}, [&](const Point&) { return random() % 3; });
+        if (n % 2 == 0) any.add({-1, 2.25, 0.5}, random() % 3);
+        if (n % 3 == 0) any.add({-1, 2.3, 1.1}, random() % 3);
+        for (const LevelSet& set : any.at({0.0, 0.5, 1.0}))
+            expect_closed(set);
     }
 }
 
@@ -124,7 +161,7 @@ TEST(LevelSetsTest, ALevelOfLargeValuesIsClosedAroundTheLattice) {
 TEST(LevelSetsTest, ATouchingPairOfTrianglesCancels) {
     // three nodes of one face are on the level, all others above: there is nothing inside
     Sampled touched({3, 3, 3}, {1, 1, 1}, [](const Point&) { return 1.0; });
-    touched.values[0] = touched.values[1] = touched.values[4] = 0.0;
+    touched.values[9] = touched.values[10] = touched.values[13] = 0.0;
     EXPECT_TRUE(touched.at({0.0})[0].triangles.empty());
 }
 
@@ -314,7 +351,7 @@ TEST(PointsBetweenTest, APeakIsNoPlaceThatItsLevelPassesThrough) {
     EXPECT_EQ(points_between(field.view(), {3, nullptr}), expected);
 }
 
-TEST(LevelSetsTest, AMiddleOfAnEdgeOnTheBorderDividesTheLayerAroundIt) {
+TEST(LevelSetsTest, AMiddleOfAnEdgeInASideDividesWhatIsAroundIt) {
     Sampled field = short_lattice(slope);
     const std::vector<double> before = field.values;
     field.add({-1, 2.25, 0.5}, 9);     // of an edge of the box

@@ -36,7 +36,7 @@ struct Linear {
 
 TEST(RefinedLattice, BetweenNodesTheFunctionIsLinear) {
     const RefinedLattice lattice = Linear().lattice();
-    EXPECT_EQ(lattice.cells(0), 4);  // with the layer around it
+    EXPECT_EQ(lattice.cells(0), 2);
     EXPECT_NEAR(lattice.at({0.3, 1.2, 0.7}), 0.3 + 2.4 + 2.1, 1e-12);
     EXPECT_TRUE(std::isnan(lattice.at({2.5, 1, 1})));
     const auto found = lattice.located({0.25, 0.5, 0.75});
@@ -47,10 +47,15 @@ TEST(RefinedLattice, BetweenNodesTheFunctionIsLinear) {
     EXPECT_DOUBLE_EQ(sum, 1);
 }
 
-TEST(RefinedLattice, TheLayerIsAboveEverything) {
-    const RefinedLattice lattice = Linear().lattice();
-    EXPECT_GT(lattice.value(lattice.node({-1, 0, 0})), 12);
-    EXPECT_DOUBLE_EQ(lattice.value(lattice.node({2, 2, 2})), 12);
+TEST(RefinedLattice, CornersLieInTheSidesOfTheBox) {
+    Linear linear;
+    linear.add({0.5, 2, 0.25}, 3);
+    const RefinedLattice lattice = linear.lattice();
+    EXPECT_EQ(lattice.sides(lattice.node({0, 2, 1})), 1U << 0 | 1U << 4);
+    EXPECT_EQ(lattice.sides(lattice.node({1, 1, 1})), 0U);
+    EXPECT_EQ(lattice.sides(27), 1U << 4);  // the point
+    EXPECT_EQ(lattice.beyond(0), (Vec3{-1, 1, 1}));
+    EXPECT_EQ(lattice.beyond(5), (Vec3{1, 1, 3}));
 }
 
 TEST(RefinedLattice, APointDividesTheCellsThatItLiesIn) {

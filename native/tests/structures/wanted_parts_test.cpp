@@ -27,7 +27,8 @@ TEST(WantedParts, OfACellItIsWhatLiesInThePartOfItsModel) {
     Wanted cut({0, 1}, {{-1}, {1}}, 1);
     cut.each_region(false, [&](std::size_t r) {
         const bool is_lower = cut.model.cell(cut.overlay.face_of(r), 0) == 0;
-        EXPECT_EQ(cut.wanted.of_region(r), (cut.inner(r)[0] < 0.5) == is_lower ? kAbove : kOn);
+        EXPECT_EQ(cut.wanted.of_region(r, cut.overlay.face_of(r)),
+                  (cut.inner(r)[0] < 0.5) == is_lower ? kAbove : kOn);
     });
     cut.each_region(true, [&](std::size_t r) {
         const std::int32_t cell = cut.inner(r)[2] < 1 ? 0 : 1;
@@ -64,7 +65,7 @@ TEST(WantedParts, OfModelsThatAreInOnePartTheFirstCounts) {
     Wanted cut({0, 1}, {{0}, {-1}}, 1);
     cut.each_region(false, [&](std::size_t r) {
         const bool is_lower = cut.model.cell(cut.overlay.face_of(r), 0) == 0;
-        EXPECT_EQ(cut.wanted.of_region(r), is_lower ? kAbove : kOn);
+        EXPECT_EQ(cut.wanted.of_region(r, cut.overlay.face_of(r)), is_lower ? kAbove : kOn);
     });
 }
 

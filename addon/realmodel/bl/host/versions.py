@@ -233,6 +233,13 @@ def plain_colors(scene):
     scene.view_settings.gamma = 1.0
 
 
+def write_images(settings):
+    """Image settings of a scene that write images: since 5.0 a scene that writes a video has no format of
+    images to choose."""
+    if hasattr(settings, "media_type"):
+        settings.media_type = "IMAGE"
+
+
 GREASE_PENCIL = ("GPENCIL", "GREASEPENCIL")  # types of objects; since Blender 4.3 it is the second
 
 

@@ -288,6 +288,7 @@ def set_renderer(scene, path, size, samples, time_limit):
     render.resolution_percentage = 100
     render.filepath = str(path)
     render.use_file_extension = False
+    versions.write_images(render.image_settings)
     render.image_settings.file_format = "PNG"
     render.image_settings.color_mode = "RGB"
     choose_renderer(scene, samples, time_limit)

@@ -18,7 +18,7 @@ def of_model(model):
     for rock in model.project.rocks:
         for surface in rock.surfaces:
             vertices, triangles = model.surface(number)
-            heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
+            heights = vertices[:, 2][triangles] if len(triangles) else np.zeros(1)
             whole = 0.0
             if surface.interpolated or rock.region is None:  # each sheet goes on beyond its faults
                 sheets = [triangles] if model.lacks_project else model.sheet_triangles(number)

@@ -54,8 +54,11 @@ _DOME = 0.42  # how far pebbles stand out, of their radius: their rims are not s
 _SEAM, _SHADE = 1.3, 0.16  # of its radius: how far its shade reaches into the matrix; and how dark it is
 _OCTAVES = 7.0  # of the relief: a hundredth of its size, so that it is rough at two meters, too
 _WAVY = 0.16  # texture units: how far laminae are from straight
-_BLADE, _BENT_BLADES = 0.012, 14.0  # texture units: how wide a blade of grass is; blades: how far they wind
-_BLADES = ((0.5, 0.15), (2.2, 0.12))  # directions, and how long they are
+_CRUMBS = (1.0, 0.4)  # sizes of crumbs, of the largest
+_LITTER = 0.14  # texture units: the size of the places of stalks
+_STALK = (0.42, 0.02)  # of that: how long and wide they are
+_TUFTS = ((0.21, 6.5), (0.12, 4.5))  # texture units: sizes of tufts of grass; how many blades
+_BENT_BLADES = 4.0  # how far blades bend to one side
 _NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
 
@@ -175,13 +178,18 @@ def _fill_texture(nodes, look, place, size, texture):
         texture.heights.append(nodes.about(rough, 2.0 * look.relief))
         texture.tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
     _fill_bedding(nodes, look, place, _above(nodes, place, size), (large, rough), texture)
+    free = 1.0
     if look.clasts and look.clast_size <= _CRYSTAL:
         _add_crystals(nodes, place, look, texture)
     elif look.clasts:
-        _add_pebbles(nodes, place, look, rough, texture)
+        free = _add_pebbles(nodes, place, look, rough, texture)
+    if look.crumbs:
+        _add_crumbs(nodes, place, look, free, texture)
     if look.grassy:
-        _add_blades(nodes, place, rough, texture)
+        _add_blades(nodes, place, texture)
         texture.hues.append(large)
+    if look.litter:
+        _add_litter(nodes, place, look, texture)
 
 
 def _fill_bedding(nodes, look, place, above, noises, texture):
@@ -329,7 +337,7 @@ def _add_crystals(nodes, place, look, texture):
 
 def _add_pebbles(nodes, place, look, rough, texture):
     """Pebbles of many sizes: a large kind, and a small one in the matrix between them. In each cell is one of
-    random radius, or none; the relief makes their outlines uneven."""
+    random radius, or none; the relief makes their outlines uneven. Returns where none is: 1, else 0."""
     free = 1.0  # of larger pebbles
     for number, size in enumerate(_CLAST_SIZES):
         size *= look.clast_size
@@ -358,27 +366,83 @@ def _add_pebbles(nodes, place, look, rough, texture):
         dome = nodes.math("SUBTRACT", 1.0, nodes.math("MULTIPLY", away, away))
         dome = nodes.math("MULTIPLY", nodes.math("MAXIMUM", dome, 0.0), radius)
         texture.heights.append(nodes.math("MULTIPLY", nodes.math("MULTIPLY", dome, _DOME * size), here))
-        free = nodes.math("SUBTRACT", 1.0, nodes.math("MAXIMUM", inside, seam))
+        here = nodes.math("SUBTRACT", 1.0, nodes.math("MAXIMUM", inside, seam))
+        free = nodes.math("MULTIPLY", free, here)
+    return free
 
 
-def _add_blades(nodes, place, rough, texture):
-    """Blades of grass that lie across one another, some of them dry, on faces that are ground."""
-    bent, highest = nodes.about(rough, _BENT_BLADES), None
-    for turn, long in _BLADES:
-        across = (math.cos(turn) / _BLADE, math.sin(turn) / _BLADE, 0.0)
-        along = (-math.sin(turn) / long, math.cos(turn) / long, 0.0)
-        flat = nodes.new("ShaderNodeCombineXYZ")
-        nodes.link(nodes.math("ADD", nodes.vector("DOT_PRODUCT", place, across), bent), flat.inputs[0])
-        nodes.link(nodes.vector("DOT_PRODUCT", place, along), flat.inputs[1])
-        blade = nodes.noise(flat.outputs[0], 1.0, 1.0, "2D")
-        highest = blade if highest is None else nodes.math("MAXIMUM", highest, blade)
+def _add_crumbs(nodes, place, look, free, texture):
+    """Crumbs that lie close together between pebbles, large ones and small ones on them, with dark gaps.
+    free: of pebbles."""
+    for size in _CRUMBS:
+        size *= look.crumb_size
+        cell = nodes.cells("3D", nodes.vector("SCALE", place, 1.0 / size), 1.0, "F1")
+        deep = nodes.math("MULTIPLY", cell.outputs["Distance"], cell.outputs["Distance"])
+        deep = nodes.math("MULTIPLY", deep, free)
+        texture.heights.append(nodes.math("MULTIPLY", deep, -look.crumbs * size))
+        tone = nodes.about(nodes.part(cell.outputs["Color"], 0), 0.25 * look.crumbs)
+        texture.tones.append(nodes.math("MULTIPLY", tone, free))
+        texture.tones.append(nodes.math("MULTIPLY", deep, -0.2 * look.crumbs))
+
+
+def _add_litter(nodes, place, look, texture):
+    """Dry stalks on ground, one at some of the places, in any direction."""
+    cell, away = _around_middle(nodes, nodes.vector("SCALE", place, 1.0 / _LITTER), 0.6)
+    first, second = (nodes.part(cell.outputs["Color"], axis) for axis in range(2))
+    turn = nodes.math("MULTIPLY", first, 2.0 * math.pi)
+    sides = nodes.math("COSINE", turn), nodes.math("SINE", turn)
+    parts = [nodes.part(away, axis) for axis in range(2)]
+    along = nodes.total([nodes.math("MULTIPLY", *pair) for pair in zip(parts, sides, strict=True)])
+    across = nodes.math("MULTIPLY", parts[1], sides[0])
+    across = nodes.math("SUBTRACT", across, nodes.math("MULTIPLY", parts[0], sides[1]))
+    bent = nodes.math("MULTIPLY", nodes.math("MULTIPLY", along, along), nodes.about(second, 0.8))
+    across = nodes.math("ABSOLUTE", nodes.math("ADD", across, bent))
+    long, wide = _STALK
+    here = nodes.math("LESS_THAN", nodes.part(cell.outputs["Color"], 2), look.litter)
+    here = nodes.math("MULTIPLY", here, nodes.attribute("is_top"))
+    here = nodes.math("MULTIPLY", here, nodes.ramp(nodes.math("ABSOLUTE", along), 0.9 * long, long, 1.0, 0.0))
+    stalk = nodes.math("MULTIPLY", here, nodes.ramp(across, wide, 1.4 * wide, 1.0, 0.0))
+    texture.tones.append(nodes.math("MULTIPLY", stalk, nodes.math("MULTIPLY_ADD", second, 0.3, 0.25)))
+    texture.pale.append(nodes.math("MULTIPLY", stalk, 0.35))
+    texture.heights.append(nodes.math("MULTIPLY", stalk, wide * _LITTER))
+
+
+def _around_middle(nodes, place, randomness):
+    """A plane cell texture, and where in its cell a place is, from the middle."""
+    place = nodes.vector("MULTIPLY", place, (1.0, 1.0, 0.0))
+    cell = nodes.cells("2D", place, randomness, "F1")
+    return cell, nodes.vector("SUBTRACT", place, cell.outputs["Position"])
+
+
+def _add_blades(nodes, place, texture):
+    """Tufts of grass seen from above on faces that are ground: blades that go outward from the middle of each
+    and bend to one side. They have no height: Eevee's shaders would take ten times as long to compile."""
+    highest, tint = 0.0, 0.0
+    for number, (size, around) in enumerate(_TUFTS):
+        near = nodes.vector("SCALE", nodes.vector("ADD", place, (0.7 * number, 0.0, 0.0)), 1.0 / size)
+        bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", near, (0.0, 0.0, 2.7)))
+        near = nodes.vector("ADD", near, nodes.vector("SCALE", bent, 0.3))
+        cell, away = _around_middle(nodes, near, 1.0)
+        own = [nodes.part(cell.outputs["Color"], axis) for axis in range(3)]
+        # on a circle in the noise, so that there is no seam; farther out it is another place
+        circle = nodes.vector("SCALE", nodes.vector("NORMALIZE", away), around)
+        turned = nodes.vector("CROSS_PRODUCT", away, (0.0, 0.0, _BENT_BLADES * around))
+        turned = nodes.vector("SCALE", turned, nodes.math("SUBTRACT", own[2], 0.5))
+        circle = nodes.vector("ADD", nodes.vector("ADD", circle, turned), away)
+        circle = nodes.vector("ADD", circle, nodes.vector("SCALE", cell.outputs["Color"], 50.0))
+        blade = nodes.ramp(nodes.noise(circle, 1.0, 1.0, "2D"), 0.35, 0.65, 0.0, 1.0)
+        far = cell.outputs["Distance"]
+        reach = nodes.math(
+            "MULTIPLY", nodes.ramp(far, 0.0, 0.35, 0.2, 1.0), nodes.ramp(far, 0.3, 0.8, 1.0, 0.1)
+        )
+        reach = nodes.math("MULTIPLY", reach, nodes.math("MULTIPLY_ADD", own[1], 0.5, 0.6))
+        highest = nodes.math("MAXIMUM", highest, nodes.math("MULTIPLY", blade, reach))
+        tint = nodes.math("MULTIPLY_ADD", own[0], 1.0 / len(_TUFTS), tint)
     is_top = nodes.attribute("is_top")
     highest = nodes.math("MULTIPLY", highest, is_top)
-    deep = nodes.ramp(highest, 0.4, 0.75, 0.0, 1.0)
-    tone = nodes.math("MULTIPLY", nodes.math("SUBTRACT", deep, 0.4), 0.6)
+    tone = nodes.math("MULTIPLY", nodes.math("SUBTRACT", highest, 0.6), 0.85)
     texture.tones.append(nodes.math("MULTIPLY", tone, is_top))
-    texture.heights.append(nodes.math("MULTIPLY", deep, 2.2 * _BLADE))
-    texture.pale.append(nodes.ramp(highest, 0.7, 0.85, 0.0, 0.35))
+    texture.hues.append(tint)
 
 
 def _brown_below(nodes, color):

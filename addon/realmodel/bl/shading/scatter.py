@@ -5,6 +5,8 @@ Tufts of grass and stones are meshes made here, one unit high and wide. They are
 scene shows their instances alone.
 """
 
+import itertools
+
 import bpy
 import numpy as np
 
@@ -13,92 +15,157 @@ from ..objects import materials
 
 KEY = "realmodel_scatter"  # on an object: what it is
 TUFT, STONE = "Grass Tuft", "Stone"
-_BLADES, _LEAN, _WIDTH = 70, 0.9, 0.016  # of a tuft; how far blades lean, of their height; half their width
-_PER_UNIT = {TUFT: 6.0, STONE: 0.25}  # on a square texture unit, at density 1
-_IN_VIEWPORT = {TUFT: 0.25, STONE: 1.0}  # the share of them that viewports show, to stay fast
-_HIGH = {TUFT: (0.16, 0.42), STONE: (0.05, 0.3)}  # texture units: least and greatest size
-_GRASS = "#7d9440"
+# attributes of a tuft: how far along its blade a vertex is, and a number of the blade
+_SHARE, _OWN = "realmodel_blade_share", "realmodel_blade_own"
+_BLADES, _STALKS = 90, 3  # of a tuft; stalks have ears
+_FOOT, _LEAN = 0.45, 1.1  # how far from the middle blades begin; how far they lean, of their height
+_WIDTH = 0.013  # half of that of a blade
+_STEPS = (0.0, 0.3, 0.55, 0.8, 1.0)  # along a blade
+_PER_UNIT = {TUFT: 8.0, STONE: 2.5}  # on a square texture unit, at density 1
+_IN_VIEWPORT = {TUFT: 0.25, STONE: 0.25}  # the share of them that viewports show, to stay fast
+_HIGH = {TUFT: (0.1, 0.42), STONE: (0.04, 0.32)}  # texture units: least and greatest size
+_SMALL = {TUFT: 1.5, STONE: 3.0}  # the power of a random number that sizes follow: most are small
+_SIDES = 14  # planes that bound a stone, and six more
+_THROUGH = 0.3  # the share of the light that passes through blades
+_GRASS, _ROCK = "#7d9440", "#9b9286"
 
 
-def item(name, material=None):
-    """The object of tufts or stones, made if the file has none. material: of a stone."""
+def item(name):
+    """The object of tufts or stones, made if the file has none."""
     known = (found for found in bpy.data.objects if found.get(KEY) == name and found.library is None)
     found = next(known, None)
     if found is None:
-        vertices, faces = _tuft() if name == TUFT else _stone()
         mesh = bpy.data.meshes.new(name)
-        mesh.from_pydata(vertices.tolist(), [], faces)
-        mesh.materials.append(_grass() if name == TUFT else material)
-        if name == STONE:
-            mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+        if name == TUFT:
+            vertices, faces, numbers = _tuft()
+            mesh.from_pydata(vertices.tolist(), [], faces)
+            for attribute, values in zip((_SHARE, _OWN), numbers, strict=True):
+                mesh.attributes.new(attribute, "FLOAT", "POINT").data.foreach_set("value", values)
+            mesh.materials.append(_grass())
+        else:
+            vertices, faces = _stone()
+            mesh.from_pydata(vertices.tolist(), [], faces)
+            mesh.materials.append(_rock())
         found = bpy.data.objects.new(name, mesh)
         found[KEY] = name
     return found
 
 
-def _grass():
-    """Blades from fresh to dry, each tuft of its own, darker at the foot and lighter at the tip."""
-    material = materials.new_material("Grass Blades", materials.NO_PROPERTY, _GRASS)
+def _new_material(name, color):
+    """A material of no property, its nodes, its shader and the random number of each instance."""
+    material = materials.new_material(name, materials.NO_PROPERTY, color)
     del material[materials.KEY]
     nodes = Nodes(material.node_tree)
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    own = nodes.of("ShaderNodeObjectInfo", "Random")
-    place = nodes.of("ShaderNodeTexCoord", "Object")
-    blade = nodes.noise(place, 9.0, 0.0)
+    return material, nodes, shader, nodes.of("ShaderNodeObjectInfo", "Random")
+
+
+def _grass():
+    """Blades from fresh to dry, each tuft of its own, darker at the foot and lighter at the tip, which light
+    passes through. Stalks are dry."""
+    material, nodes, shader, tuft = _new_material("Grass Blades", _GRASS)
+    share, own = (_attribute(nodes, name) for name in (_SHARE, _OWN))
     tint = nodes.new("ShaderNodeHueSaturation")
     tint.inputs["Color"].default_value = shader.inputs["Base Color"].default_value
-    dry = nodes.math("MULTIPLY", nodes.math("ADD", own, nodes.about(blade, 1.6)), 0.09)
-    nodes.link(nodes.math("SUBTRACT", 0.52, dry), tint.inputs["Hue"])
-    high = nodes.ramp(nodes.part(place, 2), 0.0, 0.9, 0.45, 1.25)
-    nodes.link(nodes.math("MULTIPLY_ADD", blade, 0.5, high), tint.inputs["Value"])
+    is_dry = nodes.math("GREATER_THAN", nodes.math("MULTIPLY_ADD", tuft, 0.12, own), 0.97)
+    hue = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", own, 0.6, tuft), 0.05)
+    hue = nodes.math("MULTIPLY_ADD", is_dry, 0.06, hue)
+    nodes.link(nodes.math("SUBTRACT", 0.54, hue), tint.inputs["Hue"])
+    nodes.link(nodes.math("MULTIPLY_ADD", is_dry, -0.35, 1.0), tint.inputs["Saturation"])
+    value = nodes.math("ADD", nodes.ramp(share, 0.0, 0.9, 0.6, 1.5), nodes.about(own, 0.4))
+    nodes.link(nodes.math("MULTIPLY_ADD", is_dry, 0.6, value), tint.inputs["Value"])
     nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
+    through, mix = nodes.new("ShaderNodeBsdfTranslucent"), nodes.new("ShaderNodeMixShader")
+    output = next(node for node in material.node_tree.nodes if node.type == "OUTPUT_MATERIAL")
+    nodes.link(tint.outputs["Color"], through.inputs["Color"])
+    mix.inputs[0].default_value = _THROUGH
+    for shade, socket in zip((shader, through), mix.inputs[1:], strict=True):
+        nodes.link(shade.outputs[0], socket)
+    nodes.link(mix.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def _attribute(nodes, name):
+    node = nodes.new("ShaderNodeAttribute")
+    node.attribute_name = name
+    return node.outputs["Fac"]
+
+
+def _rock():
+    """Stones that differ in tone, with rough sides."""
+    material, nodes, shader, stone = _new_material("Stones", _ROCK)
+    place = nodes.of("ShaderNodeTexCoord", "Object")
+    rough = nodes.noise(place, 6.0, 6.0)
+    tint = nodes.new("ShaderNodeHueSaturation")
+    tint.inputs["Color"].default_value = shader.inputs["Base Color"].default_value
+    value = nodes.total([nodes.about(stone, 0.5), nodes.about(rough, 0.7), 1.0])
+    nodes.link(value, tint.inputs["Value"])
+    nodes.link(nodes.math("MULTIPLY_ADD", stone, -0.02, 0.51), tint.inputs["Hue"])
+    nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
+    bump = nodes.new("ShaderNodeBump")
+    bump.inputs["Distance"].default_value = 0.02
+    nodes.link(rough, bump.inputs["Height"])
+    nodes.link(bump.outputs["Normal"], shader.inputs["Normal"])
     return material
 
 
 def _tuft():
-    """Blades that lean outward from one place and bend, tapering in three steps to a point."""
+    """Blades that lean outward from one place and bend, tapering to a point, and a few stalks with ears that
+    are higher. Vertices, faces, and of each vertex its share of the blade and a number of the blade from 0 to
+    1, which is 1 for stalks."""
     random = np.random.default_rng(4)
-    vertices, faces = [], []
-    for azimuth in 2.0 * np.pi * (np.arange(_BLADES) + random.random(_BLADES)) / _BLADES:
+    vertices, faces, shares, own = [], [], [], []
+    count = _BLADES + _STALKS
+    for number, azimuth in enumerate(2.0 * np.pi * random.random(count)):
+        is_stalk = number >= _BLADES
         out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
         turned = azimuth + random.normal(0.0, 0.6)
         across = np.array([-np.sin(turned), np.cos(turned), 0.0]) * _WIDTH * (0.6 + 0.8 * random.random())
-        foot = out * 0.6 * random.random() ** 0.7
-        high, lean = 0.3 + 0.7 * random.random() ** 1.5, _LEAN * random.random()
+        foot = np.array([*random.normal(0.0, _FOOT, 2), 0.0])
+        high, lean = 0.25 + 0.6 * random.random() ** 1.5, _LEAN * random.random() ** 0.7
+        widths = (0.8, 1.0, 0.85, 0.5)
+        if is_stalk:
+            high, lean, widths = 0.85 + 0.15 * random.random(), 0.4 * lean, (0.25, 0.25, 0.25, 0.9)
         first = len(vertices)
-        for share, width in ((0.0, 0.8), (0.4, 1.0), (0.75, 0.65)):
-            place = foot + out * lean * high * share**2 + (0.0, 0.0, high * (share - 0.3 * lean * share**3))
-            vertices += [place - width * across, place + width * across]
-        vertices.append(foot + out * lean * high + (0.0, 0.0, high * (1.0 - 0.3 * lean)))
-        faces += [(first + k, first + k + 1, first + k + 3, first + k + 2) for k in (0, 2)]
-        faces.append((first + 4, first + 5, first + 6))
-    return np.array(vertices), faces
+        for share, width in zip(_STEPS, (*widths, 0.0), strict=True):
+            bent = lean * share**2  # outward and, the farther, the more down
+            place = foot + out * bent * high + (0.0, 0.0, high * (share - 0.45 * lean * share**3))
+            ends = (-1.0, 1.0) if width else (0.0,)
+            vertices += [place + end * width * across for end in ends]
+            shares += [share] * len(ends)
+        own += [1.0 if is_stalk else 0.95 * random.random()] * (len(vertices) - first)
+        faces += [(first + k, first + k + 1, first + k + 3, first + k + 2) for k in (0, 2, 4)]
+        faces.append((first + 6, first + 7, first + 8))
+    return np.array(vertices), faces, (np.array(shares), np.array(own))
 
 
 def _stone():
-    """A convex pebble with flat sides: a sphere whose far parts are cut off by some planes."""
+    """An angular stone: the vertices and polygons of a body that planes bound."""
     random = np.random.default_rng(8)
-    rings, around = 7, 12
-    polar = np.pi * np.arange(1, rings) / rings
-    azimuth = 2.0 * np.pi * np.arange(around) / around
-    places = [(0.0, 0.0, 1.0)]
-    places += [(np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)) for a in polar for b in azimuth]
-    places = np.array([*places, (0.0, 0.0, -1.0)])
-    normals = random.normal(size=(11, 3))
+    normals = random.normal(size=(_SIDES, 3))
+    normals = np.concatenate([normals, np.eye(3), -np.eye(3)])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    reach = (places @ normals.T / (0.72 + 0.2 * random.random(11))).max(axis=1)
-    places /= np.maximum(reach, 1.0)[:, None]
-    places *= (0.5, 0.38, 0.3)
-    last = len(places) - 1
-    faces = [(0, 1 + n, 1 + (n + 1) % around) for n in range(around)]
-    for ring in range(rings - 2):
-        first = 1 + ring * around
-        for n in range(around):
-            right = (n + 1) % around
-            faces.append((first + n, first + around + n, first + around + right, first + right))
-    low = last - around
-    faces += [(last, low + (n + 1) % around, low + n) for n in range(around)]
-    return places, faces
+    reach = 0.75 + 0.25 * random.random(len(normals))
+    corners, sides = [], []
+    for three in itertools.combinations(range(len(normals)), 3):
+        matrix = normals[list(three)]
+        if abs(np.linalg.det(matrix)) < 1e-3:
+            continue
+        corner = np.linalg.solve(matrix, reach[list(three)])
+        if np.all((normals * corner).sum(axis=1) < reach + 1e-9):
+            corners.append(corner)
+            sides.append(three)
+    corners = np.array(corners)
+    faces = []
+    for number, normal in enumerate(normals):
+        own = [k for k, three in enumerate(sides) if number in three]
+        if len(own) < 3:
+            continue
+        right = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+        away = corners[own] - corners[own].mean(axis=0)
+        turn = np.arctan2((away * np.cross(normal, right)).sum(axis=1), (away * right).sum(axis=1))
+        faces.append([own[k] for k in np.argsort(turn)])
+    return corners * (0.5, 0.4, 0.3), faces
 
 
 def on(nodes, given, geometry, name, here):
@@ -123,6 +190,13 @@ def on(nodes, given, geometry, name, here):
     nodes.link(what.outputs["Geometry"], placed.inputs["Instance"])
     turn = 0.25 if name == TUFT else 6.28
     nodes.link(nodes.random((-turn, -turn, 0.0), (turn, turn, 6.28), 1), placed.inputs["Rotation"])
-    scale = nodes.math("MULTIPLY", nodes.random(low, high, 2), size)
+    share = nodes.math("POWER", nodes.random(0.0, 1.0, 2), _SMALL[name])
+    scale = nodes.math("MULTIPLY", nodes.math("MULTIPLY_ADD", share, high - low, low), size)
+    if name == TUFT:  # low ones are about as wide as high ones, so that they cover the ground
+        wide = nodes.math("MULTIPLY", nodes.random(0.6 * high, high, 3), size)
+        sides = nodes.new("ShaderNodeCombineXYZ")
+        for value, socket in zip((wide, wide, scale), sides.inputs, strict=True):
+            nodes.link(value, socket)
+        scale = sides.outputs[0]
     nodes.link(scale, placed.inputs["Scale"])
     return nodes.upright(placed.outputs["Instances"])

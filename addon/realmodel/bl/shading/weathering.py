@@ -23,10 +23,10 @@ from . import edge_wear, looks, scatter
 NAME = "Weathering"
 KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
 HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
-_VERSION = 5
+_VERSION = 6
 _STEPS = 5  # of smoothing
 _ALONE = 0.2  # the share of the faces around a triangle that have its cover, itself counted, if no other has
-_COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
+COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
 # texture units (looks) at 1
 _UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6, "Edge Wear": 1.0}
 FINEST = 6
@@ -122,9 +122,9 @@ def _values(given, unit):
         "Detail": given.detail,
         "Plants and Stones": given.plants,
         "Scatter Size": unit,
-        **(covers := {name: _cover(name, unit) for name in _COVERS}),
+        **{name: _cover(name, unit) for name in COVERS},
         scatter.TUFT: scatter.item(scatter.TUFT) if given.plants else None,
-        scatter.STONE: scatter.item(scatter.STONE, covers["Scree"]) if given.plants else None,
+        scatter.STONE: scatter.item(scatter.STONE) if given.plants else None,
     }
 
 
@@ -164,7 +164,7 @@ def _cover(name, unit):
     known = (m for m in bpy.data.materials if m.get(KEY) == name and m.library is None)
     material = next(known, None)
     if material is None:
-        look, color = _COVERS[name]
+        look, color = COVERS[name]
         material = bpy.data.materials.new(name)
         material.use_nodes = True
         material[KEY] = name

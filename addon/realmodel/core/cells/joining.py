@@ -12,7 +12,7 @@ import numpy as np
 from ..base.errors import BuildFailed, InputRefused
 from ..base.sheet import Sheet
 from ..base.work import NativeError, Work, refused_as
-from ..fields import ScalarField, level_solids
+from ..fields import LevelSolid, ScalarField, level_solids
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
@@ -187,11 +187,12 @@ class SolidsOfFields:
 
     def __init__(self, work: Work, inputs: list[RockInput]):
         self.inputs = inputs
-        self._solids: dict[ScalarField, list[Sheet]] = {}
+        self._solids: dict[ScalarField, list[LevelSolid]] = {}
         for entry in inputs:
             for own in entry.fields:
                 for field in own.distinct():
-                    self._solids[field] = level_solids(work, field)
+                    solids = entry.level_solids.pop(field, None)
+                    self._solids[field] = solids or level_solids(work, field)
 
     def of(self, compartments: list[int]) -> list[tuple]:
         """Those in the compartments of each rock mass, as native build_parts takes them."""
@@ -200,7 +201,7 @@ class SolidsOfFields:
         for entry, compartment, first in zip(self.inputs, compartments, firsts, strict=True):
             for own in entry.fields:
                 solids = self._solids[own.fields[compartment]]
-                found += [(*solids[n - own.first].arrays, first + n) for n in own.numbers]
+                found += [(*solids[n - own.first].boundary.arrays, first + n) for n in own.numbers]
         return found
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import colorsys
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol, Self, TypeVar
 
@@ -17,7 +18,7 @@ from ..heights import Interpolation
 from ..project.project import Project
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.surface_arrays import SurfaceArrays, triangle_sheets, vertex_attributes
+from ..surfaces.surface_arrays import SurfaceArrays, sheet_sizes, triangle_sheets, vertex_attributes
 from .blocks import Block, BlockBoundary
 from .cell_complex import CellComplex
 
@@ -248,10 +249,12 @@ class ModelData:
     def sheet_triangles(self, number: int) -> list[np.ndarray]:
         """The triangles (T, 3) of each sheet of a surface, by its global index `number`; a surface that no
         fault displaces has one."""
-        triangles = self.surface(number)[1]
-        begin, end = self.surface_triangle_offsets[number : number + 2]
-        sheet = self.surface_triangle_sheet[begin:end]
-        return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
+        if self.surface_kind.any():
+            self.require_project("a sheet of a surface")
+        triangles, sheets = self.surface(number)[1], [0]
+        if not self.surface_kind[number]:
+            sheets = next(islice(sheet_sizes(self.rock_inputs), number, None))
+        return [own for own in np.split(triangles, np.cumsum(sheets[:-1])) if len(own)]
 
 
 SomeModel = TypeVar("SomeModel", bound=ModelData)  # what is made of a model is of its class

@@ -13,7 +13,7 @@ from ..base.algebra import norm
 from ..base.errors import UsageError
 from ..base.work import Work, native_module, run
 from ..cells.model_data import ModelData
-from ..fields import level_solids, within_lattice
+from ..fields import level_solids
 from ..fields.series_field import SeriesField
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..results.model_fields import local_compartments
@@ -91,7 +91,7 @@ def field_levels(model: ModelData, series: str, values: np.ndarray) -> tuple[np.
         for field, compartments in own.distinct().items():
             given = replace(field, levels=np.ascontiguousarray(values, np.float64))
             for number, solid in enumerate(level_solids(work, given)):
-                sheet = within_lattice(field, solid)
+                sheet = solid.level_set
                 inside = _within(work, form, blocks, compartments)
                 kept = _cut_off(sheet.vertices[sheet.triangles], inside)
                 parts.append(kept)

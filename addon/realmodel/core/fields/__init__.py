@@ -8,11 +8,11 @@ tetrahedron of the lattice, and the level of each surface.
 from .draws import FieldDraws
 from .lattice import Lattice, ScalarField, rises
 from .level_sets import (
+    LevelSolid,
     SharedCorners,
     are_on,
     fields_with_contacts,
     level_solids,
-    within_lattice,
 )
 from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
 
@@ -21,6 +21,7 @@ __all__ = [
     "FieldDraws",
     "Lattice",
     "LevelSetData",
+    "LevelSolid",
     "ScalarField",
     "SharedCorners",
     "SlitData",
@@ -30,5 +31,4 @@ __all__ = [
     "level_solids",
     "rises",
     "solve_field",
-    "within_lattice",
 ]

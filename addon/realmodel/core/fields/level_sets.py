@@ -194,19 +194,24 @@ def are_on(contacts: np.ndarray, level_set: Sheet) -> np.ndarray:
     return are_among(contacts, level_set.vertices)
 
 
-def level_solids(work: Work, field: ScalarField) -> list[Sheet]:
-    """Of each level the closed boundary of where the field is at most that: in the lattice the level set,
-    around the lattice what closes it. No two of them cross. Triangles turn counter-clockwise seen from where
-    the field is greater. Raises native InputError."""
+@dataclass(frozen=True, eq=False)
+class LevelSolid:
+    """Where a field is at most a level. boundary: closed beyond the sides of the lattice. count: of its
+    triangles, the first of which are the level set."""
+
+    boundary: Sheet
+    count: int
+
+    @property
+    def level_set(self) -> Sheet:
+        """Of the boundary what lies in the lattice."""
+        part = self.boundary.some(np.arange(len(self.boundary.triangles)) < self.count)
+        return Sheet(part.vertices, part.triangles)
+
+
+def level_solids(work: Work, field: ScalarField) -> list[LevelSolid]:
+    """One for each level. No two of them cross in the lattice. Triangles turn counter-clockwise seen from
+    where the field is greater. Raises native InputError."""
     lattice, values, points = field.native()
     found = work.native(native_module().level_sets, lattice, values, points, field.levels)
-    return [Sheet(vertices, triangles) for vertices, triangles in found]
-
-
-def within_lattice(field: ScalarField, solid: Sheet) -> Sheet:
-    """The part of a level_solid in the lattice: the level set."""
-    low, high = field.lattice.corners
-    vertices = solid.vertices
-    inside = np.all((vertices >= low) & (vertices <= high), axis=1)
-    part = solid.some(np.all(inside[solid.triangles], axis=1))
-    return Sheet(part.vertices, part.triangles)
+    return [LevelSolid(Sheet(vertices, triangles), count) for vertices, triangles, count in found]

@@ -246,8 +246,8 @@ def _steps(points: np.ndarray, numbers: np.ndarray) -> dict[int, tuple[np.ndarra
         near = _in_cells_around(points, np.array([place for _, place in waiting]), low, side) - start
         unsure = []
         for number, place in waiting:
-            found[number], reach = _step(near, place - start)
-            if reach > _SURE * side and len(near) < len(points):
+            found[number], reach = _step(near, place - start, side)
+            if reach > _SURE * side and side < size.max():
                 unsure.append((number, place))  # there may be nearer points elsewhere
         waiting, side = unsure, 4 * side
     return found
@@ -271,10 +271,13 @@ def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, si
     return np.concatenate(found)
 
 
-def _step(plan: np.ndarray, place: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray] | None, float]:
+def _step(
+    plan: np.ndarray, place: np.ndarray, within: float
+) -> tuple[tuple[np.ndarray, np.ndarray] | None, float]:
     """The steps from a position to the nearest of others, and to the nearest across, if there is one; and the
-    distance."""
-    d = plan - place
+    distance. within: others that are farther in x or y do not count."""
+    d = plan[np.abs(plan[:, 0] - place[0]) <= within] - place
+    d = d[np.abs(d[:, 1]) <= within]
     squared = np.square(d).sum(axis=1)
     squared[squared == 0] = np.inf
     first = d[squared.argmin()].copy()  # a view would keep all

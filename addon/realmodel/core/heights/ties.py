@@ -77,6 +77,8 @@ def corrected(
 ) -> tuple[np.ndarray, list[str]]:
     """Heights (N,) at the nodes of a planar mesh with which the surface honors the data: those that it has
     where it does already. And warnings about data that it cannot honor."""
+    if not len(data.places):
+        return z, missed_warnings(data, np.empty(0))
     terms, after = correction(work, nodes, triangles, z, data)
     if len(terms.radii):
         z = tied_heights(work, z, nodes, terms)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 
@@ -32,14 +33,15 @@ _MOST_BYTES = {
 _SECONDS_PER_TRIANGLE = {"columns": 2e-6, "blocks": 5e-7}
 _STRUCTURED = 4  # times as much as without, and once more for each fault or body
 _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points are fitted with
-# Of fields, measured of the samples and of Claudius: a level set has 11 to 26 triangles for each of the nodes
-# to the power of two thirds, that are in one layer of a lattice. The bytes are a third more than was taken.
-_TRIANGLES_IN_LAYER = 20
-_MOST_BYTES_OF_LEVEL_SET = {"columns": 5500, "blocks": 2000}
+# Of fields, measured of a dome and a recumbent fold: a level set has 10 to 22 triangles for each of the nodes
+# to the power of two thirds, that are in one layer of a lattice. The bytes are a quarter more than was taken;
+# columns as dense as the lattice divide these triangles, sparser ones fewer.
+_TRIANGLES_IN_LAYER = 16
+_BYTES_OF_LEVEL_SET, _BYTES_OF_DIVIDED = 800, 3000
 # Of a node on each combination of sides of faults: values and numbers; for each fault its side and its
 # coordinate, which is there twice while it is made
 _BYTES_OF_SIDES, _BYTES_OF_FAULT = 40, 25
-_SECONDS_PER_LEVEL_TRIANGLE = {"columns": 3e-5, "blocks": 1.5e-5}
+_SECONDS_PER_LEVEL_TRIANGLE = {"columns": 1.3e-5, "blocks": 7e-6}
 _SECONDS_PER_CUBE = 2.5e-10  # of the data that carry a field: it is solved for in several rounds
 _SECONDS_PER_VALUE = 2e-9  # of a datum at a node
 
@@ -148,17 +150,22 @@ def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> in
     triangles. structures: the number of faults and bodies."""
     bytes_of_stacks = sum(_MOST_BYTES[cells, _on_one_plan(entry)] * _triangles(entry) for entry in inputs)
     fields = [field for entry in inputs for field in _fields(entry, structures)]
-    of_level_sets = _MOST_BYTES_OF_LEVEL_SET[cells] * sum(field.triangles for field in fields)
-    return bytes_of_stacks * _times(structures) + of_level_sets + sum(field.system for field in fields)
+    of_level_sets = sum(
+        field.triangles * (_BYTES_OF_LEVEL_SET + _BYTES_OF_DIVIDED * field.density * (cells == "columns"))
+        for field in fields
+    )
+    return bytes_of_stacks * _times(structures) + round(of_level_sets) + sum(field.system for field in fields)
 
 
 @dataclass(frozen=True)
 class _FieldSize:
-    """Of the field of a series. nodes: of its lattice. triangles: of all its level sets, about. system: bytes
-    of what is solved, and of what nodes have on the sides of faults. seconds: that the solution takes."""
+    """Of the field of a series. nodes: of its lattice. triangles: of all its level sets, about. density: how
+    many columns lie along an edge of the lattice. system: bytes of what is solved, and of what nodes have on
+    the sides of faults. seconds: that the solution takes."""
 
     nodes: int
     triangles: int
+    density: float
     system: int
     seconds: float
 
@@ -167,8 +174,8 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
     """The fields of the series of a rock mass. structures: the number of faults and bodies, each of which may
     part a field in two."""
     found = []
-    # where there are more combinations of sides, each compartment has a field of its own
-    combinations = min(2**structures, MOST_TOGETHER) if structures else 0
+    # as many as lines part a plane in; where there are more, each compartment has a field of its own
+    combinations = min(1 + structures * (structures + 1) // 2, MOST_TOGETHER) if structures else 0
     of_sides = combinations * (_BYTES_OF_SIDES + _BYTES_OF_FAULT * structures)
     for data, lattice in lattices(entry):
         rows = min(len(data.contacts), MOST_CENTERS) + 2 * len(data.dips)
@@ -176,7 +183,9 @@ def _fields(entry: RockInput, structures: int) -> list[_FieldSize]:
         triangles = round(in_layer * len(data.numbers) * (1 + structures))
         seconds = _SECONDS_PER_CUBE * rows**3 + _SECONDS_PER_VALUE * rows * lattice.nodes
         system = 2 * 8 * rows**2 + of_sides * lattice.nodes
-        found.append(_FieldSize(lattice.nodes, triangles, system, seconds))
+        nx, ny, _ = lattice.counts
+        columns = max(len(plan.triangles) for plan in [entry.planar_mesh(), *_plans(entry)]) / 2
+        found.append(_FieldSize(lattice.nodes, triangles, math.sqrt(columns / (nx * ny)), system, seconds))
     return found
 
 

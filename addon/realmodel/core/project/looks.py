@@ -21,8 +21,9 @@ class Look:
     faces that are ground. crack: how dark and deep cracks and grooves are. stain, grain: of large and of fine
     mottling; grain_size. clasts: of pebbles or crystals that differ from one another; clast_size, of the
     largest; packing: the share of the places that pebbles take. hue: by how much beds and clasts differ in
-    hue. relief: how high the surface is rough; relief_size. roughness: how matt. grassy: blades on faces that
-    are ground, other faces are brown.
+    hue. crumbs: how high crumbs are, of crumb_size. litter: the share of the places on ground that have a dry
+    stalk. relief: how high the surface is rough; relief_size. roughness: how matt. grassy: blades on faces
+    that are ground, other faces are brown.
     hardness: from 0 to 1, how well the rock withstands weathering.
     """
 
@@ -44,6 +45,9 @@ class Look:
     clast_size: float = 0.5
     packing: float = 1.0
     hue: float = 0.0
+    crumbs: float = 0.0
+    crumb_size: float = 0.1
+    litter: float = 0.0
     relief: float = 0.2
     relief_size: float = 2.0
     roughness: float = 0.9
@@ -107,6 +111,8 @@ LOOKS = {
         clast_size=0.42,
         packing=0.95,
         hue=0.012,
+        crumbs=0.3,
+        crumb_size=0.03,
         relief=0.5,
         crack=0.2,
     ),
@@ -148,8 +154,10 @@ LOOKS = {
         grain=0.2,
         clasts=0.34,
         clast_size=0.45,
-        packing=0.95,
+        packing=1.0,
         hue=0.012,
+        crumbs=0.5,
+        crumb_size=0.06,
         relief=0.4,
     ),
     "SAND": Look(
@@ -204,9 +212,15 @@ LOOKS = {
         ("soil", "humus"),
         0.1,
         stain=0.2,
-        grain=0.3,
+        grain=0.12,
         grain_size=0.25,
-        relief=0.8,
+        clasts=0.2,
+        clast_size=0.42,
+        packing=0.1,
+        crumbs=0.8,
+        crumb_size=0.1,
+        litter=0.3,
+        relief=0.4,
         relief_size=0.9,
     ),
     "GRASS": Look(
@@ -215,10 +229,11 @@ LOOKS = {
         ("grass", "meadow"),
         0.3,
         stain=0.35,
-        grain=0.4,
+        grain=0.3,
         grain_size=0.3,
         hue=0.03,
-        relief=0.5,
+        litter=0.25,
+        relief=0.16,
         relief_size=0.5,
         grassy=True,
     ),

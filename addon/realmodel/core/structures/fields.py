@@ -19,7 +19,6 @@ from ..fields import (
     fields_with_contacts,
     level_solids,
     solve_field,
-    within_lattice,
 )
 from ..fields.series_field import SeriesField
 from ..project.series import Series
@@ -283,10 +282,9 @@ def _short(step: float) -> tuple[float, float]:
 def _take_level_sets(work: Work, entry: RockInput, own: SeriesField) -> None:
     """Sets the surfaces of a rock mass, and its sheets in compartments, that are level sets of a field."""
     with refused_as(lambda error: InputRefused(str(error), item=entry.rock.item, place=error.place)):
-        sheets = {
-            field: [within_lattice(field, solid) for solid in level_solids(work, field)]
-            for field in own.distinct()
-        }
+        solids = {field: level_solids(work, field) for field in own.distinct()}
+    entry.level_solids |= solids
+    sheets = {field: [solid.level_set for solid in each] for field, each in solids.items()}
     for number in own.numbers:
         warn_of_contacts(entry, own, number, {field: sheets[field][number - own.first] for field in sheets})
         each = [sheets[field][number - own.first] for field in own.fields]

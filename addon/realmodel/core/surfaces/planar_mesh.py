@@ -217,6 +217,8 @@ def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[n
             continue
         work.check()
         for data in _data_of_sheets(work, entry, number):
+            if not len(data.places):
+                continue
             asked = (data.places, data.lower, data.upper)
             numbers, away = native_module().crowded_data(*mesh.arrays, asked, least)
             places.append(data.places[numbers])

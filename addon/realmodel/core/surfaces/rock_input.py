@@ -13,7 +13,7 @@ from ..base.errors import InputRefused
 from ..base.sheet import Sheet
 from ..base.stored_objects import NOT_STORED
 from ..base.triangles import median_edge
-from ..fields import FieldDraws
+from ..fields import FieldDraws, LevelSolid, ScalarField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
 from ..heights.draws import Draw
@@ -39,9 +39,10 @@ class RockInput:
     left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
     edge: of the region's mesh the median edge before contacts became its vertices; None where none did.
     has_faults: whether the project has faults, which may divide it. fields: of series whose surfaces are
-    level sets; such a surface is a level set, in each compartment of its field. untied: of sheets that were
-    tied to their data what they were before, until the warnings about doubtful heights are made. joint_fits:
-    what was fitted to the data of several surfaces, as of Alike.
+    level sets; such a surface is a level set, in each compartment of its field. level_solids: of fields,
+    until cells are made of them. untied: of sheets that were tied to their data what they were before, until
+    the warnings about doubtful heights are made. joint_fits: what was fitted to the data of several surfaces,
+    as of Alike.
     """
 
     rock: Rock
@@ -60,6 +61,7 @@ class RockInput:
     edge: float | None = None
     has_faults: bool = False
     fields: list[SeriesField] = field(default_factory=list)
+    level_solids: dict[ScalarField, list[LevelSolid]] = field(default_factory=dict, metadata=NOT_STORED)
     untied: dict[Sheet, Sheet] = field(default_factory=dict, metadata=NOT_STORED)
     joint_fits: dict[bytes, Any] = field(default_factory=dict, metadata=NOT_STORED)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,11 +51,18 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface
     that no fault displaces has one."""
     found = [np.zeros(0, np.int64)]
-    for entry in inputs:
-        for number in range(len(entry.surfaces)):
-            sizes = [len(own) for _, own in entry.divided().distinct(number)]
-            found.append(np.repeat(np.arange(len(sizes)), sizes))
+    for sizes in sheet_sizes(inputs):
+        found.append(np.repeat(np.arange(len(sizes)), sizes))
     return np.concatenate(found).astype(np.int32)
+
+
+def sheet_sizes(inputs: list[RockInput]) -> Iterator[list[int]]:
+    """Of each surface, by its global index, how many triangles its sheets have, which are theirs one sheet
+    after another."""
+    for entry in inputs:
+        divided = entry.divided()
+        for number in range(len(entry.surfaces)):
+            yield [len(own) for _, own in divided.distinct(number)]
 
 
 def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:

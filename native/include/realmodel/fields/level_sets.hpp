@@ -22,16 +22,17 @@ struct LatticeField {
     std::span<const double> point_values;  ///< one for each
 };
 
-/// The boundary of where the function is at most a level, closed around the lattice: triangles
-/// counter-clockwise seen from where it is greater.
+/// The boundary of where the function is at most a level, closed beyond the sides of the lattice:
+/// triangles counter-clockwise seen from where it is greater.
 struct LevelSet {
     Array<std::array<double, 3>> vertices;
     std::vector<std::array<std::int32_t, 3>> triangles;
+    std::size_t own = 0;  ///< how many of these are the level set itself; the others close it
 };
 
-/// One for each level. They are closed in a layer of cells around the lattice: in the lattice
-/// itself they are the level sets. No two of them cross. A point whose value is a level is a vertex
-/// of that level set. The order of vertices and triangles does not depend on the number of threads.
+/// One for each level. No two of them cross in the lattice. A point whose value is a level is a
+/// vertex of that level set, unless it is an extreme. The order of vertices and triangles does not
+/// depend on the number of threads.
 /// @param levels  ascending
 /// @throws InputError  kinds bad_lattice (the text says what), not_finite; outside (items: the
 ///         point), two_values (items: two points in one position with different values); Cancelled

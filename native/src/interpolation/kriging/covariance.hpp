@@ -26,7 +26,8 @@ struct CovariancePart {
 /// @tparam Bits  as of decay()
 /// @param root   the square root of a Number
 template <class Bits = std::uint64_t, class Number, class Root>
-inline Number covariance_of(const CovariancePart& part, Number dx, Number dy, const Root& root) {
+__attribute__((always_inline)) inline Number covariance_of(const CovariancePart& part, Number dx,
+                                                           Number dy, const Root& root) {
     const Number along = part.xx * dx + part.xy * dy;
     const Number across = part.yx * dx + part.yy * dy;
     const Number square = along * along + across * across;

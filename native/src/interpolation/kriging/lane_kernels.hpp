@@ -40,6 +40,14 @@ struct LaneKernels {
     void (*covariances)(const CovariancePart* parts, std::size_t part_count, const double* dx,
                         const double* dy, double* out, std::size_t count);
 
+    /// sum[i]: share * structure[i], added to what is there unless it is the first.
+    void (*add_scaled)(double share, const double* structure, bool is_first, double* sum,
+                       std::size_t count);
+
+    /// Of one coordinate of systems of points and of a node after these, in the order of the
+    /// covariances of LaneSystems: of each point less each up to it, and of the node less each.
+    void (*differences)(const double* coordinates, std::size_t points, double* out);
+
     /// Estimates less the first value, and variances in units of the sill; of ordinary kriging.
     void (*krige)(const LaneSystems& systems, double* estimates, double* variances);
 

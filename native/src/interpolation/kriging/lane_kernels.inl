@@ -49,15 +49,61 @@ inline Vector root(Vector v) {
 #endif
 }
 
+/// Adds one part to the covariances, or begins with it. Each model has a loop of its own, which
+/// does not ask again for each number what model it is.
+template <VariogramModel model>
+void add_covariances(CovariancePart part, bool is_first, const double* dx, const double* dy,
+                     double* out, std::size_t count) {
+    const auto square_root = [](Vector v) { return root(v); };
+    part.model = model;
+    for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
+        const Vector found = covariance_of<Bits>(part, load(dx + i), load(dy + i), square_root);
+        store(out + i, is_first ? found : load(out + i) + found);
+    }
+}
+
 void covariances(const CovariancePart* parts, std::size_t part_count, const double* dx,
                  const double* dy, double* out, std::size_t count) {
-    const auto square_root = [](Vector v) { return root(v); };
+    for (std::size_t part = 0; part < part_count; ++part) {
+        const auto add = [&] {
+            switch (parts[part].model) {
+                case VariogramModel::kSpherical:
+                    return &add_covariances<VariogramModel::kSpherical>;
+                case VariogramModel::kExponential:
+                    return &add_covariances<VariogramModel::kExponential>;
+                case VariogramModel::kCubic:
+                    return &add_covariances<VariogramModel::kCubic>;
+                case VariogramModel::kGaussian:
+                    return &add_covariances<VariogramModel::kGaussian>;
+                case VariogramModel::kMatern32:
+                    return &add_covariances<VariogramModel::kMatern32>;
+                case VariogramModel::kWave:
+                    return &add_covariances<VariogramModel::kWave>;
+                default:
+                    return &add_covariances<VariogramModel::kMatern52>;
+            }
+        }();
+        add(parts[part], part == 0, dx, dy, out, count);
+    }
+}
+
+void add_scaled(double share, const double* structure, bool is_first, double* sum,
+                std::size_t count) {
     for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
-        const Vector x = load(dx + i), y = load(dy + i);
-        Vector sum = covariance_of<Bits>(parts[0], x, y, square_root);
-        for (std::size_t part = 1; part < part_count; ++part)
-            sum += covariance_of<Bits>(parts[part], x, y, square_root);
-        store(out + i, sum);
+        const Vector own = share * load(structure + i);
+        store(sum + i, is_first ? own : load(sum + i) + own);
+    }
+}
+
+void differences(const double* coordinates, std::size_t points, double* out) {
+    for (std::size_t i = 0; i <= points; ++i) {
+        const std::size_t others = i < points ? i + 1 : points;
+        for (std::size_t j = 0; j < others; ++j, out += kLanes) {
+            for (int lane = 0; lane < kLanes; lane += LANES_WIDTH) {
+                store(out + lane, load(coordinates + i * kLanes + lane) -
+                                      load(coordinates + j * kLanes + lane));
+            }
+        }
     }
 }
 
@@ -232,6 +278,7 @@ void krige(const LaneSystems& systems, double* estimates, double* variances) {
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{LANES_TEXT, &covariances, &krige, &krige_about_drift};
+const LaneKernels kernels{LANES_TEXT,   &covariances, &add_scaled,
+                          &differences, &krige,       &krige_about_drift};
 
 }  // namespace realmodel::interpolation::LANES_NAME

@@ -20,6 +20,7 @@ constexpr std::size_t kPointsForFarPairs = 2000;
 constexpr std::size_t kPointsForNearPairs = 20'000;
 constexpr std::size_t kNearNeighbors = 32;
 constexpr double kClassGrowth = 1.25;
+constexpr double kNearly = 1e-9;  // of a distance, far more than rounding
 
 /// Pairs by classes of distance whose limits grow geometrically.
 class Classes {
@@ -27,11 +28,18 @@ public:
     Classes(double first_limit, double last_limit) : first_(first_limit) {
         const double growth = elementary::log(last_limit / first_limit) / log_growth_;
         sums_.resize(static_cast<std::size_t>(std::max(1.0, std::ceil(growth) + 1)));
+        for (std::size_t k = 0; k < sums_.size(); ++k)
+            limits_.push_back(first_ * elementary::pow(kClassGrowth, k));
     }
-    double limit(std::size_t k) const { return first_ * elementary::pow(kClassGrowth, k); }
+    double limit(std::size_t k) const { return limits_[k]; }
     std::size_t size() const { return sums_.size(); }
     std::size_t class_of(double distance) const {
         if (distance <= first_) return 0;
+        // the limits tell the class without a logarithm, but for distances that nearly are one
+        const auto limit = std::lower_bound(limits_.begin(), limits_.end(), distance);
+        if (limit != limits_.end() && distance < (1 - kNearly) * *limit &&
+            distance > (1 + kNearly) * *(limit - 1))
+            return static_cast<std::size_t>(limit - limits_.begin());
         return static_cast<std::size_t>(
             std::ceil(elementary::log(distance / first_) / log_growth_));
     }
@@ -77,6 +85,7 @@ private:
     }
     double first_;
     const double log_growth_ = elementary::log(kClassGrowth);
+    std::vector<double> limits_;
     std::vector<Sum> sums_;
 };
 
@@ -134,10 +143,12 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
     std::vector<Position> places;
     for (const Position& local : far.local)
         places.push_back(space(local));
+    const double farthest_square = (1 + kNearly) * far_limit * far_limit;
     for (std::size_t i = 0; i < places.size(); ++i) {
         for (std::size_t j = i + 1; j < places.size(); ++j) {
-            const double distance =
-                elementary::hypot(places[i][0] - places[j][0], places[i][1] - places[j][1]);
+            const double x = places[i][0] - places[j][0], y = places[i][1] - places[j][1];
+            if (x * x + y * y > farthest_square) continue;
+            const double distance = elementary::hypot(x, y);
             if (distance > far_limit) continue;
             const std::size_t at = classes.class_of(distance);
             if (at >= near_classes && at < classes.size())

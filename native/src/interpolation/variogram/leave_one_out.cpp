@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
@@ -65,66 +66,91 @@ namespace {
 /// share none.
 class PredictionLanes {
 public:
-    PredictionLanes(const DataPoints& data, const Covariance& covariance, std::size_t points)
+    /// @param alike  as LeaveOneOut::errors takes them
+    PredictionLanes(const DataPoints& data, std::span<const Covariance> alike, std::size_t points)
         : data_(data),
-          covariance_(covariance),
+          alike_(alike),
           kernels_(lane_kernels().front()),
           points_(points),
           differences_(LaneSystems::row(points) + points),
           rows_(LaneSystems::numbers(points)),
+          own_x_((points + 1) * kLanes),
+          own_y_((points + 1) * kLanes),
           x_(differences_ * kLanes),
           y_(differences_ * kLanes),
           estimates_(kLanes),
-          variances_(kLanes) {}
-
-    /// Systems of `count` points, at most `kLanes`, each with its others.
-    void solve(const std::int32_t* left_out, const std::int32_t* others, std::size_t count,
-               double* errors, double* variances) {
-        double base[kLanes] = {};
-        double* const values = rows_.data() + (differences_ + points_) * kLanes;
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const std::size_t system = std::min(lane, count - 1);
-            const std::int32_t* of = others + system * points_;
-            double *x = x_.data() + lane, *y = y_.data() + lane;
-            const auto put = [&](const Position& a, const Position& b) {
-                *x = a[0] - b[0];
-                *y = a[1] - b[1];
-                x += kLanes;
-                y += kLanes;
-            };
-            for (std::size_t i = 0; i < points_; ++i) {
-                for (std::size_t j = 0; j <= i; ++j)
-                    put(position(of[i]), position(of[j]));
-            }
-            for (std::size_t i = 0; i < points_; ++i)
-                put(position(left_out[system]), position(of[i]));
-            base[lane] = value(of[0]);
-            for (std::size_t i = 0; i < points_; ++i)
-                values[i * kLanes + lane] = value(of[i]) - base[lane];
+          variances_(kLanes) {
+        for (CovariancePart part : alike_.front().parts()) {
+            part.share = 1;
+            structures_.push_back(part);
+            of_structures_.emplace_back(differences_ * kLanes);
         }
-        const auto& parts = covariance_.parts();
-        double* const rows = rows_.data();
-        kernels_.covariances(parts.data(), parts.size(), x_.data(), y_.data(), rows,
-                             differences_ * kLanes);
-        for (std::size_t i = 0; i < points_; ++i)  // whatever the nugget
-            std::fill_n(rows + (LaneSystems::row(i) + i) * kLanes, kLanes, 1.0);
-        std::fill_n(rows + differences_ * kLanes, points_ * kLanes, 1.0);
-        kernels_.krige({static_cast<int>(points_), rows}, estimates_.data(), variances_.data());
-        for (std::size_t system = 0; system < count; ++system) {
-            errors[system] = base[system] + estimates_.data()[system] - value(left_out[system]);
-            variances[system] = variances_.data()[system];
+    }
+
+    /// Systems of points, at most `kLanes`, each with its others.
+    /// @param first  the number of the first of them in `out`, which has one of each covariance
+    void solve(std::span<const std::int32_t> left_out, const std::int32_t* others,
+               std::size_t first, std::span<PredictionErrors> out) {
+        gather(left_out, others);
+        for (std::size_t k = 0; k < structures_.size(); ++k) {
+            kernels_.covariances(&structures_[k], 1, x_.data(), y_.data(), of_structures_[k].data(),
+                                 differences_ * kLanes);
+        }
+        for (std::size_t which = 0; which < alike_.size(); ++which) {
+            fill_rows(alike_[which]);
+            kernels_.krige({static_cast<int>(points_), rows_.data()}, estimates_.data(),
+                           variances_.data());
+            for (std::size_t system = 0; system < left_out.size(); ++system) {
+                out[which].errors[first + system] =
+                    base_[system] + estimates_.data()[system] - value(left_out[system]);
+                out[which].variances[first + system] = variances_.data()[system];
+            }
         }
     }
 
 private:
-    const Position& position(std::int32_t point) const { return data_.local[point]; }
+    void gather(std::span<const std::int32_t> left_out, const std::int32_t* others) {
+        values_.resize(points_ * kLanes);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::size_t system = std::min(lane, left_out.size() - 1);
+            const std::int32_t* of = others + system * points_;
+            const auto put = [&](std::size_t at, const Position& position) {
+                own_x_.data()[at * kLanes + lane] = position[0];
+                own_y_.data()[at * kLanes + lane] = position[1];
+            };
+            base_[lane] = value(of[0]);
+            for (std::size_t i = 0; i < points_; ++i) {
+                put(i, data_.local[of[i]]);
+                values_[i * kLanes + lane] = value(of[i]) - base_[lane];
+            }
+            put(points_, data_.local[left_out[system]]);
+        }
+        kernels_.differences(own_x_.data(), points_, x_.data());
+        kernels_.differences(own_y_.data(), points_, y_.data());
+    }
+
+    void fill_rows(const Covariance& covariance) {
+        double* const rows = rows_.data();
+        for (std::size_t k = 0; k < structures_.size(); ++k)
+            kernels_.add_scaled(covariance.parts()[k].share, of_structures_[k].data(), k == 0, rows,
+                                differences_ * kLanes);
+        for (std::size_t i = 0; i < points_; ++i)  // whatever the nugget
+            std::fill_n(rows + (LaneSystems::row(i) + i) * kLanes, kLanes, 1.0);
+        std::fill_n(rows + differences_ * kLanes, points_ * kLanes, 1.0);
+        std::copy(values_.begin(), values_.end(), rows + (differences_ + points_) * kLanes);
+    }
+
     double value(std::int32_t point) const { return data_.values[point]; }
 
     const DataPoints& data_;
-    const Covariance& covariance_;
+    std::span<const Covariance> alike_;
     const LaneKernels& kernels_;
     std::size_t points_, differences_;
-    AlignedNumbers rows_, x_, y_, estimates_, variances_;
+    std::vector<CovariancePart> structures_;  ///< with the share 1
+    std::vector<AlignedNumbers> of_structures_;
+    AlignedNumbers rows_, own_x_, own_y_, x_, y_, estimates_, variances_;
+    std::vector<double> values_;  ///< of the points, less those of the nearest
+    double base_[kLanes] = {};    ///< the values of the nearest
 };
 
 /// Points that one thread predicts in a row, of so many neighbors. A fit calls this some hundred
@@ -137,27 +163,28 @@ static_assert(2048 % kLanes == 0 && 256 % kLanes == 0);
 
 }  // namespace
 
-void LeaveOneOut::predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const {
-    const NodeLoop loop{
-        left_out_.size(), points_in_chunk(neighbors_), {execution_.threads, nullptr}};
-    loop.over_chunks([&] { return PredictionLanes(data_, covariance, neighbors_); },
+std::vector<PredictionErrors> LeaveOneOut::errors(std::span<const Covariance> alike) const {
+    const std::size_t all = left_out_.size();
+    std::vector<PredictionErrors> out(alike.size(),
+                                      {std::vector<double>(all), std::vector<double>(all)});
+    if (alike.empty()) return out;
+    const NodeLoop loop{all, points_in_chunk(neighbors_), {execution_.threads, nullptr}};
+    loop.over_chunks([&] { return PredictionLanes(data_, alike, neighbors_); },
                      [&](PredictionLanes& own, std::size_t begin, std::size_t end) {
                          for (std::size_t k = begin; k < end; k += kLanes) {
-                             own.solve(left_out_.data() + k, others_.data() + k * neighbors_,
-                                       std::min<std::size_t>(kLanes, end - k),
-                                       out.errors.data() + k, out.variances.data() + k);
+                             const std::size_t count = std::min<std::size_t>(kLanes, end - k);
+                             own.solve(std::span(left_out_).subspan(k, count),
+                                       others_.data() + k * neighbors_, k, out);
                          }
                      });
     if (execution_.progress != nullptr) execution_.progress->check();
+    return out;
 }
 
 PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) const {
+    if (drift == Drift::kConstant) return std::move(errors({&covariance, 1}).front());
     const std::size_t count = left_out_.size();
     PredictionErrors out{std::vector<double>(count), std::vector<double>(count)};
-    if (drift == Drift::kConstant) {
-        predict_in_lanes(covariance, out);
-        return out;
-    }
     struct Scratch {
         NeighborKriging kriging;
         std::vector<spatial::Neighbor> near;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "interpolation/data_points.hpp"
@@ -34,10 +35,13 @@ public:
     /// @throws Cancelled
     PredictionErrors errors(const Covariance& covariance, Drift drift = Drift::kConstant) const;
 
+    /// By ordinary kriging with each of several covariances, whose structures are the same in other
+    /// shares: these are computed once. The same bytes as one by one.
+    std::vector<PredictionErrors> errors(std::span<const Covariance> alike) const;
+
 private:
     std::vector<spatial::Neighbor> beyond(std::span<const spatial::Neighbor> near,
                                           std::size_t asked, double buffer) const;
-    void predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const;
 
     DataPoints data_;  // those left out, and their others
     std::size_t neighbors_;

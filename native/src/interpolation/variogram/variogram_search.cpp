@@ -22,6 +22,7 @@ constexpr double kChanceShare = 0.001;
 constexpr double kChancePoints = 10;
 // Of the experimental value at the shortest lag.
 constexpr double kNuggetsTried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
+constexpr double kNone[] = {0};
 constexpr double kRangeFactors[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
 
 /// A part that makes surfaces of a model rougher. A small share of a rough model is much at short
@@ -105,12 +106,22 @@ std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candida
 }
 
 /// With the sill that fits the experimental values best, where there is one.
-std::optional<Candidate> VariogramSearch::candidate(const VariogramCurve& curve,
-                                                    double nugget) const {
+std::optional<CurveFit> VariogramSearch::with_sill(const VariogramCurve& curve,
+                                                   double nugget) const {
     const CurveFit fit = fit_sill(e_, curve, nugget);
     if (!usable(fit) || fit.partial_sill <= 0) return std::nullopt;
-    const PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
-    return Candidate{fit, honest_sill(found), (*square_of_)(found.errors)};
+    return fit;
+}
+
+Candidate VariogramSearch::judged(const CurveFit& fit, const PredictionErrors& found) const {
+    return {fit, honest_sill(found), (*square_of_)(found.errors)};
+}
+
+std::optional<Candidate> VariogramSearch::candidate(const VariogramCurve& curve,
+                                                    double nugget) const {
+    const std::optional<CurveFit> fit = with_sill(curve, nugget);
+    if (!fit) return std::nullopt;
+    return judged(*fit, points_.errors(Covariance(variogram_of(*fit, anisotropy_))));
 }
 
 Candidate VariogramSearch::refined(const Candidate& start) const {
@@ -201,17 +212,35 @@ const Candidate* VariogramSearch::best_with(VariogramModel model) const {
     return best;
 }
 
-void VariogramSearch::attempt(const VariogramCurve& curve, double nugget, double longest) {
+/// One curve with some nuggets, and with some shares of its rougher part.
+void VariogramSearch::attempt(const VariogramCurve& curve, std::span<const double> nuggets,
+                              std::span<const double> rough_shares, double longest) {
     if (curve.range > longest) return;
-    if (const auto found = candidate(curve, nugget)) all_.push_back(*found);
+    std::vector<CurveFit> fits;
+    std::vector<Covariance> covariances;
+    for (const double rough_share : rough_shares) {
+        for (const double nugget : nuggets) {
+            VariogramCurve own = curve;
+            own.rough_share = rough_share;
+            const std::optional<CurveFit> fit = with_sill(own, nugget);
+            if (!fit) continue;
+            fits.push_back(*fit);
+            covariances.emplace_back(variogram_of(*fit, anisotropy_));
+        }
+    }
+    const std::vector<PredictionErrors> found = points_.errors(covariances);
+    for (std::size_t k = 0; k < fits.size(); ++k)
+        all_.push_back(judged(fits[k], found[k]));
 }
 
 /// Nuggets, then ranges, then nuggets again.
 void VariogramSearch::vary(const Candidate& start) {
     const VariogramModel model = start.fit.curve.model;
     const double longest = std::max(start.fit.curve.range, longest_);
+    std::vector<double> nuggets;
     for (const double share : kNuggetsTried)
-        attempt(start.fit.curve, share * e_.gamma.front(), longest);
+        nuggets.push_back(share * e_.gamma.front());
+    attempt(start.fit.curve, nuggets, {&start.fit.curve.rough_share, 1}, longest);
     const CurveFit with_nugget = best_with(model)->fit;
     for (const double times : kRangeFactors) {
         VariogramCurve curve = with_nugget.curve;
@@ -219,10 +248,9 @@ void VariogramSearch::vary(const Candidate& start) {
         attempt(curve, with_nugget.nugget, longest);
     }
     const CurveFit with_range = best_with(model)->fit;
-    for (const double times : {0.3, 3.0}) {
-        const double nugget = with_range.nugget > 0 ? with_range.nugget : 1e-3 * e_.gamma.front();
-        attempt(with_range.curve, nugget * times, longest);
-    }
+    const double nugget = with_range.nugget > 0 ? with_range.nugget : 1e-3 * e_.gamma.front();
+    const double around[] = {0.3 * nugget, 3 * nugget};
+    attempt(with_range.curve, around, {&with_range.curve.rough_share, 1}, longest);
 }
 
 /// A rougher part instead of the nugget, then beside it, and other ranges with it.
@@ -234,13 +262,10 @@ void VariogramSearch::roughen(VariogramModel model) {
     const CurveFit start = plain->fit;
     const double longest = std::max(start.curve.range, longest_);
     for (const RougherPart& part : parts) {
-        for (const double share : part.shares) {
-            VariogramCurve curve = start.curve;
-            curve.rougher = part.model;
-            curve.rough_range = part.range;
-            curve.rough_share = share;
-            attempt(curve, 0, longest);
-        }
+        VariogramCurve curve = start.curve;
+        curve.rougher = part.model;
+        curve.rough_range = part.range;
+        attempt(curve, kNone, part.shares, longest);
     }
     for (int round = 0; round < 2; ++round) {
         const CurveFit best = best_with(model)->fit;
@@ -254,11 +279,8 @@ void VariogramSearch::roughen(VariogramModel model) {
             if (start.nugget > 0) attempt(best.curve, start.nugget, longest);
             continue;
         }
-        for (const double times : {0.55, 1.8}) {
-            VariogramCurve curve = best.curve;
-            curve.rough_share *= times;
-            attempt(curve, best.nugget, longest);
-        }
+        const double around[] = {0.55 * best.curve.rough_share, 1.8 * best.curve.rough_share};
+        attempt(best.curve, {&best.nugget, 1}, around, longest);
     }
 }
 

@@ -60,8 +60,14 @@ public:
 
 private:
     void start(std::span<const VariogramModel> models);
+    std::optional<CurveFit> with_sill(const VariogramCurve& curve, double nugget) const;
+    Candidate judged(const CurveFit& fit, const PredictionErrors& found) const;
     std::optional<Candidate> candidate(const VariogramCurve& curve, double nugget) const;
-    void attempt(const VariogramCurve& curve, double nugget, double longest);
+    void attempt(const VariogramCurve& curve, std::span<const double> nuggets,
+                 std::span<const double> rough_shares, double longest);
+    void attempt(const VariogramCurve& curve, double nugget, double longest) {
+        attempt(curve, {&nugget, 1}, {&curve.rough_share, 1}, longest);
+    }
     void vary(const Candidate& start);
     void roughen(VariogramModel model);
     const Candidate* best_with(VariogramModel model) const;

@@ -33,6 +33,26 @@ TEST(LeaveOneOut, TheErrorsOfCrossValidation) {
     }
 }
 
+TEST(LeaveOneOut, OneStructureInSeveralSharesAtOnce) {
+    const Points points = hills(300, 1000, {4e5, 5e6});
+    const ManyPoints data(points);
+    const LeaveOneOut some(data, 12, 101, 0, {1, nullptr});
+    std::vector<Covariance> alike;
+    for (const double rough : {0.5, 1.0, 1.7}) {
+        const NestedStructure part{VariogramModel::kExponential, 200, rough, {2, 30}};
+        alike.emplace_back(Variogram{VariogramModel::kCubic, 500, 4, rough / 10, {2, 30}, {part}});
+    }
+    const std::vector<PredictionErrors> found = some.errors(alike);
+    ASSERT_EQ(found.size(), 3U);
+    for (std::size_t k = 0; k < alike.size(); ++k) {
+        const PredictionErrors alone = some.errors(alike[k]);
+        EXPECT_EQ(found[k].errors, alone.errors);
+        EXPECT_EQ(found[k].variances, alone.variances);
+    }
+    EXPECT_NE(found[0].errors, found[1].errors);
+    EXPECT_TRUE(some.errors(std::span<const Covariance>{}).empty());
+}
+
 TEST(LeaveOneOut, FewPointsAndCancelling) {
     const Points two{{0, 0, 1}, {1, 0, 4}};
     const ManyPoints data(two);

@@ -180,29 +180,53 @@ def _draw_holes(
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:
-    """Draws faults as thick lines, with their names at the lower end, or as low as other names allow."""
-    right = axes.box[0] + axes.box[2]
-    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
+    """Draws faults as thick lines, with their names beside the lower end, or as low as other names and lines
+    of faults allow."""
+    lines = []
     for trace in section.faults:
         points = trace.ends.reshape(-1, 3)
         if isinstance(section, FenceData):
             flat = section.along_panels(points, np.repeat(trace.panel, 2))
         else:
             flat = flat_of(section, points)
-        lines = axes.at(flat).reshape(-1, 2, 2)
-        for line in lines:
+        lines.append(axes.at(flat).reshape(-1, 2, 2))
+    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
+    for trace, own in zip(section.faults, lines, strict=True):
+        for line in own:
             drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
-        width = text_width(trace.name, _SIZE)
-        ends = lines.reshape(-1, 2)
-        places = []
-        for x, y in ends[np.argsort(ends[:, 1], kind="stable")].tolist():
-            fits = x + width + 8 < right
-            begin = x + 4 if fits else x - 4 - width
-            places.append((begin, begin + width, y + 4))
-        free = (each for each in places if not any(_overlap(each, other) for other in taken))
-        begin, end, height = next(free, places[0])
+        places = _name_places(axes, own, text_width(trace.name, _SIZE))
+        apart = [place for place in places if not any(_overlap(place, other) for other in taken)] or places
+        every = np.concatenate(lines)
+        begin, end, height = next((place for place in apart if not _is_crossed(place, every)), apart[0])
         taken.append((begin, end, height))
         drawing.text(begin, height, trace.name, _SIZE, layer=trace.name)
+
+
+def _name_places(axes: Axes, lines: np.ndarray, width: float) -> list[tuple[float, float, float]]:
+    """Where a name of a width may stand beside the ends of lines (N, 2, 2), the lowest first: from left to
+    right, and the height; at an end right of it where there is room, then left of it."""
+    left, right = axes.box[0], axes.box[0] + axes.box[2]
+    places, ends = [], lines.reshape(-1, 2)
+    for x, y in ends[np.argsort(ends[:, 1], kind="stable")].tolist():
+        fits = x + width + 8 < right
+        begins = [x + 4] if fits else []
+        if not fits or x - 4 - width > left:
+            begins.append(x - 4 - width)
+        places += [(begin, begin + width, y + 4) for begin in begins]
+    return places
+
+
+def _is_crossed(place: tuple[float, float, float], lines: np.ndarray) -> bool:
+    """Whether a line of (N, 2, 2) goes through a name."""
+    begin, end, height = place
+    start, step = lines[:, 0], lines[:, 1] - lines[:, 0]
+    step = np.where(step == 0, np.finfo(float).tiny, step)
+    with np.errstate(over="ignore"):
+        sides = np.stack(
+            [(np.array(side) - start) / step for side in ((begin, height), (end, height + _SIZE))]
+        )
+    enters, leaves = sides.min(axis=0).max(axis=1), sides.max(axis=0).min(axis=1)
+    return bool(((enters <= leaves) & (leaves >= 0) & (enters <= 1)).any())
 
 
 def _overlap(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
