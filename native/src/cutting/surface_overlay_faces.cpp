@@ -325,7 +325,7 @@ std::vector<Box> SurfaceOverlay::face_boxes() const {
 
 std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face) const {
     FaceParts parts;
-    const auto own = static_cast<std::int32_t>(face);
+    const std::int32_t own = first_same_[face];
     const auto crossed = std::ranges::lower_bound(parts_.crossed, own, {}, &CrossedFace::face);
     if (crossed != parts_.crossed.end() && crossed->face == own) {
         // round a corner of each half; where such triangles overlap they turn against each other
