@@ -181,7 +181,7 @@ check_site() { scripts/site.sh "$python"; } # no document that is lost, no link 
 check_shell() { shellcheck scripts/*.sh .ci/run; }
 
 test_native() { # PRESET: it is configured
-    cmake --build "build/$1" -j 2 &&
+    GLIBC_TUNABLES=glibc.malloc.hugetlb=1 cmake --build "build/$1" -j 2 && # large pages: a tenth of clang++'s time
         ctest --preset "$1" -j 2 --output-junit "$logs/$1.xml" | grep -Ev '^ +Start +[0-9]+:'
 }
 

@@ -7,6 +7,7 @@ from panel_case import ops, raise_by, select, sheet
 from realmodel.bl.objects import model_tree, viewports
 from realmodel.bl.project import choices, compartments, project_settings, surface_statistics
 from realmodel.core import load_project
+from recording_layout import draw_tab
 from structure_case import THROW, StructureCase, box, mesh_object, wall
 
 
@@ -250,6 +251,10 @@ class Built(StructureCase):
             self.assertEqual(fault, "F1")
             self.assertAlmostEqual(abs(throw), THROW, places=9)
             self.assertAlmostEqual(heave, 0.0, places=9)
+        labels = [text for text in draw_tab(bpy.context).labels if text]
+        heading = labels.index("Mean (m)")
+        self.assertEqual(labels[heading + 1 : heading + 3], ["Throw", "Heave"])
+        self.assertEqual(float(labels[heading + 4]), round(throw, 6))
 
     def test_without_faults_nothing_is_added(self):
         select(*(sheet(f"S{n}", 10.0 * n) for n in range(2)))

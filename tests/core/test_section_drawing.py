@@ -93,6 +93,13 @@ def test_a_fence_is_one_picture_without_seams_at_its_bends(model):
     assert flat[:, 0].max() == pytest.approx(fence.length) == 140
 
 
+def test_bends_of_a_fence_are_marked_but_not_the_points_of_a_curve(model):
+    angles = np.linspace(0.0, 0.5 * np.pi, 24)
+    arc = [at(20 + 40 * np.sin(angle), 60 - 40 * np.cos(angle))[:2] for angle in angles]
+    drawing = draw_section(model.fence([*arc, at(90, 60)[:2]]))  # at the end of the arc it turns at once
+    assert len([item for item in drawing.items if isinstance(item, Line) and item.dash]) == 1
+
+
 def test_what_cannot_be_drawn_is_refused(model):
     section = model.section(at(0, 50, 0), (0, 1, 0))
     with pytest.raises(UsageError, match="exaggeration must be above 0"):

@@ -6,7 +6,7 @@ import bpy
 from ..bl.project import compartments, units
 from ..bl.scene import quality
 from .lists import result_columns
-from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label
+from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label, wrapped
 
 
 class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
@@ -69,15 +69,17 @@ class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
             column = layout.column(align=True)
             _row(column, chosen.name, "All")
             for number, name in enumerate(found["names"]):
-                column.label(text=name)
+                for line in wrapped(name):
+                    column.label(text=line)
                 _row(column, *(units.volume_amount_text(scene, each[number]) for each in (own, total)))
+        unit, factor = units.shown_unit(scene, 1)
         for fault in dict.fromkeys(entry[0] for entry in found["faults"]):
             column = layout.column(align=True)
             column.label(text=fault)
-            _row(column, "Throw", "Heave", name="Mean of")
+            _row(column, "Throw", "Heave", name=f"Mean ({unit})")
             for name, surface, *values in found["faults"]:
                 if name == fault:
-                    _row(column, *(units.length_text(scene, value) for value in values), name=surface)
+                    _row(column, *(units.number_text(factor * value) for value in values), name=surface)
 
 
 def _row(column, *values, name=""):

@@ -156,7 +156,9 @@ def _section_buttons(layout, operator, along, saving, making=""):
     named = {"text": making} if making else {}
     row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN", **named).flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
-    column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
+    row = column.row(align=True)
+    row.enabled = getattr(bpy.ops.realmodel, operator).poll()  # saving a section wants what making it does
+    row.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
 class REALMODEL_PT_view_fields(OfABuiltModel, FoldedPanel, bpy.types.Panel):

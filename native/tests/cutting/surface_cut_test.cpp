@@ -286,7 +286,7 @@ TEST(SurfaceCut, ALargeModelGivesTheSameHalvesOnAnyNumberOfThreads) {
     });
     std::optional<Cut> first;
     for (const int threads : {1, 2, 5}) {
-        if (kSanitized && threads == 2) continue;
+        if (kSanitized && threads != 5) continue;
         const Cut cut = cut_by_surface(c, view(sheet), {threads, nullptr});
         for (const CellComplex* half : {&cut.below, &cut.above}) {
             // vertices are numbered in the order in which they come up

@@ -30,6 +30,7 @@ _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
 _LINE = _SIZE + 3  # height of a line of coordinates
 _LEGEND = "Block"  # title of the legend; views have the names of properties
+_BEND = 10.0  # degrees by which a fence turns where a line shows its bend: a curve has many small ones
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 
@@ -336,12 +337,19 @@ def _end_texts(section: SectionData, flat: np.ndarray) -> list[str]:
     return [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
 
 
+def _turns(polyline: np.ndarray) -> np.ndarray:
+    """(N - 2,) degrees by which a polyline (N, 2) turns at its points between the ends."""
+    x, y = np.diff(polyline, axis=0).T
+    across, along = x[:-1] * y[1:] - y[:-1] * x[1:], x[:-1] * x[1:] + y[:-1] * y[1:]
+    return np.degrees(np.abs(np.arctan2(across, along)))
+
+
 def _draw_ends(drawing: Drawing, axes: Axes, section: SectionData, ends: list[str], are_beside: bool) -> None:
     """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
     coordinates are on one line; else they are on lines of their own, with their letters."""
     x, y, width, height = axes.box
     if isinstance(section, FenceData):
-        for at in section.bends[1:-1]:
+        for at in section.bends[1:-1][_turns(section.polyline) > _BEND]:
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
             drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
     sides = ("start", "end")
