@@ -93,6 +93,16 @@ void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, Spac
     }
 }
 
+std::int32_t TriangleArrangement::add_line(std::int32_t triangle, SpacePointId p, SpacePointId q) {
+    const std::int32_t number = checked_number(within_lines_.size(), "lines in triangles");
+    within_lines_.emplace_back();
+    Triangle& t = triangles_[index(triangle)];
+    t.points.push_back(p);
+    t.points.push_back(q);
+    t.segments.push_back({unordered(p, q), -1 - number});
+    return number;
+}
+
 TriangleArrangement::Sides TriangleArrangement::sides_of(const Triangle& own,
                                                          const Triangle& plane) const {
     Sides sides;

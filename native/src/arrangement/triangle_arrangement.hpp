@@ -86,6 +86,15 @@ public:
     SpacePointId point_of(const End& end);
     /// Adds its points and its segment to both triangles.
     void insert(const Intersection& intersection);
+    /// Adds a line between two points within a triangle, of something that needs no triangle of its
+    /// own.
+    /// @return its number, from 0 on
+    std::int32_t add_line(std::int32_t triangle, SpacePointId p, SpacePointId q);
+    /// Once all is divided, the nodes between the ends of such a line, from the lesser to the
+    /// greater.
+    std::span<const SpacePointId> within_line(std::int32_t line) const {
+        return within_lines_[index(line)];
+    }
     /// Divides all triangles. With it no more can be added.
     void divide(const Execution& execution);
 
@@ -103,7 +112,7 @@ public:
 private:
     struct Segment {
         std::array<SpacePointId, 2> ends;  ///< in order
-        std::int32_t other;                ///< the triangle that it is shared with
+        std::int32_t other;                ///< the triangle that it is shared with; -1 - a line
         auto operator<=>(const Segment&) const = default;
     };
     struct Triangle {
@@ -165,10 +174,9 @@ private:
     void intersect_segments(const Execution& execution);
     std::vector<std::vector<Edge>> exchange_points(const Execution& execution);
     void messages_of(std::int32_t triangle, NodesOnLines& nodes_on, std::vector<Message>& messages,
-                     std::vector<Edge>& edges) const;
+                     std::vector<Edge>& edges);
     void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
-                     std::size_t end, std::vector<Message>& messages,
-                     std::vector<Edge>& edges) const;
+                     std::size_t end, std::vector<Message>& messages, std::vector<Edge>& edges);
     class RegionFinder;
     void find_all_regions(std::vector<std::vector<Edge>>& edges, const Execution& execution);
 
@@ -178,6 +186,7 @@ private:
     std::vector<std::pair<std::array<SpacePointId, 2>, std::int32_t>> of_edge_;
     Regions regions_;
     std::vector<std::array<std::int32_t, 2>> in_one_plane_;
+    std::vector<std::vector<SpacePointId>> within_lines_;
 };
 
 }  // namespace realmodel::arrangement

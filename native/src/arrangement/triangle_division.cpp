@@ -364,8 +364,7 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
 /// The points on the edges and segments of a triangle, for the others that share these; and what
 /// they divide it into.
 void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
-                                      std::vector<Message>& messages,
-                                      std::vector<Edge>& edges) const {
+                                      std::vector<Message>& messages, std::vector<Edge>& edges) {
     const Triangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
@@ -377,8 +376,7 @@ void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes
 /// The points on some lines of a triangle.
 void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
                                       std::size_t begin, std::size_t end,
-                                      std::vector<Message>& messages,
-                                      std::vector<Edge>& edges) const {
+                                      std::vector<Message>& messages, std::vector<Edge>& edges) {
     const Triangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
         const Triangle& other = triangles_[index(to)];
@@ -399,8 +397,10 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
         }
         edges.push_back(unordered(last, b));
         if (i < t.segments.size()) {
-            for (const SpacePointId p : on)
-                send(t.segments[i].other, p);
+            const std::int32_t other = t.segments[i].other;
+            if (other < 0) within_lines_[index(-1 - other)] = on;
+            for (std::size_t k = 0; other >= 0 && k < on.size(); ++k)
+                send(other, on[k]);
             continue;
         }
         if (on.empty()) continue;

@@ -46,6 +46,12 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
         if (overlay.of_cutter(item)) return winding.counts(item) && winding.touches_model(item);
         return side < items_ && winding.level(item) < 0;
     });
+    for (std::size_t part = 0; part < size(); ++part)
+        first_.push_back(cells_.first_side(part));
+    for (std::size_t item = items_; item-- > 0;) {
+        if (of(item) < 0 || (item < overlay.size() && overlay.of_cutter(item))) continue;
+        first_[index(of(item))] = item;
+    }
     cells_.connect([&](const auto& visit) {
         for (std::size_t r = 0; r < overlay.size(); ++r) {
             if (overlay.of_cutter(r) && of(r) >= 0) visit(r, at(r, 0), at(r, 1));

@@ -41,9 +41,9 @@ public:
     std::int32_t at(std::size_t region, std::size_t side) const {
         return cells_.of(side == 0 ? region : items_ + region);
     }
-    /// One of what bounds a part: an item, and its side.
+    /// The first of what bounds a part, of faces where there are some: an item, and its side.
     std::pair<std::size_t, std::size_t> first_side(std::size_t part) const {
-        const std::size_t side = cells_.first_side(part);
+        const std::size_t side = first_[part];
         return side < items_ ? std::pair(side, std::size_t{0})
                              : std::pair(side - items_, std::size_t{1});
     }
@@ -63,6 +63,7 @@ private:
     std::size_t items_;  ///< regions and faces; sides 1 of regions come after them, and
                          ///< then both sides of components of undivided triangles
     arrangement::SpaceCells cells_;
+    std::vector<std::size_t> first_;  ///< of parts: a side
 };
 
 }  // namespace realmodel::cutting

@@ -8,6 +8,7 @@
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"
+#include "cutting/plane_outline.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
@@ -35,6 +36,7 @@ SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& su
       margin_(least_rounding) {
     find_same_faces(!groups.empty());
     find_active_faces(groups);
+    name_surface();
     divide_active_faces();
     overlay_all();
     name_nodes();
@@ -107,12 +109,14 @@ std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
 
 /// Where on the surface a vertex may be but for its rounding: at a corner, or on edges, then in
 /// triangles.
-std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(
-    const Position& p) const {
+std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(NodeId vertex) const {
+    std::vector<std::int32_t> near;
+    const Position p = model_.vertex(vertex);
     Box box;
     box.include(p);
-    std::vector<std::int32_t> near;
-    tree_->find(box, [&near](std::int32_t t) { near.push_back(t); });
+    tree_->find(box, [&](std::int32_t t) {
+        if (!is_beside({&vertex, 1}, t)) near.push_back(t);
+    });
     std::sort(near.begin(), near.end());
     const Position tolerance = tolerance_of(p);
     for (const std::int32_t t : near) {
@@ -174,7 +178,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         vertices.size(), 1 << 10, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                places[i] = places_on_surface(model_.vertex(vertices[i]));
+                places[i] = places_on_surface(vertices[i]);
         },
         0.02);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -189,45 +193,6 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
 }
 
-namespace {
-
-/// Planes along the edges of a triangle, at right angles to it.
-class PlaneOutline {
-public:
-    /// @param margin  what its corners and others may be off by
-    PlaneOutline(const std::array<Position, 3>& triangle, double margin)
-        : corners_(triangle), margin_(4 * margin) {
-        const Position normal = polygon_normal(triangle);
-        for (std::size_t i = 0; i < 3; ++i)
-            outward_[i] = cross(minus(triangle[(i + 1) % 3], triangle[i]), normal);
-    }
-    /// Whether another triangle surely is beyond one of these planes.
-    bool is_surely_beside(const std::array<Position, 3>& other) const {
-        constexpr double kRounding = 0x1p-40;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Position& out = outward_[i];
-            const double size = std::abs(out[0]) + std::abs(out[1]) + std::abs(out[2]);
-            // rounding may have turned the plane itself, so that its own corners are beyond it
-            double reach = -HUGE_VAL, least = HUGE_VAL, farthest = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Position own = minus(corners_[k], corners_[i]);
-                const Position beyond = minus(other[k], corners_[i]);
-                reach = std::max(reach, dot(out, own));
-                least = std::min(least, dot(out, beyond));
-                farthest = std::max({farthest, length(own), length(beyond)});
-            }
-            if (least > reach + size * (margin_ + kRounding * farthest)) return true;
-        }
-        return false;
-    }
-
-private:
-    std::array<Position, 3> corners_, outward_{};
-    double margin_;
-};
-
-}  // namespace
-
 void SurfaceOverlay::overlay_all() {
     add_triangles();
     // Which intersect is found out on all threads; where they do is entered in order.
@@ -235,6 +200,8 @@ void SurfaceOverlay::overlay_all() {
     std::vector<std::int32_t> number_of(surface_.triangles.size(), -1);
     for (std::size_t i = 0; i < divided_.size(); ++i)
         number_of[index(divided_[i])] = first_cutter_ + static_cast<std::int32_t>(i);
+    for (const CrossedFace& own : parts_.crossed)
+        arrangement_.add_line(number_of[index(own.triangle)], own.ends[0], own.ends[1]);
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
                                                                       kChunk);
@@ -294,18 +261,10 @@ void SurfaceOverlay::add_triangles() {
     }
     parts_.triangles = {};
     first_cutter_ = checked_number(corners.size(), "triangles");
-    surface_point_.assign(surface_.vertices.size(), kNone);
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-        std::array<SpacePointId, 3> own{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t vertex = surface_.triangles[t][i];
-            SpacePointId& known = surface_point_[index(vertex)];
-            if (!known.has_value()) known = points_.add(surface_.vertices[index(vertex)]);
-            own[i] = known;
-        }
-        if (undivided_.has(static_cast<std::int32_t>(t))) continue;
-        divided_.push_back(static_cast<std::int32_t>(t));
-        corners.push_back(own);
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        if (undivided_.has(t)) continue;
+        divided_.push_back(t);
+        corners.push_back(surface_points(t));
     }
     arrangement_.add_all(corners, execution_);
 }
@@ -330,15 +289,37 @@ void SurfaceOverlay::name_nodes() {
         loops_.nodes[i] = node;
     }
     name_undivided(out);
-    sort_new_nodes();
     for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
         loops_.add_loop(parts_.beside[i]);
         loops_.end_region();
     }
     parts_.beside = {};
+    for (std::size_t i = 0; i < parts_.crossed.size(); ++i)
+        add_halves(parts_.crossed[i], arrangement_.within_line(static_cast<std::int32_t>(i)), out);
+    sort_new_nodes();
     // edges and sides number regions and then faces in one row
     checked_number(size() + model_.face_count() + surface_.triangles.size(),
                    "faces and their parts");
+}
+
+/// Adds both halves of a crossed face as regions.
+/// @param within  the points between its ends, from the lesser to the greater
+void SurfaceOverlay::add_halves(const CrossedFace& own, std::span<const SpacePointId> within,
+                                std::span<const NodeId> node_of_point) {
+    std::vector<SpacePointId> line{std::min(own.ends[0], own.ends[1])};
+    line.insert(line.end(), within.begin(), within.end());
+    line.push_back(std::max(own.ends[0], own.ends[1]));
+    const auto corners = model_.face(index(own.face));
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (std::size_t i = own.after[k]; i != own.after[1 - k]; i = (i + 1) % corners.size())
+            loops_.nodes.push_back(corners[i]);
+        if (line[0] != own.ends[1 - k]) std::ranges::reverse(line);
+        for (const SpacePointId p : line)
+            loops_.nodes.push_back(node_of_point[index(p)]);
+        loops_.end_loop();
+        loops_.end_region();
+        parts_.face_of_beside.push_back(own.face);
+    }
 }
 
 /// Gives the corners of undivided triangles nodes.
@@ -427,8 +408,11 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
             items.push_back({far_corner(undivided_nodes(t), use.edge), -1, use.direction});
         } else if (item >= size()) {
             items.push_back({far_corner(model_.face(item - size()), use.edge), -1, use.direction});
-        } else if (is_beside(item)) {
-            items.push_back({far_corner(loops(item)[0], use.edge), -1, use.direction});
+        } else if (is_of_face(item)) {
+            const auto loop = loops(item)[0];
+            const auto beside = std::ranges::find_if(
+                loop, [this](NodeId node) { return index(node) >= model_.vertex_count(); });
+            items.push_back({far_corner({loop.begin(), beside}, use.edge), -1, use.direction});
         } else {
             const std::int32_t t = triangle(item);
             const bool ahead = use.direction > 0;
@@ -440,7 +424,7 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
 }
 
 std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
-    if (!is_beside(region)) return arrangement_.view_of(triangle(region));
+    if (!is_of_face(region)) return arrangement_.view_of(triangle(region));
     std::vector<Position> corners;
     for (const NodeId node : loops_[region][0])
         corners.push_back(position(node));
@@ -451,7 +435,7 @@ std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
-    if (is_beside(region)) return exact(loops_[region][0][0]);
+    if (is_of_face(region)) return exact(loops_[region][0][0]);
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;

@@ -38,7 +38,7 @@ public:
     int threads() const { return execution_.threads; }
     std::size_t size() const { return loops_.size(); }
     bool of_cutter(std::size_t region) const {
-        return !is_beside(region) && triangle(region) >= first_cutter_;
+        return !is_of_face(region) && triangle(region) >= first_cutter_;
     }
     /// The triangle of the surface that a region is part of.
     std::int32_t cutter_triangle(std::size_t region) const {
@@ -47,8 +47,8 @@ public:
     /// The face that a region is part of. Of faces with the same corners in the same order, as
     /// several models in one have them, the first stands for all.
     std::size_t face_of(std::size_t region) const {
-        return index(is_beside(region) ? parts_.face_of_beside[region - of_triangles()]
-                                       : parts_.face_of_triangle[index(triangle(region))]);
+        return index(is_of_face(region) ? parts_.face_of_beside[region - of_triangles()]
+                                        : parts_.face_of_triangle[index(triangle(region))]);
     }
     /// All faces that a region is part of.
     std::span<const std::int32_t> faces_of(std::size_t region) const {
@@ -101,7 +101,8 @@ public:
     /// The same for many edges one after another, in memory that they share.
     void find_fan(std::span<const arrangement::EdgeUse> uses,
                   std::vector<arrangement::HalfPlane>& scratch, arrangement::EdgeFan& fan);
-    /// A point within a region, on none of its edges; of one beside the surface one of its corners.
+    /// A point within a region, on none of its edges; of a polygon one of its corners that is
+    /// beside the surface.
     SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const;
@@ -114,13 +115,21 @@ public:
 
 private:
     using LoopTriangle = std::array<LoopCorner, 3>;
-    /// What faces near the surface are divided into: triangles, which may pass it, and polygons
-    /// beside it, which do not.
+    /// A face that one triangle of the surface passes, and nothing else of it, from one edge to
+    /// another: a line of that triangle cuts it in two, so that it needs no triangles of its own.
+    struct CrossedFace {
+        std::int32_t face, triangle;
+        std::array<std::size_t, 2> after{};  ///< the corners after its ends
+        std::array<SpacePointId, 2> ends{};  ///< on the edges before these
+    };
+    /// What faces near the surface are divided into: triangles, which may pass it, polygons beside
+    /// it, which do not, and faces in two.
     struct FaceParts {
         std::vector<std::array<NodeId, 3>> triangles;
         std::vector<std::int32_t> face_of_triangle;
         Polygons beside;
         std::vector<std::int32_t> face_of_beside;
+        std::vector<CrossedFace> crossed;  ///< their halves follow what is beside
 
         void add(std::int32_t face, std::span<const LoopTriangle> more);
         void add_beside(std::int32_t face, std::span<const NodeId> polygon);
@@ -135,8 +144,9 @@ private:
     };
 
     std::size_t of_triangles() const { return arrangement_.regions().size(); }
-    /// Whether a region is a polygon beside the surface; these come last.
-    bool is_beside(std::size_t region) const { return region >= of_triangles(); }
+    /// Whether a region is a polygon of a face, beside the surface or half of a crossed face: its
+    /// corners beside the surface first. These regions come last.
+    bool is_of_face(std::size_t region) const { return region >= of_triangles(); }
     std::int32_t triangle(std::size_t region) const {
         return arrangement_.regions().triangles[region];
     }
@@ -147,6 +157,13 @@ private:
     template <class Visit>
     void each_near(std::span<const NodeId> polygon, const Visit& visit) const;
     std::int32_t first_passed(std::span<const NodeId> polygon) const;
+    void name_surface();
+    std::optional<CrossedFace> crossed(std::int32_t face) const;
+    bool passes_within(NodeId a, NodeId b, const std::array<SpacePointId, 3>& triangle) const;
+    template <class Which>
+    void divide_crossed(const Which& which);
+    void add_halves(const CrossedFace& own, std::span<const SpacePointId> within,
+                    std::span<const NodeId> node_of_point);
     void divide(std::int32_t face, std::span<const NodeId> polygon, FaceParts& parts) const;
     template <class Which>
     void triangulate_parts(FaceParts& parts, const Which& which) const;
@@ -155,6 +172,11 @@ private:
     void divide_active_faces();
     void name_vertices_of(std::span<const std::int32_t> faces);
     SpacePointId far_corner(std::span<const NodeId> polygon, const std::array<NodeId, 2>& edge);
+    std::array<SpacePointId, 3> surface_points(std::int32_t triangle) const {
+        const auto& corners = surface_.triangles[index(triangle)];
+        return {surface_point_[index(corners[0])], surface_point_[index(corners[1])],
+                surface_point_[index(corners[2])]};
+    }
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
@@ -163,7 +185,7 @@ private:
     static std::optional<SurfacePlace> place_in_triangle(const Position& p,
                                                          const Position& tolerance,
                                                          const std::array<Position, 3>& corners);
-    std::vector<SurfacePlace> places_on_surface(const Position& p) const;
+    std::vector<SurfacePlace> places_on_surface(NodeId vertex) const;
     std::optional<SpacePointId> point_on_surface(const Position& p,
                                                  std::span<const SurfacePlace> places);
     void add_triangles();
@@ -178,6 +200,7 @@ private:
 
     exact::SpacePoints points_;
     arrangement::TriangleArrangement arrangement_;
+    std::vector<Position> normals_;  ///< of the surface's triangles
     std::unique_ptr<spatial::BoxTree> tree_;
     double margin_;
     spatial::Box model_box_;

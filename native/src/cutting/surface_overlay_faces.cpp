@@ -9,6 +9,7 @@
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
+#include "cutting/plane_outline.hpp"
 #include "cutting/surface_overlay.hpp"
 #include "exact/orient2d.hpp"
 
@@ -88,6 +89,7 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
         for (std::size_t i = 0; i < 3; ++i)
             box.include(corner(t, i));
         box.widen(margin_);
+        normals_.push_back(polygon_normal(std::array{corner(t, 0), corner(t, 1), corner(t, 2)}));
     }
     tree_ = std::make_unique<BoxTree>(std::move(boxes), execution_);
     active_.assign(model_.face_count(), 0);
@@ -99,12 +101,12 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
                 active_[f] = first_passed(model_.face(f)) >= 0 ? 1 : 0;
                 continue;
             }
-            const FacePlane plane(model_, model_.face(f), margin_);
+            std::optional<FacePlane> plane;
             each_near(model_.face(f), [&](std::int32_t t) {
-                const std::array corners{corner(t, 0), corner(t, 1), corner(t, 2)};
                 if (is_beside(model_.face(f), t)) return;
                 active_[f] = 1;
-                if (!plane.is_beside(corners))
+                if (!plane) plane.emplace(model_, model_.face(f), margin_);
+                if (!plane->is_beside({corner(t, 0), corner(t, 1), corner(t, 2)}))
                     std::atomic_ref(meets[index(t)]).store(1, std::memory_order_relaxed);
             });
         }
@@ -123,7 +125,7 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
 bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) const {
     constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
     const Position a = corner(t, 0);
-    const Position normal = polygon_normal(std::array{a, corner(t, 1), corner(t, 2)});
+    const Position& normal = normals_[index(t)];
     int above = 0, below = 0;
     for (const NodeId v : polygon) {
         const Position p = model_.vertex(v);
@@ -175,6 +177,75 @@ void SurfaceOverlay::FaceParts::add(const FaceParts& other) {
                             other.face_of_triangle.end());
     for (std::size_t i = 0; i < other.beside.size(); ++i)
         add_beside(other.face_of_beside[i], other.beside[i]);
+    crossed.insert(crossed.end(), other.crossed.begin(), other.crossed.end());
+}
+
+/// Gives the corners of the surface's triangles exact points.
+void SurfaceOverlay::name_surface() {
+    surface_point_.assign(surface_.vertices.size(), kNone);
+    for (const auto& triangle : surface_.triangles) {
+        for (const std::int32_t vertex : triangle) {
+            SpacePointId& known = surface_point_[index(vertex)];
+            if (!known.has_value()) known = points_.add(surface_.vertices[index(vertex)]);
+        }
+    }
+}
+
+/// Whether the line of an edge of a face passes through a triangle, beside its edges.
+bool SurfaceOverlay::passes_within(NodeId a, NodeId b,
+                                   const std::array<SpacePointId, 3>& triangle) const {
+    std::array<int, 3> sides{};
+    for (std::size_t i = 0; i < 3; ++i)
+        sides[i] = exact::orient3d(points_, vertex_point_[index(a)], vertex_point_[index(b)],
+                                   triangle[i], triangle[(i + 1) % 3]);
+    return sides[0] != 0 && sides[1] == sides[0] && sides[2] == sides[0];
+}
+
+/// A face as a crossed one, without its ends; none where more meets it than that. Its corners are
+/// all beside the plane of the triangle, which two of its edges pass: whatever its shape, that is
+/// one line within it.
+std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t face) const {
+    const auto polygon = model_.face(index(face));
+    std::vector<Position> corners;
+    for (const NodeId v : polygon)
+        corners.push_back(model_.vertex(v));
+    CrossedFace found{face, -1};
+    bool is_one = true;
+    each_near(polygon, [&](std::int32_t t) {
+        if (!is_one || is_beside(polygon, t) ||
+            PlaneOutline({corner(t, 0), corner(t, 1), corner(t, 2)}, margin_)
+                .is_surely_beside(corners))
+            return;
+        is_one = found.triangle < 0;
+        found.triangle = t;
+    });
+    if (!is_one || found.triangle < 0) return std::nullopt;
+    const auto triangle = surface_points(found.triangle);
+    const exact::SidesOfPlane side_of(points_, triangle);
+    std::size_t changes = 0;
+    NodeId before = polygon.back();
+    int side_before = side_of(vertex_point_[index(before)]);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const int side = side_of(vertex_point_[index(polygon[i])]);
+        if (side == 0) return std::nullopt;
+        if (side != side_before) {
+            if (changes == 2 || !passes_within(before, polygon[i], triangle)) return std::nullopt;
+            found.after[changes++] = i;
+        }
+        before = polygon[i];
+        side_before = side;
+    }
+    return changes == 2 ? std::optional(found) : std::nullopt;
+}
+
+/// Divides some of the crossed faces as other ones.
+template <class Which>
+void SurfaceOverlay::divide_crossed(const Which& which) {
+    std::erase_if(parts_.crossed, [&](CrossedFace& own) {
+        if (!which(own)) return false;
+        divide(own.face, model_.face(index(own.face)), parts_);
+        return true;
+    });
 }
 
 /// Divides a polygon of a face: of a convex one that passes a triangle of the surface once, what is
@@ -194,7 +265,7 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
         return;
     }
     const Position a = corner(passed, 0);
-    const Position normal = polygon_normal(std::array{a, corner(passed, 1), corner(passed, 2)});
+    const Position& normal = normals_[index(passed)];
     std::vector<std::int8_t> sides;
     for (const NodeId v : polygon)
         sides.push_back(dot(normal, minus(model_.vertex(v), a)) > 0 ? kAbove : kBelow);
@@ -254,10 +325,20 @@ std::vector<Box> SurfaceOverlay::face_boxes() const {
 
 std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face) const {
     FaceParts parts;
-    if (is_active(face)) {
-        divide(static_cast<std::int32_t>(face), model_.face(face), parts);
+    const std::int32_t own = first_same_[face];
+    const auto crossed = std::ranges::lower_bound(parts_.crossed, own, {}, &CrossedFace::face);
+    if (crossed != parts_.crossed.end() && crossed->face == own) {
+        // round a corner of each half; where such triangles overlap they turn against each other
+        const auto half = 2 * static_cast<std::size_t>(parts_.crossed.end() - crossed);
+        for (const std::size_t region : {size() - half, size() - half + 1}) {
+            const auto loop = loops_[region][0];
+            for (std::size_t i = 2; i < loop.size(); ++i)
+                parts.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+        }
+    } else if (is_active(face)) {
+        divide(own, model_.face(face), parts);
     } else {
-        parts.add_beside(static_cast<std::int32_t>(face), model_.face(face));
+        parts.add_beside(own, model_.face(face));
     }
     triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
     return std::move(parts.triangles);
@@ -270,8 +351,14 @@ void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
     parallel_ranges(
         faces.size(), kFaces, execution_,
         [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                divide(faces[i], model_.face(index(faces[i])), found[begin / kFaces]);
+            FaceParts& own = found[begin / kFaces];
+            for (std::size_t i = begin; i < end; ++i) {
+                if (const auto line = crossed(faces[i])) {
+                    own.crossed.push_back(*line);
+                } else {
+                    divide(faces[i], model_.face(index(faces[i])), own);
+                }
+            }
         },
         0.02);
     for (const FaceParts& parts : found)
@@ -304,13 +391,24 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     return edges;
 }
 
-/// Divides active faces. A triangle without area has no region in the overlay: the corner in its
-/// middle comes to lie on its long edge, and so on an edge of the face, or the polygon, beyond,
-/// which must know it.
+/// Divides active faces, in two where that will do. A triangle without area has no region in the
+/// overlay: the corner in its middle comes to lie on its long edge, and so on an edge of the face,
+/// or the polygon, beyond, which must know it.
 void SurfaceOverlay::divide_active_faces() {
     vertex_point_.assign(model_.vertex_count(), kNone);
     name_vertices_of(active_faces_);
     divide_all(active_faces_);
+    divide_crossed([this](CrossedFace& own) {
+        const auto corners = model_.face(index(own.face));
+        const auto plane = surface_points(own.triangle);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::size_t to = own.after[k], from = (to + corners.size() - 1) % corners.size();
+            own.ends[k] = points_.intersection(vertex_point_[index(corners[from])],
+                                               vertex_point_[index(corners[to])], plane[0],
+                                               plane[1], plane[2]);
+        }
+        return own.ends[0] == own.ends[1];  // of a face without an extent there
+    });
     for (std::size_t first = 0; first < parts_.triangles.size();) {
         const auto edges = edges_of_flat_triangles(first);
         first = parts_.triangles.size();
@@ -332,6 +430,8 @@ void SurfaceOverlay::divide_active_faces() {
         name_vertices_of(fresh);
         divide_all(fresh);
         active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
+        divide_crossed(
+            [&](const CrossedFace& own) { return has_edge(model_.face(index(own.face))); });
         triangulate_parts(parts_, has_edge);
     }
     std::sort(active_faces_.begin(), active_faces_.end());

@@ -139,7 +139,7 @@ TEST(CutterWinding, AnInsideOutCellGoesRoundMinusOnce) {
 
 TEST(CutterWinding, ItsEdgesAreThoseOfTheRegions) {
     const Wound wound(level_cutter(0.5));
-    EXPECT_EQ(wound.winding.edge_count(), 8U + 3);
+    EXPECT_EQ(wound.winding.edge_count(), 4U + 3);
     EXPECT_TRUE(wound.winding.is_edge(wound.winding.edge(3)[0].edge));
     EXPECT_FALSE(wound.winding.is_edge({NodeId{0}, NodeId{1}}));
     for (std::size_t e = 0; e < wound.winding.edge_count(); ++e) {

@@ -49,22 +49,42 @@ TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
 }
 
 TEST(SurfaceOverlay, SurfaceAndWallsDivideOneAnother) {
-    // each wall is two triangles, which the surface halves; it has a region within and one around
+    // it halves each wall, and has a region within and one around
     Overlaid cut(0.5);
-    EXPECT_EQ(cut.overlay.size(), 4U * 4 + 2);
+    EXPECT_EQ(cut.overlay.size(), 4U * 2 + 2);
     EXPECT_EQ(cut.regions_of_cutter(), 2U);
-    // new nodes: on four upright edges and four diagonals, and the surface's corners
-    EXPECT_EQ(cut.overlay.new_positions().size(), 8U + 3);
+    // new nodes: on four upright edges, and the surface's corners
+    EXPECT_EQ(cut.overlay.new_positions().size(), 4U + 3);
     for (const Position& p : cut.overlay.new_positions())
         EXPECT_EQ(p[2], 0.5);
 }
 
-TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
-    // each end of eight corners is a strip of two triangles, which the surface halves, and a
-    // polygon on either side of it
+TEST(SurfaceOverlay, AFaceThatOneTrianglePassesIsInTwo) {
+    // the ends of a prism have eight corners; two of its sides are passed as well
     auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
     const ComplexView model = owned.view();
     const CutterSurface surface = level_cutter(1.5);
+    SurfaceOverlay overlay(model, surface, {1, nullptr});
+    std::map<std::size_t, std::size_t> corners;
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (overlay.of_cutter(r)) continue;
+        EXPECT_EQ(overlay.loops(r).size(), 1U);
+        EXPECT_NE(overlay.points().rounded(overlay.inner_point(r))[2], 1.5);
+        corners[overlay.face_of(r)] += overlay.loops(r)[0].size();
+    }
+    EXPECT_EQ(corners, (std::map<std::size_t, std::size_t>{{0, 12}, {1, 12}, {4, 8}, {8, 8}}));
+    EXPECT_EQ(overlay.triangles_of(0).size(), 2U * 4);
+    EXPECT_EQ(overlay.new_positions().size(), 4U + 3);
+}
+
+TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
+    // Each end of eight corners is a strip of two triangles, which the surface halves, and a
+    // polygon on either side of it. A triangle that is there twice is more than faces in two are
+    // made for.
+    auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
+    const ComplexView model = owned.view();
+    CutterSurface surface = level_cutter(1.5);
+    surface.triangles.push_back(surface.triangles[0]);
     SurfaceOverlay overlay(model, surface, {1, nullptr});
     std::map<std::size_t, std::size_t> regions, polygons;
     std::map<std::array<NodeId, 2>, int> sum;
@@ -101,7 +121,7 @@ TEST(SurfaceOverlay, AroundTheCubesTheSurfaceHasAHole) {
         ++holes;
         EXPECT_TRUE(cut.overlay.of_cutter(r));
         EXPECT_EQ(cut.overlay.loops(r)[0].size(), 3U);
-        EXPECT_EQ(cut.overlay.loops(r)[1].size(), 8U);
+        EXPECT_EQ(cut.overlay.loops(r)[1].size(), 4U);
     }
     EXPECT_EQ(holes, 1U);
 }
@@ -152,15 +172,14 @@ TEST(SurfaceOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
 
 TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
     Overlaid cut(0.5);
-    // around the cut of a wall's triangle: the wall above, the wall below, the surface on two sides
+    // around the cut of a wall: the wall above, the wall below, the surface on two sides
     std::vector<arrangement::EdgeUse> uses;
     for (std::size_t r = 0; r < cut.overlay.size(); ++r)
         arrangement::each_edge(cut.overlay.loops(r), static_cast<std::int32_t>(r),
                                [&](const arrangement::EdgeUse& use) { uses.push_back(use); });
     std::sort(uses.begin(), uses.end());
     std::size_t begin = 0;
-    while (cut.overlay.of_cutter(index(uses[begin].item)) ||
-           uses[begin].edge != uses[begin + 3].edge)
+    while (uses[begin].edge != uses[begin + 3].edge)
         ++begin;
     const auto fan = cut.overlay.fan_of(std::span(uses).subspan(begin, 4));
     ASSERT_EQ(fan.blades(), 4U);

@@ -28,11 +28,12 @@ def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Cutoff:
     It is the border of what of the sheet's triangles lies on that side. So where the sheet goes on beyond it
     in the fault itself, as where it bridges a bay of its own cutoff line, nothing else counts.
     """
-    vertices, triangles = sheet
+    vertices = sheet.vertices
     crossed = crossed_edges(work, sheet, fault)
-    own = crossed.side[triangles] == side
+    of_corners = crossed.side[crossed.triangles]
+    own = of_corners == side
     some = np.flatnonzero(own.any(axis=1))
-    corners, on = vertices[triangles[some]], crossed.side[triangles[some]] == 0
+    corners, on = vertices[crossed.triangles[some]], of_corners[some] == 0
     edges = crossed.edges[crossed.of_triangle[some]]
     begin, end = (vertices[edges[:, :, k]] for k in range(2))
     hits = begin + crossed.share[crossed.of_triangle[some], None] * (end - begin)

@@ -63,7 +63,7 @@ def trace_of(
 ) -> Trace:
     """The trace of a fault in a sheet, edge by edge. within: whether points (K, 3) lie in the compartment; a
     fault that ends elsewhere does not die out."""
-    vertices, triangles = sheet
+    vertices = sheet.vertices
     crossed = crossed_edges(work, sheet, fault)
     on = crossed.side == 0
     begin, end = vertices[crossed.edges[crossed.changing]].transpose(1, 0, 2)
@@ -74,7 +74,7 @@ def trace_of(
     missed[crossed.changing[~hits][within(passed)]] = True
     goes_on = missed[crossed.of_triangle].any(axis=1)
     beyond = np.zeros(len(vertices), bool)
-    beyond[triangles[goes_on]] = True
+    beyond[crossed.triangles[goes_on]] = True
     at_end = np.zeros(len(crossed.edges), bool)
     at_end[crossed.of_triangle[goes_on]] = True
     places = np.concatenate([begin[hits] + share[hits, None] * (end - begin)[hits], vertices[on]])
@@ -83,12 +83,14 @@ def trace_of(
 
 
 class CrossedEdges(NamedTuple):
-    """The edges of a sheet at a fault. side: (V,) int8 of its vertices, 0 on the fault. edges: (E, 2), and
-    of_triangle: (T, 3) int64, those from corner 0 to 1 of each triangle, 1 to 2, 2 to 0. changing: (K,) the
-    edges with ends on both sides. share: (E,) where the fault meets these, from the first end to the second;
-    NaN where it does not."""
+    """The edges of a sheet at a fault. side: (V,) int8 of its vertices, 0 on the fault. triangles: (T, 3),
+    those with corners not all on one side, in the sheet's order. edges: (E, 2) of these, and of_triangle:
+    (T, 3) int64, those from corner 0 to 1 of each of them, 1 to 2, 2 to 0. changing: (K,) the edges with ends
+    on both sides. share: (E,) where the fault meets these, from the first end to the second; NaN where it
+    does not."""
 
     side: np.ndarray
+    triangles: np.ndarray
     edges: np.ndarray
     of_triangle: np.ndarray
     changing: np.ndarray
@@ -100,13 +102,15 @@ def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape) -> CrossedEdges:
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault)
     side[on_fault(vertices, fault)] = 0
+    of_corners = side[triangles]
+    triangles = triangles[(of_corners != of_corners[:, :1]).any(axis=1) | (of_corners[:, 0] == 0)]
     edges, number = np.unique(edge_numbers(edges_of(triangles), len(vertices)), return_inverse=True)
     edges = edges_numbered(edges, len(vertices))
     changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
     share = np.full(len(edges), np.nan)
     begin, end = vertices[edges[changing]].transpose(1, 0, 2)
     share[changing] = hit_shares(begin, end, fault)
-    return CrossedEdges(side, edges, number.reshape(3, -1).T, changing, share)
+    return CrossedEdges(side, triangles, edges, number.reshape(3, -1).T, changing, share)
 
 
 def _where_sides_change(work: Work, begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
