@@ -66,7 +66,7 @@ TEST(StructureSides, RefusesWithTheStructureAndAPlace) {
             EXPECT_EQ(error.kind, "ends_inside");
             EXPECT_EQ(error.surface, 0);
             ASSERT_TRUE(error.place);
-            EXPECT_EQ((*error.place)[0], 0.5);
+            EXPECT_DOUBLE_EQ((*error.place)[0], 0.5);
         }
     });
 }
