@@ -22,7 +22,7 @@ namespace {
 constexpr double kWorth = 4;
 constexpr double kLeastRatio = 0.01;
 // Of the fifth order one over the least range.
-constexpr double kLargestRatio = 16;
+constexpr double kLargestRatio = 8;
 // Of the fifth order, of whose variance they are: without them its systems would be singular to
 // rounding where ranges are long. A hundred thousandth of how much folds rise and fall.
 constexpr Errors kLeastErrors{1e-10, 1e-8};
