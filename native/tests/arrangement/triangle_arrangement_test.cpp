@@ -118,12 +118,13 @@ TEST(TriangleArrangement, ALineInATriangleHasTheNodesOfWhatCrossesIt) {
     Arrangement a;
     const auto level = a.add(kFloor);
     const auto at = [&a](double x) { return a.points.add(Position{x, 0.5, 0}); };
-    const std::int32_t line = a.triangles.add_line(level, at(0.5), at(3));
-    EXPECT_EQ(a.triangles.add_line(level, at(0.5), at(1)), line + 1);
+    const auto begin = at(0.5), middle = at(1), end = at(3);  // numbered in this order
+    const std::int32_t line = a.triangles.add_line(level, begin, end);
+    EXPECT_EQ(a.triangles.add_line(level, begin, middle), line + 1);
     a.add({{{2, -1, -1}, {2, 9, -1}, {2, 1, 9}}});
     a.divide(2);
     const auto within = a.triangles.within_line(line);
-    EXPECT_EQ(std::vector(within.begin(), within.end()), (std::vector{at(1), at(2)}));
+    EXPECT_EQ(std::vector(within.begin(), within.end()), (std::vector{middle, at(2)}));
     EXPECT_TRUE(a.triangles.within_line(line + 1).empty());
     EXPECT_EQ(a.regions_of(level).size(), 2U);  // the lines end within these
 }
