@@ -48,7 +48,7 @@ def main(names):
                 append_images=frames[1:],
                 duration=durations,
                 loop=0,
-                quality=70,
+                quality=85,
                 method=6,
             )
             if target.stat().st_size > MOST:
