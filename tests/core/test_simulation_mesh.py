@@ -394,7 +394,7 @@ def test_a_vertical_fault_is_a_step():
     top = Surface(name="s1", points=np.array(points), method="idw")
     rock = Rock(name="r", region=SQUARE, edge_length=10, surfaces=[plane("s0", 0), top, plane("s2", 30)])
     model = build(Project(name="b", rocks=[rock], faults=[vertical]))
-    mesh = checked(model.simulation_mesh(8.0, 0.5))
+    mesh = checked(model.simulation_mesh(7.0, 0.5))
     assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=1e-6)
     at_fault = mesh.points[np.isclose(mesh.points[:, 0], 50)]
     assert set(np.round(at_fault[:, 2], 6)) == {0.0, 10.0, 15.0, 30.0}
