@@ -26,6 +26,9 @@ constexpr double kLargestRatio = 8;
 // Of the fifth order, of whose variance they are: without them its systems would be singular to
 // rounding where ranges are long. A hundred thousandth of how much folds rise and fall.
 constexpr Errors kLeastErrors{1e-10, 1e-8};
+// That of slopes is as large as they are. Where data are nothing but errors, larger ones would be
+// likelier without end.
+constexpr Errors kLargestErrors{0.01, 1};
 // Scales of further coordinates: with the least one the sides of a fault hardly differ but by its
 // throw, with the largest one says little of the other.
 constexpr double kLeastLift = 1.0 / 64;
@@ -195,9 +198,9 @@ std::vector<Likely> near(const Likely& of, double degrees, double factor) {
         }
         // variances: squares of lengths, too
         double& value = out.emplace_back(of).errors.value;
-        value = std::max(value * times * times, least.value);
+        value = std::clamp(value * times * times, least.value, kLargestErrors.value);
         double& slope = out.emplace_back(of).errors.slope;
-        slope = std::max(slope * times * times, least.slope);
+        slope = std::clamp(slope * times * times, least.slope, kLargestErrors.slope);
     }
     return out;
 }

@@ -53,6 +53,10 @@ TEST(Anisotropy, ErrorsOfSlopesAreNotTakenForShortFolds) {
         EXPECT_LT(ratio, 8);
 }
 
+TEST(Anisotropy, TheSearchEndsWhereSlopesAreNothingButErrors) {
+    EXPECT_LE(smooth(upright_fold(50)).errors.slope, 1);
+}
+
 TEST(Anisotropy, TheMapShrinksAlongTheAxes) {
     const Map3 map = map_of({{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}}, {0.5, 2, 1}});
     EXPECT_EQ(mapped(map, {1, 1, 1}), (Vec3{2, 1, 0.5}));
