@@ -6,7 +6,6 @@ from __future__ import annotations
 import colorsys
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol, Self, TypeVar
 
@@ -253,7 +252,7 @@ class ModelData:
             self.require_project("a sheet of a surface")
         triangles, sheets = self.surface(number)[1], [0]
         if not self.surface_kind[number]:
-            sheets = next(islice(sheet_sizes(self.rock_inputs), number, None))
+            sheets = sheet_sizes(self.rock_inputs, number)
         return [own for own in np.split(triangles, np.cumsum(sheets[:-1])) if len(own)]
 
 
