@@ -10,8 +10,8 @@
 
 namespace realmodel::spatial {
 
-/// How far a position is from a triangle. Long triangles have their plane from their shorter edges,
-/// taken from the corner that is nearest to the position.
+/// How far a position is from a triangle. Over the triangle it is known to nearly all digits,
+/// however narrow the triangle is; beside it to the rounding of coordinates.
 double triangle_distance(const Vec3& p, const SpaceTriangle& triangle);
 
 /// Distances from boxes are rounded: what is so little farther may yet be as near.

@@ -116,6 +116,17 @@ TEST(NearestTriangles, APlaceOnALongTriangleIsOnIt) {
     }
 }
 
+/// Such triangles are where a level set nearly passes through a node. (Hunted: seed 882039 of
+/// folds.)
+TEST(NearestTriangles, APlaceOnANarrowTriangleIsOnIt) {
+    const std::vector<SpaceTriangle> narrow{
+        {{{4.369998931884766, 3.5733023805966204, 1.4299983978271484},
+          {4.685640018980426, 3.82577173873712, 1.745647221476851},
+          {5.266036168627455, 4.289999008178711, 2.326035634569838}}}};
+    const Position place{4.795085157390503, 3.913309566136652, 1.8550877621852084};
+    EXPECT_LE(nearest_triangles(narrow, {&place, 1}, HUGE_VAL).distance[0], 1e-15);
+}
+
 TEST(MeetingBoxes, AreThoseOfAllPairs) {
     Random random;
     const auto boxes = [&](std::size_t count) {
