@@ -6,6 +6,7 @@ Processors' seconds are those of all threads; they hardly depend on what else ru
 
 from __future__ import annotations
 
+import importlib
 import time
 
 import numpy as np
@@ -43,6 +44,7 @@ def build_faulted(spec: dict, cells: str, threads: int, count: int) -> dict:
     from realmodel.core.base.work import native_module
 
     native_module()
+    importlib.import_module("numpy.ma")  # NumPy 2 loads it with the first np.unique or np.median
     faults = make_faults(count)
     surfaces = []
     for number, (vertices, triangles) in enumerate(StackSpec(**spec).make()):
