@@ -71,8 +71,8 @@ py::list sub_surfaces(const py::object& self) {
 py::list sub_blocks(const py::object& self) {
     py::list found;
     for (const auto& block : in(self).sub_blocks)
-        found.append(py::make_tuple(rows_seen(self, block.triangles), block.volume, block.is_in[0],
-                                    block.is_in[1]));
+        found.append(py::make_tuple(rows_seen(self, block.triangles), in(self).volume(block),
+                                    block.is_in[0], block.is_in[1]));
     return found;
 }
 

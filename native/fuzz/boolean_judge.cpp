@@ -374,7 +374,7 @@ private:
     void look_at_blocks(const Refinement& r) {
         for (const auto& block : r.sub_blocks) {
             if (!is_closed(block.triangles)) return add("blocks", "one is open");
-            if (!(block.volume > -1e-12 * std::pow(extent(), 3)))
+            if (!(r.volume(block) > -1e-12 * std::pow(extent(), 3)))
                 return add("blocks", "one has a volume below zero");
         }
         std::vector<std::uint8_t> seen(r.triangles.size(), 0);
@@ -418,7 +418,7 @@ private:
             return add("volumes", "those of the parts do not make up the union's");
         double blocks = 0;
         for (const auto& block : r.sub_blocks) {
-            if (block.is_in[0] || block.is_in[1]) blocks += block.volume;
+            if (block.is_in[0] || block.is_in[1]) blocks += r.volume(block);
         }
         if (std::abs(blocks - volumes[0]) > 1e-12 * whole)
             return add("volumes", "those of the sub-blocks do not make up the union's");

@@ -9,7 +9,8 @@ namespace realmodel {
 /// Sorts elements and keeps each once.
 template <class Element>
 void sort_unique(std::vector<Element>& elements) {
-    std::sort(elements.begin(), elements.end());
+    if (!std::is_sorted(elements.begin(), elements.end()))
+        std::sort(elements.begin(), elements.end());
     elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
 }
 

@@ -138,6 +138,15 @@ void parallel_ranges(std::size_t count, std::size_t size, const Execution& execu
     parallel_chunks((count + size - 1) / size, execution, range, share);
 }
 
+/// Calls work(i) for every item from 0 to count - 1, many of them in a chunk: work is short.
+template <class Work>
+void parallel_each(std::size_t count, const Execution& execution, const Work& work) {
+    parallel_ranges(count, 1 << 12, execution, [&work](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            work(i);
+    });
+}
+
 /// Calls work(chunk) for every chunk, each thread an equal run of them: in loops over the same
 /// arrays a thread meets again what its caches still hold. For chunks of equal work, too short for
 /// anyone to wait for one.

@@ -2,11 +2,13 @@
 #include "booleans/exact_division.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <optional>
 #include <utility>
 
 #include "arrangement/triangulate.hpp"
+#include "base/counting_sort.hpp"
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
@@ -23,9 +25,77 @@ namespace {
 
 constexpr std::size_t kFacetsAtOnce = 1 << 8;
 
-std::size_t shared_corners(const TriangleCorners& a, const TriangleCorners& b) {
-    return static_cast<std::size_t>(std::count_if(
-        a.begin(), a.end(), [&](SpacePointId p) { return p == b[0] || p == b[1] || p == b[2]; }));
+/// A triangle as one of its corners sees it: its other corners, and its turns.
+struct Sector {
+    std::array<SpacePointId, 2> ends;
+    std::uint8_t turns;
+};
+
+/// What is seen of points along an axis.
+auto seen_along(const SpacePoints& points, std::size_t axis) {
+    return [&points, axis](SpacePointId p) -> std::array<double, 2> {
+        const auto& at = points.rounded(p);
+        return {at[(axis + 1) % 3], at[(axis + 2) % 3]};
+    };
+}
+
+std::uint8_t turns_of(const SpacePoints& points, const TriangleCorners& c) {
+    unsigned turns = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const auto at = seen_along(points, axis);
+        if (const auto turn = exact::orient2d_filter(at(c[0]), at(c[1]), at(c[2])))
+            turns |= (*turn > 0 ? 1u : 2u) << 2 * axis;
+    }
+    return static_cast<std::uint8_t>(turns);
+}
+
+/// Whether a filter can tell that, seen along an axis, a line along an edge of a triangle has all
+/// corners of another one beyond it but those that they share, which are ends of that edge.
+bool is_beside(const SpacePoints& points, const TriangleCorners& own, std::uint8_t turns_of_own,
+               const TriangleCorners& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int turn = (turns_of_own >> 2 * axis & 1) - (turns_of_own >> 2 * axis >> 1 & 1);
+        if (turn == 0) continue;
+        const auto at = seen_along(points, axis);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const SpacePointId from = own[k], to = own[(k + 1) % 3];
+            if (std::ranges::all_of(other, [&](SpacePointId p) {
+                    return p == from || p == to ||
+                           exact::orient2d_filter(at(from), at(to), at(p)) == -turn;
+                }))
+                return true;
+        }
+    }
+    return false;
+}
+
+/// Whether the triangles around a point lie side by side, seen along an axis along which all turn
+/// one way: each ends where another one begins, and they go round the point once. So no two of them
+/// have anything in common but the point, and an edge that both have.
+/// @param ends  memory for this
+bool is_flat_star(const SpacePoints& points, SpacePointId middle, std::span<const Sector> star,
+                  std::array<std::vector<SpacePointId>, 2>& ends) {
+    unsigned turns = star.empty() ? 0 : ~0u;
+    for (const Sector& sector : star)
+        turns &= sector.turns;
+    if (turns == 0) return false;
+    const auto bit = static_cast<std::size_t>(std::countr_zero(turns));
+    const std::size_t axis = (bit / 2 + 2) % 3;  // of what is above the point
+    const auto is_above = [&](SpacePointId p) {
+        return points.rounded(p)[axis] >= points.rounded(middle)[axis];
+    };
+    for (auto& some : ends)
+        some.clear();
+    int rounds = 0;
+    for (const Sector& sector : star) {
+        for (std::size_t k = 0; k < 2; ++k)
+            ends[k].push_back(sector.ends[k]);
+        // the half-line to one side of the point is passed from below by all that pass it
+        rounds += !is_above(sector.ends[bit % 2]) && is_above(sector.ends[1 - bit % 2]);
+    }
+    for (auto& some : ends)
+        std::sort(some.begin(), some.end());
+    return rounds == 1 && ends[0] == ends[1];
 }
 
 /// Turns of exact points, which loop corners number as nodes.
@@ -73,39 +143,79 @@ bool ExactDivision::is_aside(const TriangleCorners& own, const TriangleCorners& 
     return true;
 }
 
+/// Of each point whether the pieces around it meet in corners and edges that they share only: most
+/// pieces that are near each other share a corner, and need no more tests.
+std::vector<std::uint8_t> ExactDivision::flat_stars(std::span<const Item> items) const {
+    const SpacePoints& points = pieces_.points;
+    const auto sectors = bucketize_in_any_order<Sector>(
+        points.size(), (items.size() + kFacetsAtOnce - 1) / kFacetsAtOnce,
+        [&](std::size_t chunk, const auto& put) {
+            const std::size_t begin = chunk * kFacetsAtOnce;
+            for (const Item& item :
+                 items.subspan(begin, std::min(kFacetsAtOnce, items.size() - begin))) {
+                const TriangleCorners& c = item.corners;
+                for (std::size_t k = 0; k < 3; ++k)
+                    put(index(c[k]), Sector{{c[(k + 1) % 3], c[(k + 2) % 3]}, item.turns});
+            }
+        },
+        execution_);
+    std::vector<std::uint8_t> is_flat(points.size());
+    parallel_ranges(is_flat.size(), kFacetsAtOnce, execution_,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::array<std::vector<SpacePointId>, 2> ends;
+                        for (std::size_t v = begin; v < end; ++v)
+                            is_flat[v] = is_flat_star(points, SpacePointId(v), sectors[v], ends);
+                    });
+    return is_flat;
+}
+
 void ExactDivision::find_candidates() {
+    const SpacePoints& points = pieces_.points;
     const std::size_t count = chosen_.size();
-    std::vector<Box> boxes(count);
-    parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
-    });
     // the tree of the inputs is that of their pieces, as long as none is divided
-    const bool all = pieces_.are_whole() && count == pieces_.input_count();
-    const std::optional<BoxTree> own =
-        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, execution_);
+    std::optional<BoxTree> own;
+    if (!pieces_.are_whole() || count != pieces_.input_count()) {
+        std::vector<Box> boxes(count);
+        std::transform(chosen_.begin(), chosen_.end(), boxes.begin(),
+                       [this](const PieceId& id) { return pieces_.box(pieces_[id].corners); });
+        own.emplace(std::move(boxes), execution_);
+    }
     const BoxTree& tree = own ? *own : pieces_.tree();
+    std::vector<Item> items(count);  // in the order of the tree, which has near ones together
+    parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            const TrianglePiece& piece = pieces_[chosen_[index(tree.number_at(place))]];
+            items[place] = {piece.corners, turns_of(points, piece.corners), piece.is_fresh};
+        }
+    });
+    const std::vector<std::uint8_t> is_flat = flat_stars(items);
     std::vector<std::vector<std::array<std::int32_t, 2>>> found(
         (tree.leaf_count() + kFacetsAtOnce - 1) / kFacetsAtOnce);
     const auto filter_of = [&](const TriangleCorners& c) {
-        return exact::SideFilter(pieces_.points.rounded(c[0]), pieces_.points.rounded(c[1]),
-                                 pieces_.points.rounded(c[2]));
+        return exact::SideFilter(points.rounded(c[0]), points.rounded(c[1]), points.rounded(c[2]));
     };
     parallel_ranges(
         tree.leaf_count(), kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             auto& pairs = found[begin / kFacetsAtOnce];
-            std::int32_t last = -1;  // the pairs of a piece follow one another
+            std::size_t last = count;  // the pairs of a piece follow one another
             std::optional<exact::SideFilter> plane;
-            tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
-                const TrianglePiece &one = pieces_[chosen_[index(i)]],
-                                    &other = pieces_[chosen_[index(j)]];
+            tree.find_pairs(begin, end, [&](std::size_t place, std::size_t of_other) {
+                const Item &one = items[place], &other = items[of_other];
                 const TriangleCorners &a = one.corners, &b = other.corners;
-                if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) ||
-                    has_equal_corners(b) || shared_corners(a, b) == 3)
+                if (!(one.is_fresh || other.is_fresh)) return;
+                std::size_t shared = 0;
+                for (const SpacePointId p : a) {
+                    if (!has(b, p)) continue;
+                    if (is_flat[index(p)] != 0) return;
+                    ++shared;
+                }
+                if (shared == 3 || has_equal_corners(a) || has_equal_corners(b)) return;
+                if (place != last) plane.emplace(filter_of(a));
+                last = place;
+                if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b)) ||
+                    is_beside(points, a, one.turns, b) || is_beside(points, b, other.turns, a))
                     return;
-                if (i != last) plane.emplace(filter_of(a));
-                last = i;
-                if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
+                const std::int32_t i = tree.number_at(place), j = tree.number_at(of_other);
                 const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
                 pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
             });

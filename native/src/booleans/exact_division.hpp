@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "arrangement/triangle_arrangement.hpp"
@@ -39,6 +40,14 @@ public:
     void divide(const std::vector<Meeting>& at);
 
 private:
+    /// A piece as its neighbors are found.
+    struct Item {
+        TriangleCorners corners;
+        /// Along which axes it is certain to turn left (bits 0, 2, 4) or right (1, 3, 5).
+        std::uint8_t turns;
+        bool is_fresh;
+    };
+    std::vector<std::uint8_t> flat_stars(std::span<const Item> items) const;
     void find_candidates();
     bool is_aside(const TriangleCorners& own, const TriangleCorners& other,
                   const exact::SideFilter& plane_of_other) const;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
 #include "arrangement/ray_boxes.hpp"
 #include "arrangement/space_cells.hpp"
@@ -27,6 +26,7 @@ public:
         : vertices_(vertices),
           mesh_(mesh),
           execution_(execution),
+          connected_(mesh.facets.size()),
           cells_(2 * mesh.facets.size() + 1) {}
 
     FacetCells run() {
@@ -43,7 +43,7 @@ private:
     }
 
     void join_around_edges();
-    void find_fan_of(std::size_t edge, arrangement::EdgeFan& fan) const;
+    arrangement::EdgeFan fan_of(std::size_t edge) const;
     void join_along_rays();
     bool cast(std::int32_t facet, int attempt, arrangement::RayBoxes& boxes);
     FacetCells number_cells();
@@ -57,33 +57,34 @@ private:
     const std::vector<Position>& vertices_;
     const FacetMesh& mesh_;
     Execution execution_;
+    DisjointSets connected_;  ///< facets, along edges
     arrangement::SpaceCells cells_;
 };
 
 /// What is between two facets that follow one another around an edge is one place.
 void CellFinder::join_around_edges() {
-    parallel_ranges(mesh_.edges.size(), 1 << 10, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        arrangement::EdgeFan fan;  // one for all: most have but two uses
-                        for (std::size_t e = begin; e < end; ++e) {
-                            find_fan_of(e, fan);
-                            for (std::size_t blade = 0; blade < fan.blades(); ++blade)
-                                cells_.join_sector(mesh_.edges[e], fan, blade, side_of);
-                        }
-                    });
+    parallel_each(mesh_.edges.size(), execution_, [&](std::size_t e) {
+        const auto uses = mesh_.edges[e];
+        for (const EdgeUse& use : uses)
+            connected_.join(uses[0].item, use.item);
+        if (uses.size() < 3) {  // there is but one order
+            for (std::size_t i = 0; i < uses.size(); ++i) {
+                const EdgeUse &use = uses[i], &next = uses[(i + 1) % uses.size()];
+                cells_.join(side_of(index(use.item), use.ahead()),
+                            side_of(index(next.item), next.behind()));
+            }
+            return;
+        }
+        const arrangement::EdgeFan fan = fan_of(e);
+        for (std::size_t blade = 0; blade < fan.blades(); ++blade)
+            cells_.join_sector(uses, fan, blade, side_of);
+    });
 }
 
-/// The facets around an edge. Of two there is but one order.
-void CellFinder::find_fan_of(std::size_t edge, arrangement::EdgeFan& fan) const {
+/// The facets around an edge.
+arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
     const auto uses = mesh_.edges[edge];
     const auto& [a, b] = mesh_.edges.ends(edge);
-    if (uses.size() < 3) {
-        fan.order.resize(uses.size());
-        fan.blade_begins.resize(uses.size() + 1);
-        std::iota(fan.order.begin(), fan.order.end(), std::size_t{0});
-        std::iota(fan.blade_begins.begin(), fan.blade_begins.end(), std::size_t{0});
-        return;
-    }
     SpacePoints points;
     const auto point = [&](std::int32_t v) { return points.add(vertices_[index(v)]); };
     std::vector<arrangement::HalfPlane> items;
@@ -92,27 +93,21 @@ void CellFinder::find_fan_of(std::size_t edge, arrangement::EdgeFan& fan) const 
         // the corner that is no end of the edge
         items.push_back({point(c[0] ^ c[1] ^ c[2] ^ a ^ b), -1, use.direction});
     }
+    arrangement::EdgeFan fan;
     find_fan(points, point(a), point(b), items, fan);
     assert(fan.blades() == uses.size());  // facets that coincide are one
+    return fan;
 }
 
 /// Of the facets that a ray crosses, each sees the next one: so parts of the surfaces that do not
 /// touch one another are known to lie in one place. One ray for each such part.
 void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
-    DisjointSets connected(count);
-    for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
-        poll(execution_.progress, e);
-        const auto uses = mesh_.edges[e];
-        for (const EdgeUse& use : uses)
-            connected.join(uses[0].item, use.item);
-    }
     std::vector<Box> boxes(count);
-    for (std::size_t f = 0; f < count; ++f) {
-        poll(execution_.progress, f);
+    parallel_each(count, execution_, [&](std::size_t f) {
         for (const std::int32_t v : mesh_.facets[f].corners)
             boxes[f].include(vertices_[index(v)]);
-    }
+    });
     arrangement::RayBoxes ray_boxes(std::move(boxes));
     // facets of each part, of which one after another is tried
     std::vector<std::vector<std::int32_t>> parts;
@@ -120,7 +115,7 @@ void CellFinder::join_along_rays() {
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
         poll(execution_.progress, f);
-        const auto root = index(connected.find(static_cast<std::int32_t>(f)));
+        const auto root = index(connected_.find(static_cast<std::int32_t>(f)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(parts.size());
             parts.emplace_back();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
-#include "base/parallel_sort.hpp"
 
 namespace realmodel::booleans {
 
@@ -27,14 +27,20 @@ struct Keyed {
 
 void find_facets(const RefinedTriangles& parts, FacetMesh& mesh, const Execution& execution) {
     const std::size_t count = parts.triangles.size();
-    std::vector<Keyed> keyed(count);
-    parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            keyed[i] = {parts.triangles[i].corners, static_cast<std::int32_t>(i)};
-            std::sort(keyed[i].sorted.begin(), keyed[i].sorted.end());
-        }
-    });
-    parallel_sort(keyed, std::less<>(), execution);
+    constexpr std::size_t kChunk = 1 << 12;
+    const auto keyed =
+        sorted_in_buckets<Keyed>(
+            parts.vertices.size(), (count + kChunk - 1) / kChunk,
+            [&](std::size_t chunk, const auto& put) {
+                for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk);
+                     ++i) {
+                    Keyed key{parts.triangles[i].corners, static_cast<std::int32_t>(i)};
+                    std::sort(key.sorted.begin(), key.sorted.end());
+                    put(index(key.sorted[0]), key);
+                }
+            },
+            execution)
+            .values;
     std::vector<std::int32_t> first(count);  // of the parts that coincide
     for (std::size_t i = 0, begin = 0; i < count; ++i) {
         poll(execution.progress, i);

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "booleans/facet_cells.hpp"
 #include "booleans/facets.hpp"
 #include "booleans/loops.hpp"
@@ -20,20 +22,21 @@ namespace {
 using exact::DoubleDoubleInterval;
 
 /// Whether a surface has no border: it passes each edge as often one way as the other.
-std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
-    std::array<bool, 2> is_closed{true, true};
-    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-        poll(progress, e);
+std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Execution& execution) {
+    std::array<std::uint8_t, 2> is_open{0, 0};
+    const auto look_at = [&](std::size_t e) {
         std::array<int, 2> net{0, 0};
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             const Facet& facet = mesh.facets[index(use.item)];
             for (std::size_t source = 0; source < 2; ++source)
                 net[source] += use.direction * facet.times[source];
         }
-        for (std::size_t source = 0; source < 2; ++source)
-            is_closed[source] = is_closed[source] && net[source] == 0;
-    }
-    return is_closed;
+        for (std::size_t source = 0; source < 2; ++source) {
+            if (net[source] != 0) mark(is_open[source]);
+        }
+    };
+    parallel_each(mesh.edges.size(), execution, look_at);
+    return {is_open[0] == 0, is_open[1] == 0};
 }
 
 /// Whether the winding of each closed surface changes with each facet by how often that is one of
@@ -54,13 +57,12 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
 
 /// The parts of each surface that hang together across edges that are in no loop.
 void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
-                       const FacetCells& cells, Refinement& result, Progress* progress) {
+                       const FacetCells& cells, Refinement& result, const Execution& execution) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
-    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-        poll(progress, e);
-        if (loops.of_edge[e] >= 0) continue;
+    const auto join_along = [&](std::size_t e) {
+        if (loops.of_edge[e] >= 0) return;
         std::array<std::int32_t, 2> first{-1, -1};
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             for (std::int32_t source = 0; source < 2; ++source) {
@@ -73,10 +75,11 @@ void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
                 }
             }
         }
-    }
+    };
+    parallel_each(mesh.edges.size(), execution, join_along);
     std::vector<std::int32_t> number(2 * count, -1);
     for (std::size_t t = 0; t < result.triangles.size(); ++t) {
-        poll(progress, t);
+        poll(execution.progress, t);
         const auto source = static_cast<std::int32_t>(result.source[t]);
         const std::int32_t facet = mesh.of_part[t];
         std::int32_t& own = number[index(joined.find(2 * facet + source))];
@@ -100,21 +103,8 @@ void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
     }
 }
 
-/// Six times the volume between a triangle and an origin.
-DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
-                                  const std::array<std::int32_t, 3>& t, const Position& origin) {
-    std::array<std::array<DoubleDoubleInterval, 3>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k)
-            p[i][k] = DoubleDoubleInterval::difference(vertices[index(t[i])][k], origin[k]);
-    }
-    return p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
-           p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
-           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-}
-
-void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
-                     const FacetCells& cells, Refinement& result, Progress* progress) {
+void find_sub_blocks(const FacetMesh& mesh, const FacetCells& cells, Refinement& result,
+                     Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         poll(progress, f);
@@ -127,17 +117,9 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
             result.sub_blocks[index(above) - 1].triangles.push_back({a, c, b});
     }
     for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
-        if (progress != nullptr) progress->check();
-        SubBlock& block = result.sub_blocks[i];
-        DoubleDoubleInterval sum = 0.0;
-        for (std::size_t t = 0; t < block.triangles.size(); ++t) {
-            poll(progress, t);
-            sum = sum + volume_below(vertices, block.triangles[t],
-                                     vertices[index(block.triangles[0][0])]);
-        }
-        block.volume = (sum.high + sum.low) / 6;
         for (std::size_t source = 0; source < 2; ++source)
-            block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
+            result.sub_blocks[i].is_in[source] =
+                result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
 }
 
@@ -164,27 +146,31 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
     if (execution.progress != nullptr)
         execution.progress->begin(0.9, 0.99, "finding what is inside");
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
-    IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution.progress);
+    IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution);
     Refinement result;
-    result.vertices.reserve(3 * parts.vertices.size());
-    for (const Position& p : parts.vertices)
-        result.vertices.insert(result.vertices.end(), p.begin(), p.end());
-    std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
-    result.is_closed = closed_surfaces(mesh, execution.progress);
+    const std::size_t count = parts.triangles.size();
+    result.vertices.resize(3 * parts.vertices.size());
+    std::memcpy(result.vertices.data(), parts.vertices.data(),
+                sizeof(double) * result.vertices.size());
+    result.is_closed = closed_surfaces(mesh, execution);
     assert(are_wound(mesh, cells, result.is_closed));
-    for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
+    std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
+    result.coinciding.resize(count);
+    for (std::size_t t = 0; t < count; ++t) {
         poll(execution.progress, t);
-        const RefinedTriangle& part = parts.triangles[t];
-        result.triangles.push_back(part.corners);
-        result.source.push_back(part.source);
-        result.source_triangle.push_back(part.origin);
         std::int32_t& coinciding = first_part[index(mesh.of_part[t])];
         if (coinciding < 0) coinciding = static_cast<std::int32_t>(t);
-        result.coinciding.push_back(coinciding);
+        result.coinciding[t] = coinciding;
     }
-    result.is_in.resize(parts.triangles.size());
-    for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
-        poll(execution.progress, t);
+    result.triangles.resize(count);
+    result.source.resize(count);
+    result.source_triangle.resize(count);
+    result.is_in.resize(count);
+    parallel_each(count, execution, [&](std::size_t t) {
+        const RefinedTriangle& part = parts.triangles[t];
+        result.triangles[t] = part.corners;
+        result.source[t] = part.source;
+        result.source_triangle[t] = part.origin;
         // the first part of a facet is turned as that is, the others are not asked
         const auto& sides = cells.of_facet[index(mesh.of_part[t])];
         for (std::size_t side = 0; side < 2; ++side) {
@@ -192,9 +178,9 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
                 result.is_in[t][source][side] =
                     result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
         }
-    }
-    find_sub_surfaces(mesh, loops, cells, result, execution.progress);
-    find_sub_blocks(parts.vertices, mesh, cells, result, execution.progress);
+    });
+    find_sub_surfaces(mesh, loops, cells, result, execution);
+    find_sub_blocks(mesh, cells, result, execution.progress);
     result.loops = std::move(loops.loops);
     if (execution.progress != nullptr) execution.progress->report(1.0, nullptr);
     return result;
@@ -219,6 +205,26 @@ std::vector<std::array<std::int32_t, 3>> Refinement::boundary(Operation operatio
         result.push_back(below ? std::array{a, b, c} : std::array{a, c, b});
     }
     return result;
+}
+
+double Refinement::volume(const SubBlock& block) const {
+    const auto at = [&](std::int32_t vertex, std::size_t axis) {
+        const auto first = index(block.triangles[0][0]);
+        return DoubleDoubleInterval::difference(vertices[3 * index(vertex) + axis],
+                                                vertices[3 * first + axis]);
+    };
+    DoubleDoubleInterval sum = 0.0;  // six times the volume
+    for (const auto& t : block.triangles) {
+        std::array<std::array<DoubleDoubleInterval, 3>, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t k = 0; k < 3; ++k)
+                p[i][k] = at(t[i], k);
+        }
+        sum = sum + (p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                     p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                     p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]));
+    }
+    return (sum.high + sum.low) / 6;
 }
 
 }  // namespace realmodel::booleans

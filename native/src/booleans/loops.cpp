@@ -26,12 +26,16 @@ bool is_intersection(const FacetMesh& mesh, std::size_t edge) {
 /// The intersection edges as a graph.
 class LoopGraph {
 public:
-    LoopGraph(const FacetMesh& mesh, std::size_t vertices, Progress* progress) : mesh_(mesh) {
+    LoopGraph(const FacetMesh& mesh, std::size_t vertices, const Execution& execution)
+        : mesh_(mesh) {
         result_.of_edge.assign(mesh.edges.size(), -1);
+        std::vector<std::uint8_t> is_in_loop(mesh.edges.size());
+        parallel_each(mesh.edges.size(), execution,
+                      [&](std::size_t e) { is_in_loop[e] = is_intersection(mesh, e); });
         edges_at_ = bucketize<std::int32_t>(vertices, [&](const auto& put) {
             for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-                poll(progress, e);
-                if (!is_intersection(mesh, e)) continue;
+                poll(execution.progress, e);
+                if (is_in_loop[e] == 0) continue;
                 for (const std::int32_t v : mesh.edges.ends(e))
                     put(index(v), static_cast<std::int32_t>(e));
             }
@@ -85,8 +89,9 @@ private:
 
 }  // namespace
 
-IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress) {
-    return LoopGraph(mesh, vertices, progress).run(progress);
+IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices,
+                             const Execution& execution) {
+    return LoopGraph(mesh, vertices, execution).run(execution.progress);
 }
 
 }  // namespace realmodel::booleans

@@ -18,6 +18,7 @@ struct IntersectionLoops {
 /// there all of its facets are of both.
 /// @param vertices  how many there are
 /// @throws Cancelled
-IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress);
+IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices,
+                             const Execution& execution);
 
 }  // namespace realmodel::booleans

@@ -161,8 +161,8 @@ void note_meeting(const CutterSurface& surface, const spatial::BoxTree& tree,
     };
     // of two that meet already nothing has to be asked: what is noted is the same in any order
     parallel_ranges(tree.leaf_count(), 1 << 6, execution, [&](std::size_t begin, std::size_t end) {
-        tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t k) {
-            const std::size_t one = index(i), other = index(k);
+        tree.find_pairs(begin, end, [&](std::size_t i, std::size_t k) {
+            const std::size_t one = index(tree.number_at(i)), other = index(tree.number_at(k));
             if ((does_meet(one) && does_meet(other)) ||
                 are_surely_apart(surface, surface.triangles[one], surface.triangles[other]))
                 return;

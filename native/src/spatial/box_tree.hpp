@@ -90,26 +90,39 @@ public:
     void approach(const Box::Position& p, const Bound& bound, const Visit& visit) const {
         if (!nodes_.empty()) approach(0, p, bound, visit);
     }
-    /// Calls visit(number, other) for each two boxes that meet, once: those of which the first in
+    /// Calls visit(place, other) for each two boxes that meet, once: those of which the first in
     /// the order of the leaves is in some of them, from 0 to leaf_count() - 1. Always in the same
     /// order, the pairs of a first box one after another.
     template <class Visit>
     void find_pairs(std::size_t first_leaf, std::size_t end_leaf, const Visit& visit) const {
-        std::vector<const Node*> near;
+        constexpr std::size_t kTogether = 8;  // leaves that share a search
+        std::vector<const Node*> near_all, near;
         for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
             const Node& own = nodes_[leaves_[leaf]];
+            if ((leaf - first_leaf) % kTogether == 0) {
+                Box all;
+                for (std::size_t i = leaf; i < std::min(end_leaf, leaf + kTogether); ++i)
+                    all.include(nodes_[leaves_[i]].box);
+                near_all.clear();
+                each_leaf(
+                    all, [&](const Node& other) { near_all.push_back(&other); }, own.begin);
+            }
             near.clear();
-            each_leaf(
-                own.box, [&near](const Node& other) { near.push_back(&other); }, own.begin);
+            for (const Node* other : near_all) {
+                if (other->end > own.begin && other->box.meets(own.box)) near.push_back(other);
+            }
             for (std::size_t i = own.begin; i < own.end; ++i) {
                 for (const Node* other : near) {
+                    if (!boxes_[i].meets(other->box)) continue;
                     for (std::size_t j = std::max(i + 1, other->begin); j < other->end; ++j) {
-                        if (boxes_[i].meets(boxes_[j])) visit(order_[i], order_[j]);
+                        if (boxes_[i].meets(boxes_[j])) visit(i, j);
                     }
                 }
             }
         }
     }
+    /// The number of the box at a place in the order of the leaves.
+    std::int32_t number_at(std::size_t place) const { return order_[place]; }
     std::size_t leaf_count() const { return leaves_.size(); }
     bool any(const Box& box) const {
         return any(box, [](std::int32_t) { return true; });

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "small_meshes.hpp"
 
 namespace realmodel::booleans {
@@ -32,6 +34,40 @@ TEST(ExactDivision, WhatSharesAnEdgeOrACornerMeetsInOrder) {
     EXPECT_TRUE(Divided(square({0, 0, 0}, 2), square({2, 2, 0}, 2)).division.meetings().empty());
     EXPECT_TRUE(Divided(square({0, 0, 0}, 2), upright({0, 0, 0}, 2)).division.meetings().empty());
     EXPECT_TRUE(Divided(square({0, 0, 0}, 2), square({0, 0, 0}, 2)).division.meetings().empty());
+}
+
+/// Ten triangles around a point, which go round it so often, seen along an axis, to the left or
+/// (-1) right. Twice around it, two of them cross.
+Mesh fan(int rounds, std::size_t axis, int turn_of_all) {
+    Mesh mesh{{0, 0, 0}, {}};
+    for (int i = 0; i < 10; ++i) {
+        const double turn = (i + 0.5) / 10 * rounds * 2 * std::numbers::pi;
+        std::array<double, 3> at{};
+        at[(axis + 1) % 3] = std::cos(turn);
+        at[(axis + 2) % 3] = turn_of_all * std::sin(turn);
+        at[axis] = 0.3 * std::sin(turn / rounds);
+        mesh.vertices.insert(mesh.vertices.end(), at.begin(), at.end());
+        mesh.triangles.insert(mesh.triangles.end(), {0, 1 + i, 1 + (i + 1) % 10});
+    }
+    return mesh;
+}
+
+TEST(ExactDivision, NeighborsThatOverlapMeet) {
+    const Mesh far = square({9, 9, 9}, 1);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const int turn : {1, -1}) {
+            EXPECT_TRUE(Divided(fan(1, axis, turn), far).division.meetings().empty());
+            EXPECT_EQ(Divided(fan(2, axis, turn), far).division.meetings().size(), 1U);
+        }
+        // a triangle that ends beyond where the next one begins
+        Mesh torn = fan(1, axis, 1);
+        torn.triangles[2] = 11;
+        torn.vertices.insert(torn.vertices.end(), torn.vertices.begin() + 9,
+                             torn.vertices.begin() + 12);
+        torn.vertices[33 + axis] = -1;
+        torn.vertices[3 + axis] = 2;
+        EXPECT_EQ(Divided(torn, far).division.meetings().size(), 1U);
+    }
 }
 
 TEST(ExactDivision, PiecesAreDividedWhereTheyCross) {

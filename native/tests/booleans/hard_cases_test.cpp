@@ -108,7 +108,7 @@ TEST(IntersectHard, ASingleTriangleInACube) {
     EXPECT_EQ(r.triangles.size(), 13U);
     EXPECT_TRUE(r.loops.empty());
     ASSERT_EQ(r.sub_blocks.size(), 1U);  // a sheet within a solid does not divide it
-    EXPECT_DOUBLE_EQ(r.sub_blocks[0].volume, 8);
+    EXPECT_DOUBLE_EQ(r.volume(r.sub_blocks[0]), 8);
     const Mesh across{{-1, -1, 1, 5, -1, 1, -1, 5, 1}, {0, 1, 2}};
     EXPECT_EQ(intersect(a.view(), across.view()).sub_blocks.size(), 2U);
     EXPECT_TRUE(intersect(inside.view(), across.view()).loops.empty());

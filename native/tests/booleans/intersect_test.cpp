@@ -77,7 +77,7 @@ TEST(Intersect, ACubeInACube) {
     EXPECT_EQ(v.second_only, 0);
     EXPECT_TRUE(r.loops.empty());
     ASSERT_EQ(r.sub_blocks.size(), 2U);
-    EXPECT_DOUBLE_EQ(r.sub_blocks[0].volume, 26);
+    EXPECT_DOUBLE_EQ(r.volume(r.sub_blocks[0]), 26);
     EXPECT_EQ(r.sub_blocks[0].is_in, (std::array{true, false}));
     EXPECT_EQ(r.sub_blocks[1].is_in, (std::array{true, true}));
 }
@@ -126,7 +126,7 @@ TEST(Intersect, ASheetDividesACube) {
     const Mesh a = cube({0, 0, 0}, 2), sheet = square({-1, -1, 0.5}, 4);
     const Refinement r = intersect(a.view(), sheet.view());
     ASSERT_EQ(r.sub_blocks.size(), 2U);
-    std::multiset<double> found{r.sub_blocks[0].volume, r.sub_blocks[1].volume};
+    std::multiset<double> found{r.volume(r.sub_blocks[0]), r.volume(r.sub_blocks[1])};
     EXPECT_EQ(found, (std::multiset<double>{2, 6}));
     for (const SubBlock& block : r.sub_blocks) {
         EXPECT_EQ(block.is_in, (std::array{true, false}));

@@ -13,7 +13,7 @@ struct FoundLoops {
     FoundLoops(const Mesh& p, const Mesh& q)
         : parts(refine({p.view(), q.view()}, {1})),
           mesh(facets_of(parts, {1})),
-          loops(find_loops(mesh, parts.vertices.size(), nullptr)) {}
+          loops(find_loops(mesh, parts.vertices.size(), {})) {}
     RefinedTriangles parts;
     FacetMesh mesh;
     IntersectionLoops loops;

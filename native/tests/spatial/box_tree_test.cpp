@@ -43,8 +43,8 @@ TEST(BoxTree, FindsPairsOnce) {
         std::vector<std::array<std::int32_t, 2>> found, expected;
         for (std::size_t leaf = 0; leaf < tree.leaf_count(); leaf += 3) {
             tree.find_pairs(leaf, std::min(leaf + 3, tree.leaf_count()),
-                            [&](std::int32_t i, std::int32_t j) {
-                                found.push_back({std::min(i, j), std::max(i, j)});
+                            [&](std::size_t i, std::size_t j) {
+                                found.push_back(unordered(tree.number_at(i), tree.number_at(j)));
                             });
         }
         std::sort(found.begin(), found.end());

@@ -170,8 +170,10 @@ class Intersection:
         rows, is_turned = self.boundary(operation)
         triangles = self.triangles[rows]
         triangles[is_turned] = triangles[is_turned][:, [0, 2, 1]]
-        used, triangles = np.unique(triangles, return_inverse=True)
-        return self.vertices[used], triangles.reshape(-1, 3).astype(np.int32)
+        is_used = np.zeros(len(self.vertices), bool)
+        is_used[triangles] = True
+        number = np.cumsum(is_used, dtype=np.int32) - 1
+        return self.vertices[is_used], number[triangles]
 
     def _open(self, number: int) -> InputRefused:
         edges, uses = self._border(number)

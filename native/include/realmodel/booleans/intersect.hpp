@@ -35,7 +35,6 @@ struct SubSurface {
 /// A bounded part of space that surfaces enclose and none of them divides.
 struct SubBlock {
     std::vector<std::array<std::int32_t, 3>> triangles;  ///< closed, seen from outside
-    double volume;
     std::array<bool, 2> is_in;  ///< whether it is inside of the first, of the second surface
 };
 
@@ -55,6 +54,7 @@ struct Refinement {
     /// The boundary of what an operation on two solids leaves, seen from outside.
     /// @throws InputError kind not_closed (surface: which) where one of them is no solid
     std::vector<std::array<std::int32_t, 3>> boundary(Operation operation) const;
+    double volume(const SubBlock& block) const;
 
     /// Of each triangle, whether it is inside of the first and of the second surface just below it
     /// (where it is seen clockwise from), and just above. Of triangles that coincide the first
