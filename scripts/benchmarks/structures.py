@@ -66,8 +66,8 @@ def _sphere(rings: int) -> tuple[np.ndarray, np.ndarray]:
     return make_sphere(rings, (0.5, 0.5, 0.2), 0.3)
 
 
-def ours_cut(spec: dict, rings: int, threads: int) -> dict:
-    """The columns of a stack cut by a sphere of 4 rings (rings - 1) triangles: both halves."""
+def ours_cut(spec: dict, cells: str, rings: int, threads: int) -> dict:
+    """The cells of a stack cut by a sphere of 4 rings (rings - 1) triangles: both halves."""
     from realmodel.core import Project, Rock, Surface, build
     from realmodel.core.model.cutting import cut_by_surface
 
@@ -75,7 +75,7 @@ def ours_cut(spec: dict, rings: int, threads: int) -> dict:
         Surface(f"S{number}", vertices, triangles)
         for number, (vertices, triangles) in enumerate(StackSpec(**spec).make())
     ]
-    model = build(Project("stack", [Rock("rock", surfaces, base_elevation=_BOTTOM)]), cells="columns")
+    model = build(Project("stack", [Rock("rock", surfaces, base_elevation=_BOTTOM)]), cells=cells)
     sphere = _sphere(rings)
     began, before = time.perf_counter(), time.process_time()
     halves = cut_by_surface(model, *sphere, threads=threads)

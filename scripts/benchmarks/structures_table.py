@@ -49,9 +49,11 @@ def measure(quick: bool, memory: float, say: Callable[[str], None]):
             without = found if count == 0 else without
             faulted.append(row)
             say(" | ".join(row))
-    for quads, rings, asked in ((40, 20, None),) if quick else ((100, 45, 1.25), (300, 142, 11.0)):
-        cuts.append(_cut(quads, rings, asked, memory))
-        say(" | ".join(cuts[-1]))
+    sizes = [(40, 20, None)] if quick else [(100, 45, 1.25), (300, 142, 11.0)]
+    for cells in ("columns", "blocks"):
+        for quads, rings, asked in sizes:
+            cuts.append(_cut(quads, cells, rings, asked if cells == "columns" else None, memory))
+            say(" | ".join(cuts[-1]))
     return faulted, cuts
 
 
@@ -81,11 +83,11 @@ def _faulted(plan: str, cells: str, count: int, without, quads: int, memory: flo
     return row, found
 
 
-def _cut(quads: int, rings: int, asked: float | None, memory: float) -> list[str]:
+def _cut(quads: int, cells: str, rings: int, asked: float | None, memory: float) -> list[str]:
     spec = {"surfaces": 10, "quads": quads}
-    name = f"10 x {2 * quads * quads:,}, columns, by a sphere of {4 * rings * (rings - 1):,} triangles"
+    name = f"10 x {2 * quads * quads:,}, {cells}, by a sphere of {4 * rings * (rings - 1):,} triangles"
     try:
-        ours = alone("structures.ours_cut", spec, rings, _THREADS, memory=memory)
+        ours = alone("structures.ours_cut", spec, cells, rings, _THREADS, memory=memory)
     except Skipped as why:
         return [name, *["-"] * 7, f"SKIPPED: {why}"]
     try:

@@ -218,10 +218,10 @@ void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
 void SurfaceParts::collect_uses(Progress* progress) {
     constexpr std::size_t kChunk = 1 << 10;
     const std::size_t count = patches_.size() + caps_.size();
-    auto sorted = sorted_in_buckets<SlotUse>(
-        overlay_.model().cell_count(), (count + kChunk - 1) / kChunk,
+    uses_ = sorted_in_buckets<SlotUse>(
+        overlay_.node_count(), (count + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
-            const auto visit = [&put](const SlotUse& use) { put(index(use.cell), use); };
+            const auto visit = [&put](const SlotUse& use) { put(index(use.use.edge[0]), use); };
             for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
                 if (i < patches_.size()) {
                     each_use(patches_[i], visit);
@@ -231,7 +231,6 @@ void SurfaceParts::collect_uses(Progress* progress) {
             }
         },
         {overlay_.threads(), progress});
-    uses_ = std::move(sorted.values);
 }
 
 void SurfaceParts::make_caps() {
@@ -353,16 +352,30 @@ void SurfaceParts::join_parts(Progress* progress) {
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
     collect_uses(progress);
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        poll(progress, begin);
-        while (end < uses_.size() && uses_[end].is_beside(uses_[begin]))
-            ++end;
-        if (!is_divided(index(uses_[begin].cell))) continue;
-        if (end - begin == 2) {
-            joined_->join(uses_[begin].slot, uses_[begin + 1].slot);
-        } else {
-            join_round_edge({uses_.data() + begin, end - begin});
+    const auto each_edge_of_cells = [&](std::size_t node, const auto& visit) {
+        const auto uses = uses_[node];
+        for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+            while (end < uses.size() && uses[end].is_beside(uses[begin]))
+                ++end;
+            if (is_divided(index(uses[begin].cell))) visit(uses.subspan(begin, end - begin));
         }
+    };
+    std::vector<std::uint8_t> has_many(uses_.size());  // which take points that are added
+    parallel_each(uses_.size(), {overlay_.threads(), progress}, [&](std::size_t node) {
+        each_edge_of_cells(node, [&](std::span<const SlotUse> uses) {
+            if (uses.size() == 2) {
+                joined_->join(uses[0].slot, uses[1].slot);
+            } else {
+                has_many[node] = 1;
+            }
+        });
+    });
+    for (std::size_t node = 0; node < uses_.size(); ++node) {
+        poll(progress, node);
+        if (has_many[node] == 0) continue;
+        each_edge_of_cells(node, [&](std::span<const SlotUse> uses) {
+            if (uses.size() != 2) join_round_edge(uses);
+        });
     }
 }
 

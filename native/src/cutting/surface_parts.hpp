@@ -84,6 +84,7 @@ private:
         EdgeUse use;
         std::int32_t slot;
         bool operator<(const SlotUse& other) const {
+            if (use.key() != other.use.key()) return use.key() < other.use.key();
             if (half_of_cell() != other.half_of_cell())
                 return half_of_cell() < other.half_of_cell();
             if (use < other.use) return true;
@@ -131,7 +132,8 @@ private:
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
     std::vector<CapPlace> cap_places_;  ///< in the order of the surface's triangles
-    Array<SlotUse> uses_;               ///< in order: those of one cell, half and edge side by side
+    /// By the lesser nodes of edges, in order: those of one edge, cell and half side by side.
+    Buckets<SlotUse> uses_;
     std::optional<DisjointSets> joined_;  ///< slots of the same part
     std::vector<std::int32_t> part_;      ///< of slots
     bool has_joined_across_ = false;      ///< some parts are of several cells

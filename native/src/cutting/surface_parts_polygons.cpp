@@ -267,13 +267,14 @@ void SurfaceParts::write_caps(Progress* progress) {
 void SurfaceParts::find_touches(Progress* progress) {
     // part and ends; of parts within one cell, two uses of an edge side by side are not too many
     std::vector<std::array<std::int32_t, 3>> edges;
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        const SlotUse& first = uses_[begin];
-        while (end < uses_.size() && uses_[end].is_beside(first))
+    const auto& uses = uses_.values;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        const SlotUse& first = uses[begin];
+        while (end < uses.size() && uses[end].is_beside(first))
             ++end;
         if (!has_joined_across_ && end - begin <= 2) continue;
         for (std::size_t i = begin; i < end; ++i)
-            edges.push_back({part_[index(uses_[i].slot)], first.use.edge[0], first.use.edge[1]});
+            edges.push_back({part_[index(uses[i].slot)], first.use.edge[0], first.use.edge[1]});
     }
     parallel_sort(edges, std::less<>(), {overlay_.threads(), progress});
     for (std::size_t i = 2; i < edges.size(); ++i) {

@@ -208,13 +208,34 @@ std::optional<int> orient2d_in(const HomogeneousPoints<Integer>& in, std::size_t
     return sign_of(found) * sign_of(at[1].weight) * sign_of(at[2].weight);
 }
 
+/// The lexicographic order of coordinates from axis `first` on, before `end`.
 template <class Integer>
-std::optional<int> compare_in(const HomogeneousPoints<Integer>& in, std::size_t axis,
-                              SpacePointId a, SpacePointId b) {
+std::optional<int> compare_in(const HomogeneousPoints<Integer>& in, std::size_t first,
+                              std::size_t end, SpacePointId a, SpacePointId b) {
     const auto p = in.point(a), q = in.point(b);
-    const Integer found = in.times(p.at[axis], q) - in.times(q.at[axis], p);
-    if (!is_known(found)) return std::nullopt;
-    return sign_of(found) * sign_of(p.weight) * sign_of(q.weight);
+    for (std::size_t axis = first; axis < end; ++axis) {
+        const Integer found = in.times(p.at[axis], q) - in.times(q.at[axis], p);
+        if (!is_known(found)) return std::nullopt;
+        if (const int sign = sign_of(found)) return sign * sign_of(p.weight) * sign_of(q.weight);
+    }
+    return 0;
+}
+
+int compare(const SpacePoints& points, std::size_t first, std::size_t end, SpacePointId a,
+            SpacePointId b) {
+    if (a == b) return 0;
+    for (std::size_t axis = first; axis < end; ++axis) {
+        const double x = points.rounded(a)[axis], y = points.rounded(b)[axis];
+        if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
+        if (points.is_double(a) && points.is_double(b)) continue;
+        const auto apart = difference(interval(points, a, axis), interval(points, b, axis));
+        const auto sign = apart.sign();
+        if (sign == 0) continue;
+        if (sign) return *sign;
+        return by_integers(points, std::array{a, b},
+                           [&](auto&& in) { return compare_in(in, axis, end, a, b); });
+    }
+    return 0;
 }
 
 }  // namespace
@@ -262,21 +283,11 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
 }
 
 int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b) {
-    if (a == b) return 0;
-    const double x = points.rounded(a)[axis], y = points.rounded(b)[axis];
-    if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
-    if (points.is_double(a) && points.is_double(b)) return 0;
-    const auto apart = difference(interval(points, a, axis), interval(points, b, axis));
-    if (const auto sign = apart.sign()) return *sign;
-    return by_integers(points, std::array{a, b},
-                       [&](auto&& in) { return compare_in(in, axis, a, b); });
+    return compare(points, axis, axis + 1, a, b);
 }
 
 int compare(const SpacePoints& points, SpacePointId a, SpacePointId b) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (const int order = compare(points, axis, a, b)) return order;
-    }
-    return 0;
+    return compare(points, 0, 3, a, b);
 }
 
 int ray_crosses(const SpacePoints& points, std::size_t axis, SpacePointId p,

@@ -39,21 +39,24 @@ def case(seed, number, families, kind=None):
 
 def save(path, kind, model, cutter):
     """Writes model and cutter, so that they stay what they are when building changes."""
-    arrays = {f"model_{name}": value for name, value in model.items()}
-    arrays |= {f"cutter_{i}": array for i, array in enumerate(cutter)}
-    np.savez_compressed(path, kind=kind, **arrays)
+    arrays = {}
+    for part, values in (("model", model), *((f"cutter_{i}", value) for i, value in enumerate(cutter))):
+        for name, value in values.items() if isinstance(values, dict) else [(None, values)]:
+            arrays[part if name is None else f"{part}_{name}"] = np.asarray(value)
+    np.savez_compressed(path, kind=kind, **{name: a for name, a in arrays.items() if a.dtype != object})
 
 
 def load(path):
     """(kind, model, cutter) of a file that save() wrote."""
     with np.load(path) as file:
-        model = {
-            name.removeprefix("model_"): file[name] if file[name].ndim else file[name].item()
-            for name in file.files
-            if name.startswith("model_")
-        }
-        cutter = [file[f"cutter_{i}"] for i in range(sum(n.startswith("cutter_") for n in file.files))]
-        return file["kind"].item(), model, cutter
+        values = {name: file[name] if file[name].ndim else file[name].item() for name in file.files}
+
+    def part(name):
+        below = {key.removeprefix(f"{name}_"): values[key] for key in values if key.startswith(f"{name}_")}
+        return values.get(name, below)
+
+    cutter = [part(f"cutter_{i}") for i in range(2)]
+    return values["kind"], part("model"), cutter
 
 
 def _area(section):

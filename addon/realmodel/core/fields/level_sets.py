@@ -17,7 +17,6 @@ from .lattice import ScalarField
 _Field = TypeVar("_Field", bound=ScalarField)
 _SHARED = 0.1  # of what contacts miss their levels by: where more is left at first they share corners
 _ROUNDS = 10  # in which what is left is made less
-_REFINEMENTS = 40  # times that tetrahedra are halved
 _LEAST = 2.0**-10  # of the edges of the lattice: shorter ones are not halved
 _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss its level by
 
@@ -60,7 +59,7 @@ def fields_with_contacts(
         solve = native_module().values_through
         return work.native(solve, made.values, corners, weights, levels, rounds)
 
-    for left in reversed(range(_REFINEMENTS)):
+    while True:
         corners, weights = made.tetrahedra()
         missed = [np.abs(through(corners, weights, rounds)[1]) for rounds in (0, 1)]
         off = (missed[1] > _BESIDE * np.ptp(made.values[corners], axis=1)) & (missed[1] > _SHARED * missed[0])
@@ -68,7 +67,7 @@ def fields_with_contacts(
         if not len(ends):
             found, _ = through(corners, weights, _ROUNDS)
             ends = made.halved(corners[made.missed(made.fields_through(found, levels))])
-        if left == 0 or not made.add_middles(ends):
+        if not made.add_middles(ends):
             break
     corners, weights = made.tetrahedra()
     found, _ = through(corners, weights, _ROUNDS)
