@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/base/memory.hpp"
 
-#if __has_include(<malloc.h>)
-#include <malloc.h>
-#endif
 #if __has_include(<sys/resource.h>)
 #include <sys/resource.h>
 #include <unistd.h>
@@ -114,14 +111,6 @@ std::uint64_t left_by_address_space() {
 
 std::uint64_t available_memory() {
     return std::min({left_by_machine(), left_by_groups(), left_by_address_space()});
-}
-
-void give_back_memory() noexcept {
-#ifdef __GLIBC__
-    malloc_trim(0);
-#elif defined(_WIN32)
-    _heapmin();
-#endif
 }
 
 }  // namespace realmodel

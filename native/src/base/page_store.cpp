@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/base/page_store.hpp"
 
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 #include <new>
+
+#include "realmodel/base/memory.hpp"
 
 namespace realmodel::page_store {
 
@@ -56,6 +62,10 @@ public:
     std::size_t kept() {
         const std::lock_guard lock(busy_);
         return kept_bytes_;
+    }
+    void give_back() {
+        const std::lock_guard lock(busy_);
+        give_up(0);
     }
     void add_keeper() {
         const std::lock_guard lock(busy_);
@@ -138,3 +148,12 @@ Keeper::~Keeper() {
 }
 
 }  // namespace realmodel::page_store
+
+void realmodel::give_back_memory() noexcept {
+    page_store::store().give_back();
+#ifdef __GLIBC__
+    malloc_trim(0);
+#elif defined(_WIN32)
+    _heapmin();
+#endif
+}

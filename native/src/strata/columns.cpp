@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "realmodel/base/memory.hpp"
 #include "strata/cells/cell_building.hpp"
 #include "strata/overlay/facet_overlay.hpp"
 #include "strata/overlay/rock_footprints.hpp"
@@ -15,6 +16,8 @@
 namespace realmodel::strata {
 
 namespace {
+
+constexpr std::size_t kManyPoints = 1000000;
 
 /// The tilings e_k of a rock mass, from the youngest to the oldest.
 class TilingSequence {
@@ -110,10 +113,13 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
                    share / count, "intersecting the surfaces");
         SurfaceTiling tiling = tilings.take(k);
         if (site.window) clip_to_window(site, rock, tiling, execution.progress);
-        envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
-                                        : overlay_columns(site.geometry, envelope, {tiling, k},
-                                                          construction, wanted, execution);
+        envelope = envelope.size() == 0
+                       ? initial_envelope(tiling, k)
+                       : overlay_columns(site.geometry, std::move(envelope), {tiling, k},
+                                         construction, wanted, execution);
         tilings.give_back(std::move(tiling));
+        // What input and chunks leave unused is scattered; giving it back takes time.
+        if (k % 4 == 2 && site.geometry.point_count() > kManyPoints) give_back_memory();
     }
     finish_rock(site, rock, envelope, construction);
     construction.count_blocks_from(first_node, rock.first_surface);

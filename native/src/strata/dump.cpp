@@ -25,7 +25,8 @@ std::string group_name(std::int32_t surface) {
 }
 
 /// Polygons of a pool, each in its plane, in groups by surface.
-void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
+template <class Pool>
+void dump_polygons(const PlanArrangement& geometry, const Pool& polygons,
                    const Array<PlaneId>& plane, const Array<std::int32_t>& surface,
                    const char* path) {
     std::map<std::int32_t, std::vector<std::size_t>> of_surface;
@@ -39,7 +40,8 @@ void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
         file.begin_group(number < 0 ? group_name(kBase) : group_name(number));
         for (const std::size_t p : members) {
             corners.clear();
-            for (const Corner& corner : polygons[p]) {
+            const auto& polygon = polygons[p];
+            for (const Corner& corner : polygon) {
                 const auto [x, y] = local.rounded(corner.point);
                 corners.push_back({x, y, local.rounded_height(plane[p], corner.point)});
             }

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/parallel_counts.hpp"
+#include "realmodel/base/memory.hpp"
 
 namespace realmodel::strata {
 
@@ -118,8 +119,10 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
     complex.face_offsets[face_count] = static_cast<std::int64_t>(complex.face_vertices.size());
     complex.face_cells.resize(face_count);
     complex.face_surface.resize(face_count);
+    give_back_memory();
     surface_faces.copy(surface_of_plane, complex);
     conformed = {};
+    give_back_memory();
     parallel_chunks(walls.size(), execution, [&](std::size_t batch) {
         copy_walls(walls[batch], faces.size() + first_wall[batch],
                    corners_of_faces + first_corner[batch], complex);

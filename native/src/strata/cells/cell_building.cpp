@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "realmodel/base/memory.hpp"
 #include "strata/cells/assembly.hpp"
 #include "strata/cells/closedness.hpp"
 #include "strata/cells/distinct_positions.hpp"
@@ -32,9 +31,9 @@ struct Conformed {
 
 /// Repeats the steps until no two columns cross in height between the vertices of a line; the
 /// second round is the last one.
-Conformed conform(exact::PlanArrangement& geometry, const Construction& construction,
+Conformed conform(exact::PlanArrangement& geometry, Construction& construction,
                   const BlockLinks* blocks, const Execution& execution) {
-    const FaceList& faces = construction.faces;
+    FaceList& faces = construction.faces;
     Conformed c;
     c.done = kOverlayDone;
     for (int round = 0;; ++round) {
@@ -52,7 +51,8 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
             blocks == nullptr && !construction.is_local ? &construction.node_is_thick : nullptr,
             execution);
         next(0.3, "rounding");
-        c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, execution);
+        c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, execution,
+                                    blocks == nullptr ? &faces.polygons.points : nullptr);
         next(0.1, "building walls");
         std::optional<BlockLines> of_blocks;
         if (blocks != nullptr)
@@ -61,6 +61,8 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
         c.walls = find_walls(geometry, faces, lines, c.conformed, of_blocks ? &*of_blocks : nullptr,
                              execution);
         if (c.walls.missing.empty()) return c;
+        if (blocks == nullptr)
+            faces.polygons.points = points_of_corners(c.plan_vertices, c.conformed, execution);
         c.crossings.insert(c.crossings.end(), c.walls.missing.begin(), c.walls.missing.end());
     }
 }
@@ -82,13 +84,15 @@ Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex)
 BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
                        const std::optional<Window>& window, const Execution& execution) {
-    // The peak of memory is still to come, and what chunks of overlays were made in is free.
     geometry.forget_names();
-    constexpr std::size_t kManyPoints = 1000000;
-    if (geometry.point_count() > kManyPoints) give_back_memory();
     Conformed c = conform(geometry, construction, blocks, execution);
-    set_plan_positions(geometry, c.plan_vertices, execution);
     FaceList& faces = construction.faces;
+    if (blocks == nullptr) {  // no round will ask for corners again
+        faces.polygons.lines = {};
+        faces.surface = {};
+        c.plan_vertices.of_point = {};
+    }
+    set_plan_positions(geometry, c.plan_vertices, execution);
     if (construction.may_lack_nodes) {
         for (auto* nodes : {&faces.above, &faces.below})
             std::replace(nodes->begin(), nodes->end(), kLeftOut, kOutsideCell);
@@ -100,11 +104,7 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     }
     Array<PlanOffset> plan_off = find_plan_offsets(geometry, c.plan_vertices, execution);
     // What comes out takes the memory of what it was made of.
-    if (blocks == nullptr) {
-        c.conformed.entries = {};
-        geometry.forget_all();
-        faces.surface = {};
-    }
+    if (blocks == nullptr) geometry.forget_all();
     begin_step(execution.progress, c.done, 1.0 - c.done, "putting the cells together");
     set_vertex_positions(c.plan_vertices, c.conformed, execution);
     Array<std::int32_t> cell_block;
@@ -138,6 +138,7 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     }
     c.plan_vertices = {};
     if (blocks == nullptr) faces.polygons = {};
+    c.conformed.entries = {};
     CellComplex complex = assemble(faces, surface_of_plane, std::move(c.conformed),
                                    std::move(c.walls.walls), std::move(cell_block), execution);
     if (untouched) untouched->add_to(complex, cell_of_node);

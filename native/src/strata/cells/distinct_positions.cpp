@@ -19,8 +19,11 @@ namespace {
 class Spreader {
 public:
     Spreader(const exact::PlanArrangement& geometry, const PlanVertices& plan_vertices,
-             const TileBorder* border)
-        : geometry_(geometry), plan_vertices_(plan_vertices), border_(border) {}
+             ConformedFaces& conformed, const TileBorder* border)
+        : geometry_(geometry),
+          plan_vertices_(plan_vertices),
+          conformed_(conformed),
+          border_(border) {}
 
     bool movable(std::size_t vertex) const {
         return !geometry_.is_vertex(plan_vertices_.representative[vertex]);
@@ -32,8 +35,6 @@ public:
         }
         return plan_vertices_.position[vertex];
     }
-    /// The plan vertices that were moved, and where to.
-    const std::map<std::size_t, PlanPosition>& moved() const { return moved_; }
 
     /// Gives plan vertices in equal positions positions of their own.
     void separate() {
@@ -71,6 +72,9 @@ private:
                     if (border_ != nullptr && !border_->allows(vertex, to)) continue;
                     if (!take(to)) continue;
                     moved_[vertex] = to;
+                    for (auto v = conformed_.vertex_offsets[vertex];
+                         v < conformed_.vertex_offsets[vertex + 1]; ++v)
+                        std::ranges::copy(to, conformed_.positions[index(v)].begin());
                     return;
                 }
             }
@@ -79,6 +83,7 @@ private:
 
     const exact::PlanArrangement& geometry_;
     const PlanVertices& plan_vertices_;
+    ConformedFaces& conformed_;
     const TileBorder* border_;
     std::map<std::size_t, PlanPosition> moved_;
     std::set<PlanPosition> taken_;  ///< besides the plan vertices' own positions
@@ -86,7 +91,7 @@ private:
 
 struct Extent {
     PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    void include(const PlanPosition& p) {
+    void include(const std::array<double, 3>& p) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
             low[axis] = std::min(low[axis], p[axis]);
             high[axis] = std::max(high[axis], p[axis]);
@@ -98,12 +103,9 @@ struct Extent {
 /// Finds cells whose plan vertices all have one x, or one y, and spreads them.
 class FlatCells {
 public:
-    FlatCells(const FaceList& faces, const PlanVertices& plan_vertices, Spreader& spreader,
+    FlatCells(const FaceList& faces, const ConformedFaces& conformed, Spreader& spreader,
               const Execution& execution)
-        : faces_(faces),
-          plan_vertices_(plan_vertices),
-          spreader_(spreader),
-          execution_(execution) {}
+        : faces_(faces), conformed_(conformed), spreader_(spreader), execution_(execution) {}
 
     /// Finds the cells; whether there are any.
     bool find() {
@@ -112,8 +114,9 @@ public:
         // Few, and all of their faces must be flat.
         find_faces();
         extents_.assign(cells_.size(), {});
-        for_each_corner(
-            [&](std::size_t i, std::size_t vertex) { extents_[i].include(spreader_.at(vertex)); });
+        for_each_corner([&](std::size_t i, std::int32_t vertex) {
+            extents_[i].include(conformed_.positions[index(vertex)]);
+        });
         return std::any_of(extents_.begin(), extents_.end(),
                            [](const Extent& e) { return e.is_flat(0) || e.is_flat(1); });
     }
@@ -121,7 +124,8 @@ public:
     bool spread() {
         std::vector<std::array<std::int64_t, 2>> to_move(cells_.size(), {-1, -1});
         bool any = false;
-        for_each_corner([&](std::size_t i, std::size_t vertex) {
+        for_each_corner([&](std::size_t i, std::int32_t corner) {
+            const std::size_t vertex = conformed_.plan_vertex_of(corner);
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 if (!extents_[i].is_flat(axis) || !spreader_.movable(vertex)) continue;
                 to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(vertex));
@@ -147,30 +151,37 @@ public:
     }
 
 private:
-    std::size_t vertex_of(const Corner& corner) const {
-        return index(plan_vertices_.of_point[index(corner.point)]);
-    }
-
-    /// Asks for what will be read of the faces after one: mostly that of two corners.
-    [[gnu::always_inline]] void prefetch_face(std::size_t face) const {
-        const auto first_corner = [&](std::size_t ahead) {
-            const std::size_t f = std::min(face + ahead, faces_.size() - 1);
-            return faces_.polygons.corners.data() + faces_.polygons.offsets[f];
-        };
-        prefetch(&plan_vertices_.of_point[index(first_corner(24)->point)]);
-        const Corner* const near = first_corner(12);
-        prefetch(&plan_vertices_.position[vertex_of(near[0])]);
-        prefetch(&plan_vertices_.position[vertex_of(near[1])]);
-    }
-
-    bool is_flat(PolygonView face) const {
-        const PlanPosition& first = spreader_.at(vertex_of(face[0]));
-        bool same_x = true, same_y = true;
-        for (std::size_t i = 1; i < face.size() && (same_x || same_y); ++i) {
-            const PlanPosition& next = spreader_.at(vertex_of(face[i]));
-            same_x = same_x && next[0] == first[0];
-            same_y = same_y && next[1] == first[1];
+    /// Calls visit(vertex) for the corners of a face until one says false.
+    template <class Visit>
+    void visit_corners(std::size_t face, const Visit& visit) const {
+        const std::uint32_t corner = faces_.polygons.offsets[face],
+                            count = faces_.polygons.offsets[face + 1] - corner,
+                            entry = conformed_.face_offsets[face];
+        const bool passes_none = conformed_.face_offsets[face + 1] - entry == count;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const std::uint32_t own =
+                passes_none ? entry + i : conformed_.entries.first(corner + i);
+            if (!visit(conformed_.vertices[own])) return;
         }
+    }
+
+    /// Asks for the positions of a face after one.
+    [[gnu::always_inline]] void prefetch_face(std::size_t face) const {
+        const std::uint32_t first = conformed_.face_offsets[std::min(face + 12, faces_.size() - 1)];
+        for (std::uint32_t e = first; e < first + 3; ++e)
+            prefetch(&conformed_.positions[index(std::max(conformed_.vertices[e], 0))]);
+    }
+
+    bool is_flat(std::size_t face) const {
+        const std::array<double, 3>* first = nullptr;
+        bool same_x = true, same_y = true;
+        visit_corners(face, [&](std::int32_t vertex) {
+            const auto& next = conformed_.positions[index(vertex)];
+            if (first == nullptr) first = &next;
+            same_x = same_x && next[0] == (*first)[0];
+            same_y = same_y && next[1] == (*first)[1];
+            return same_x || same_y;
+        });
         return same_x || same_y;
     }
 
@@ -193,7 +204,7 @@ private:
     std::vector<std::int32_t> cells_of_flat_faces() const {
         auto cells = collected<std::int32_t>([&](std::size_t f, auto& found) {
             prefetch_face(f);
-            if (!is_flat(faces_.polygons[f])) return;
+            if (!is_flat(f)) return;
             for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                 if (cell != kOutsideCell) found.push_back(cell);
             }
@@ -216,13 +227,15 @@ private:
     template <class Visit>
     void for_each_corner(const Visit& visit) const {
         for (const auto& [i, face] : of_cells_) {
-            for (const Corner& corner : faces_.polygons[face])
-                visit(i, vertex_of(corner));
+            visit_corners(face, [&, cell = i](std::int32_t vertex) {
+                visit(cell, vertex);
+                return true;
+            });
         }
     }
 
     const FaceList& faces_;
-    const PlanVertices& plan_vertices_;
+    const ConformedFaces& conformed_;
     Spreader& spreader_;
     Execution execution_;
     std::vector<std::int32_t> cells_;                            ///< with a flat face, ascending
@@ -235,24 +248,16 @@ private:
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices, ConformedFaces& conformed,
                                     const TileBorder* border, const Execution& execution) {
-    Spreader spreader(geometry, plan_vertices, border);
+    Spreader spreader(geometry, plan_vertices, conformed, border);
     spreader.separate();
     // Moving one cell's vertex may flatten its neighbor; a few rounds settle it.
     constexpr int kRounds = 16;
-    FlatCells flat(faces, plan_vertices, spreader, execution);
+    FlatCells flat(faces, conformed, spreader, execution);
     std::vector<FlatCell> left;
     for (int round = 0; flat.find(); ++round) {
         if (round < kRounds && flat.spread()) continue;
         left = flat.found();
         break;
-    }
-    for (const auto& [vertex, position] : spreader.moved()) {
-        for (auto v = conformed.vertex_offsets[vertex]; v < conformed.vertex_offsets[vertex + 1];
-             ++v) {
-            auto& moved = conformed.positions[static_cast<std::size_t>(v)];
-            moved[0] = position[0];
-            moved[1] = position[1];
-        }
     }
     return left;
 }

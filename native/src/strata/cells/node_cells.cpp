@@ -168,7 +168,7 @@ JoinedWalls join_stretches(std::span<const WallStretch> stretches,
                            std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
                            ConformedFaces& conformed, const Execution& execution) {
     std::vector<std::uint8_t> is_needed(conformed.positions.size(), 0), may_bend(is_needed);
-    for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
+    for (std::size_t c = 0; c < faces.polygons.points.size(); ++c)
         is_needed[static_cast<std::size_t>(conformed.vertices[conformed.entries.first(c)])] = 1;
     for (const ExtraPoint& e : crossings) {
         const auto vertex = index(plan_vertices.of_point[index(e.point)]);

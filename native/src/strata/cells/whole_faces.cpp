@@ -87,7 +87,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
         for (std::size_t f = begin; f < end; ++f) {
             const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
             for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
-                const PointId point = faces.polygons.corners[c].point;
+                const PointId point = faces.polygons.points[c];
                 if (!geometry.is_vertex(point)) continue;
                 const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
                 if (is_base) {

@@ -39,11 +39,11 @@ std::uint64_t mixed(const std::array<double, 3>& key) {
 Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
                           const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
-    const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kLinesAtOnce, execution,
+    const auto& of_edges = faces.polygons.lines;
+    parallel_ranges(of_edges.size(), kLinesAtOnce, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(corners[c].line.id())]);
+                            mark(used[index(of_edges[c].id())]);
                     });
     std::vector<std::size_t> before((used.size() + kLinesAtOnce - 1) / kLinesAtOnce);
     parallel_ranges(used.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {

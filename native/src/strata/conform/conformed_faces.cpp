@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel_counts.hpp"
 #include "strata/conform/vertex_heights.hpp"
@@ -17,25 +18,17 @@ namespace {
 constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
                       kTogether = ConformedFaces::kVerticesTogether;  // at a time
 
-/// What faces have on plan vertices, sorted by plan vertex.
-struct FacesAtVertices {
-    Array<std::uint32_t> offsets;  ///< of each plan vertex
-    /// First the codes of the faces' planes, tentative where they pass tentatively, then which of
-    /// the heights there those have, at last vertices; -1 for what takes up none.
-    Array<std::int32_t> values;
-};
-
 /// The plan vertices that faces pass, entry by entry; their complement where they are passed
 /// tentatively.
 Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertices& plan_vertices,
                                         const CollinearEdges& collinear,
                                         const ConformedFaces& conformed,
                                         const Execution& execution) {
-    const auto& corners = faces.polygons.corners;
-    Array<PlanVertexId> plan_vertex(conformed.entries.first(corners.size()));
-    parallel_ranges(corners.size(), 4 * kFaces, execution, [&](std::size_t begin, std::size_t end) {
+    const auto& points = faces.polygons.points;
+    Array<PlanVertexId> plan_vertex(conformed.entries.first(points.size()));
+    parallel_ranges(points.size(), 4 * kFaces, execution, [&](std::size_t begin, std::size_t end) {
         conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
-            plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
+            plan_vertex[entry] = plan_vertices.of_point[index(points[c])];
         });
     });
     parallel_chunks(collinear.passed.size(), execution, [&](std::size_t chunk) {
@@ -49,81 +42,6 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
         assert(next == passed.vertices.end());
     });
     return plan_vertex;
-}
-
-std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& conformed,
-                          std::size_t face) {
-    return conformed.entries.first(faces.polygons.offsets[face]);
-}
-
-/// Counts entries on each plan vertex. Which of a plan vertex's entries comes first depends on
-/// threads, and few plan vertices have more than a byte can count.
-class VertexCounts {
-public:
-    VertexCounts(std::size_t plan_vertices, std::size_t entries, const Execution& execution)
-        : counts_(zeros<std::uint32_t>(plan_vertices + 1, execution)),
-          number_(entries),
-          more_((entries + kEntries - 1) / kEntries) {}
-
-    void prefetch(std::size_t plan_vertex) const { realmodel::prefetch(&counts_[plan_vertex]); }
-    /// Counts an entry; all of kEntries by one thread, in order.
-    void count(std::size_t entry, std::size_t plan_vertex) {
-        const std::uint32_t before = count_one(counts_[plan_vertex]);
-        number_[entry] = static_cast<std::uint8_t>(std::min(before, kMore));
-        if (before >= kMore) more_[entry / kEntries].push_back({entry, before});
-    }
-    /// How many of its plan vertex were counted before an entry.
-    std::uint32_t number(std::size_t entry) const {
-        if (number_[entry] < kMore) return number_[entry];
-        const auto& more = more_[entry / kEntries];
-        return std::lower_bound(more.begin(), more.end(), std::pair(entry, 0U))->second;
-    }
-    Array<std::uint32_t>& counts() { return counts_; }
-
-private:
-    static constexpr std::uint32_t kMore = 255;
-
-    Array<std::uint32_t> counts_;
-    Array<std::uint8_t> number_;
-    std::vector<std::vector<std::pair<std::size_t, std::uint32_t>>> more_;
-};
-
-/// Sorts the entries by plan vertex.
-/// @param plan_vertex  of each entry; replaced by its index among the sorted ones
-FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_vertex,
-                               std::size_t plan_vertices, const ConformedFaces& conformed,
-                               const Execution& execution) {
-    VertexCounts counts(plan_vertices, plan_vertex.size(), execution);
-    const auto vertex_of = [&](std::size_t entry) {
-        const PlanVertexId p = plan_vertex[entry];
-        return static_cast<std::size_t>(p < 0 ? ~p : p);
-    };
-    parallel_ranges(plan_vertex.size(), kEntries, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                            counts.prefetch(vertex_of(std::min(i + 32, end - 1)));
-                            counts.count(i, vertex_of(i));
-                        }
-                    });
-    running_totals(counts.counts(), UINT32_MAX, execution);
-    FacesAtVertices on;
-    on.values = Array<std::int32_t>(plan_vertex.size());
-    parallel_ranges(faces.size(), kFaces, execution, [&](std::size_t begin, std::size_t end) {
-        std::size_t i = first_entry(faces, conformed, begin);
-        const std::size_t last = first_entry(faces, conformed, end) - 1;
-        for (std::size_t f = begin; f < end; ++f) {
-            const PlaneId plane = faces.plane[f];
-            for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
-                counts.prefetch(vertex_of(std::min(i + 32, last)));
-                prefetch(&on.values[counts.counts()[vertex_of(std::min(i + 16, last))]]);
-                const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
-                on.values[at] = code_of(plane, plan_vertex[i] < 0);
-                plan_vertex[i] = static_cast<std::int32_t>(at);
-            }
-        }
-    });
-    on.offsets = std::move(counts.counts());
-    return on;
 }
 
 /// Asks for what is known of the plan vertices after one. They come in order of position, what they
@@ -146,37 +64,212 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
     }
 }
 
-/// Finds the heights on each plan vertex and replaces planes by ranks.
-void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vertices,
-                  FacesAtVertices& on, ConformedFaces& conformed, const Execution& execution) {
-    conformed.vertex_offsets = Array<std::int32_t>(plan_vertices.size() + 1);
-    conformed.heights.resize((plan_vertices.size() + kTogether - 1) / kTogether);
-    parallel_ranges(
-        plan_vertices.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
-            VertexHeights heights_there(geometry);
-            std::vector<double> all;
-            all.reserve(2 * kTogether);
-            for (std::size_t p = begin; p < end; ++p) {
-                prefetch_points(geometry, plan_vertices, p);
-                heights_there.find(
-                    plan_vertices.representative[p],
-                    {on.values.begin() + on.offsets[p], on.values.begin() + on.offsets[p + 1]});
-                const auto& found = heights_there.heights();
-                all.insert(all.end(), found.begin(), found.end());
-                conformed.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
+/// Finds the heights on each plan vertex and gives entries their vertices. For that the planes of
+/// faces are sorted by plan vertex, those of some plan vertices at a time: all of them would take
+/// as much memory as the faces' corners.
+class VertexNumbering {
+public:
+    /// @param conformed  whose `vertices` are the plan vertices of entries; replaced
+    VertexNumbering(const PlanArrangement& geometry, const FaceList& faces,
+                    const PlanVertices& plan_vertices, ConformedFaces& conformed,
+                    const Execution& execution)
+        : geometry_(geometry),
+          faces_(faces),
+          plan_vertices_(plan_vertices),
+          conformed_(conformed),
+          execution_(execution),
+          runs_((faces.size() + kFaces - 1) / kFaces) {}
+
+    void run() {
+        count();
+        conformed_.vertex_offsets = Array<std::int32_t>(plan_vertices_.size() + 1);
+        conformed_.heights.resize((plan_vertices_.size() + kTogether - 1) / kTogether);
+        const std::size_t heights = conformed_.heights.size();
+        const std::size_t ranges = std::clamp<std::size_t>(heights / kLeast, 1, kMostRanges);
+        std::size_t vertices = 0;
+        for (std::size_t r = 0; r < ranges; ++r) {
+            share_ = 0.2 / static_cast<double>(ranges - r);
+            begin_ = heights * r / ranges * kTogether;
+            end_ = std::min(heights * (r + 1) / ranges * kTogether, plan_vertices_.size());
+            planes_.resize(offsets_[end_] - offsets_[begin_]);
+            sort_planes();
+            find_heights();
+            number_vertices(vertices);
+            take_vertices();
+        }
+        conformed_.vertex_offsets[plan_vertices_.size()] = static_cast<std::int32_t>(vertices);
+    }
+
+private:
+    /// How many ranges of plan vertices at most, and how much of kTogether is in one at least.
+    static constexpr std::size_t kMostRanges = 8, kLeast = 32;
+    /// Instead of an entry's number: it has a larger one; it says where its plane is; it has its
+    /// vertex.
+    static constexpr std::uint8_t kLarge = 253, kSorted = 254, kDone = 255;
+
+    /// The entries of kFaces faces. Their numbers on their plan vertices: which comes first depends
+    /// on threads, and few plan vertices have more than a byte can count.
+    struct Run {
+        std::size_t lowest = SIZE_MAX, highest = 0;  ///< of their plan vertices
+        std::vector<std::uint8_t> number;
+        std::vector<std::pair<std::size_t, std::uint32_t>> large;
+
+        std::uint32_t number_of(std::size_t i) const {
+            if (number[i] < kLarge) return number[i];
+            return std::lower_bound(large.begin(), large.end(), std::pair(i, 0U))->second;
+        }
+    };
+
+    std::size_t first_entry(std::size_t face) const {
+        return conformed_.entries.first(faces_.polygons.offsets[face]);
+    }
+    static std::size_t plan_vertex(std::int32_t value) {
+        return static_cast<std::size_t>(value < 0 ? ~value : value);
+    }
+
+    /// Counts the entries on each plan vertex.
+    void count() {
+        offsets_ = zeros<std::uint32_t>(plan_vertices_.size() + 1, execution_);
+        parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+            Run& run = runs_[begin / kFaces];
+            const std::int32_t* const value = conformed_.vertices.begin() + first_entry(begin);
+            run.number.resize(first_entry(end) - first_entry(begin));
+            for (std::size_t i = 0; i < run.number.size(); ++i) {
+                prefetch(&offsets_[plan_vertex(value[std::min(i + 32, run.number.size() - 1)])]);
+                const std::size_t at = plan_vertex(value[i]);
+                const std::uint32_t before = count_one(offsets_[at]);
+                run.number[i] = static_cast<std::uint8_t>(std::min<std::uint32_t>(before, kLarge));
+                if (before >= kLarge) run.large.emplace_back(i, before);
+                run.lowest = std::min(run.lowest, at);
+                run.highest = std::max(run.highest, at);
             }
-            conformed.heights[begin / kTogether].assign(all.begin(),
-                                                        all.end());  // without room for more
         });
-    running_totals(conformed.vertex_offsets, INT32_MAX, execution);
-}
+        running_totals(offsets_, UINT32_MAX, execution_);
+    }
+
+    /// Calls visit(run, first entry, begin, end) for runs of faces that have plan vertices of the
+    /// range.
+    template <class Visit>
+    void for_each_run(const Visit& visit) {
+        parallel_ranges(
+            faces_.size(), kFaces, execution_,
+            [&](std::size_t begin, std::size_t end) {
+                Run& run = runs_[begin / kFaces];
+                if (run.lowest < end_ && run.highest >= begin_) visit(run, begin, end);
+            },
+            share_);
+    }
+
+    /// Sorts the planes by plan vertex; an entry says where its plane is.
+    void sort_planes() {
+        const std::uint32_t before = offsets_[begin_];
+        for_each_run([&](Run& run, std::size_t begin, std::size_t end) {
+            const std::size_t first = first_entry(begin), last = run.number.size() - 1;
+            std::int32_t* const value = conformed_.vertices.begin() + first;
+            const auto offset = [&](std::size_t i) -> const std::uint32_t& {
+                return offsets_[std::min(plan_vertex(value[std::min(i, last)]), end_)];
+            };
+            std::size_t i = 0;
+            for (std::size_t f = begin; f < end; ++f) {
+                for (const std::size_t next = first_entry(f + 1) - first; i < next; ++i) {
+                    prefetch(&offset(i + 32));
+                    prefetch(planes_.begin() + (offset(i + 16) - before));
+                    const std::size_t p = plan_vertex(value[i]);
+                    if (run.number[i] > kLarge || p < begin_ || p >= end_) continue;
+                    const std::uint32_t at = offsets_[p] - before + run.number_of(i);
+                    planes_[at] = code_of(faces_.plane[f], value[i] < 0);
+                    value[i] = static_cast<std::int32_t>(at);
+                    run.number[i] = kSorted;
+                }
+            }
+        });
+    }
+
+    /// The planes on a plan vertex of the range.
+    std::span<std::int32_t> planes_on(std::size_t p) {
+        return {planes_.begin() + (offsets_[p] - offsets_[begin_]), offsets_[p + 1] - offsets_[p]};
+    }
+
+    /// Finds the heights on the plan vertices and replaces planes by ranks.
+    void find_heights() {
+        parallel_ranges(
+            end_ - begin_, kTogether, execution_,
+            [&](std::size_t first, std::size_t last) {
+                VertexHeights heights_there(geometry_);
+                std::vector<double> all;
+                all.reserve(2 * kTogether);
+                for (std::size_t p = begin_ + first; p < begin_ + last; ++p) {
+                    prefetch_points(geometry_, plan_vertices_, p);
+                    heights_there.find(plan_vertices_.representative[p], planes_on(p));
+                    const auto& found = heights_there.heights();
+                    all.insert(all.end(), found.begin(), found.end());
+                    conformed_.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
+                }
+                conformed_.heights[(begin_ + first) / kTogether].assign(
+                    all.begin(), all.end());  // without room for more
+            },
+            2 * share_);
+    }
+
+    /// Replaces ranks by vertices.
+    /// @param vertices  how many there are of the plan vertices before, and then of these, too
+    void number_vertices(std::size_t& vertices) {
+        std::vector<std::size_t> before;
+        for (std::size_t p = begin_; p < end_; p += kTogether) {
+            before.push_back(vertices);
+            vertices += conformed_.heights[p / kTogether].size();
+        }
+        check_total(vertices, INT32_MAX);
+        parallel_ranges(
+            end_ - begin_, kTogether, execution_,
+            [&](std::size_t first, std::size_t last) {
+                auto vertex = static_cast<std::int32_t>(before[first / kTogether]);
+                for (std::size_t p = begin_ + first; p < begin_ + last; ++p) {
+                    for (std::int32_t& rank : planes_on(p))
+                        rank += rank < 0 ? 0 : vertex;
+                    vertex += std::exchange(conformed_.vertex_offsets[p], vertex);
+                }
+            },
+            share_);
+    }
+
+    /// Gives the entries that say where their planes were the vertices that are there now.
+    void take_vertices() {
+        for_each_run([&](Run& run, std::size_t begin, std::size_t) {
+            std::int32_t* const value = conformed_.vertices.begin() + first_entry(begin);
+            for (std::size_t i = 0; i < run.number.size(); ++i) {
+                const std::size_t ahead = std::min(i + 32, run.number.size() - 1);
+                if (run.number[ahead] == kSorted)
+                    prefetch(&planes_[static_cast<std::uint32_t>(value[ahead])]);
+                if (run.number[i] != kSorted) continue;
+                value[i] = planes_[static_cast<std::uint32_t>(value[i])];
+                run.number[i] = kDone;
+            }
+            if (run.highest < end_) run = {};
+        });
+    }
+
+    const PlanArrangement& geometry_;
+    const FaceList& faces_;
+    const PlanVertices& plan_vertices_;
+    ConformedFaces& conformed_;
+    Execution execution_;
+    std::vector<Run> runs_;
+    Array<std::uint32_t> offsets_;     ///< of each plan vertex, how many entries come before
+    std::size_t begin_ = 0, end_ = 0;  ///< the range of plan vertices
+    double share_ = 0;                 ///< of the progress, of a loop over it
+    /// Of the range, by plan vertex: first the codes of the faces' planes, tentative where they
+    /// pass tentatively, then which of the heights there those have, at last vertices; -1 for what
+    /// takes up none.
+    Array<std::int32_t> planes_;
+};
 
 /// What follows asks for faces, not for their corners.
 void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execution& execution) {
     conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
     parallel_ranges(faces.size() + 1, kFaces, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f)
-            conformed.face_offsets[f] = first_entry(faces, conformed, f);
+            conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
     });
 }
 
@@ -216,36 +309,34 @@ void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conf
 
 ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& faces,
                              const PlanVertices& plan_vertices, CollinearEdges& collinear,
-                             const Execution& execution) {
+                             const Execution& execution, Array<PointId>* points) {
     ConformedFaces conformed;
-    conformed.entries = CornerOffsets(collinear.passed, faces.polygons.corners.size(), execution);
+    conformed.entries = CornerOffsets(collinear.passed, faces.polygons.points.size(), execution);
     conformed.vertices = vertices_of_entries(faces, plan_vertices, collinear, conformed, execution);
     collinear.passed = {};
+    if (points != nullptr) *points = {};
     name_entries(collinear, conformed, execution);
-    FacesAtVertices on =
-        sort_by_vertex(faces, conformed.vertices, plan_vertices.size(), conformed, execution);
-    find_heights(geometry, plan_vertices, on, conformed, execution);
-    parallel_ranges(plan_vertices.size(), kTogether, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t p = begin; p < end; ++p) {
-                            for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
-                                on.values[i] += on.values[i] < 0 ? 0 : conformed.vertex_offsets[p];
-                        }
-                    });
-    parallel_ranges(conformed.vertices.size(), kEntries, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        const auto vertex = [&](std::size_t i) -> const std::int32_t& {
-                            return on.values[static_cast<std::uint32_t>(conformed.vertices[i])];
-                        };
-                        for (std::size_t i = begin; i < end; ++i) {
-                            prefetch(&vertex(std::min(i + 32, end - 1)));
-                            conformed.vertices[i] = vertex(i);
-                        }
-                    });
-    on = {};
+    VertexNumbering(geometry, faces, plan_vertices, conformed, execution).run();
     number_faces(faces, conformed, execution);
     add_inserted_vertices(collinear, conformed, execution);
     return conformed;
+}
+
+Array<PointId> points_of_corners(const PlanVertices& plan_vertices, const ConformedFaces& conformed,
+                                 const Execution& execution) {
+    Array<PointId> of_vertex(index(conformed.vertex_offsets.back()));
+    for (std::size_t p = 0; p < plan_vertices.size(); ++p) {
+        std::fill(of_vertex.begin() + conformed.vertex_offsets[p],
+                  of_vertex.begin() + conformed.vertex_offsets[p + 1],
+                  plan_vertices.representative[p]);
+    }
+    Array<PointId> points(conformed.entries.corners());
+    parallel_ranges(points.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
+        conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
+            points[c] = of_vertex[index(conformed.vertices[entry])];
+        });
+    });
+    return points;
 }
 
 void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed,

@@ -39,9 +39,14 @@ struct ConformedFaces {
 };
 /// Takes what it needs of the lines: what they have `passed` is given back, and their edges name
 /// the first of their entries from here on.
+/// @param points  the faces', to be given back as soon as entries have their plan vertices
 ConformedFaces conform_faces(const exact::PlanArrangement& geometry, const FaceList& faces,
                              const PlanVertices& plan_vertices, CollinearEdges& collinear,
-                             const Execution& execution);
+                             const Execution& execution, Array<PointId>* points = nullptr);
+
+/// Points where the corners of conformed faces are.
+Array<PointId> points_of_corners(const PlanVertices& plan_vertices, const ConformedFaces& conformed,
+                                 const Execution& execution);
 
 /// Gives the vertices their positions, which takes the heights.
 void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed,

@@ -25,22 +25,22 @@ struct Filling {
 LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
                          const Execution& execution)
     : faces_(faces), lines_(lines), line_count_(lines.representative.size()) {
-    const auto& corners = faces.polygons.corners;
-    check_total(corners.size(), kMostEdges);
-    const std::size_t edges_of_line = corners.size() / std::max<std::size_t>(line_count_, 1) + 1;
+    const SplitPolygons& polygons = faces.polygons;
+    const std::size_t corners = polygons.lines.size();
+    check_total(corners, kMostEdges);
+    const std::size_t edges_of_line = corners / std::max<std::size_t>(line_count_, 1) + 1;
     lines_together_ = std::bit_floor(std::max<std::size_t>(kEdges / edges_of_line, 1));
     const std::size_t buckets = (line_count_ + lines_together_ - 1) / lines_together_;
     const int shift = std::countr_zero(lines_together_);
 
-    const std::size_t chunks =
-        std::clamp<std::size_t>(corners.size() / kCorners, 1, kMostCornerChunks);
+    const std::size_t chunks = std::clamp<std::size_t>(corners / kCorners, 1, kMostCornerChunks);
     std::vector<std::vector<Filling>> filling(chunks);
     const auto for_each_once = [&](std::size_t chunk, const auto& visit) {
         const std::size_t end = faces.size() * (chunk + 1) / chunks;
         for (std::size_t f = faces.size() * chunk / chunks; f < end; ++f) {
             const auto face = static_cast<std::int32_t>(f);
-            for (const Corner& corner : faces.polygons[f]) {
-                Filling& bucket = filling[chunk][joined_line(corner) >> shift];
+            for (std::size_t c = polygons.offsets[f]; c < polygons.offsets[f + 1]; ++c) {
+                Filling& bucket = filling[chunk][joined_line(c) >> shift];
                 if (bucket.last_face == face) continue;
                 bucket.last_face = face;
                 visit(bucket, face);
@@ -79,16 +79,16 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
     prefetch(&faces_.above[far]);
     prefetch(&faces_.below[far]);
     const auto near = static_cast<std::size_t>(faces_of_bucket_[std::min(number + 12, end - 1)]);
-    prefetch(&faces_.polygons.corners[faces_.polygons.offsets[near]]);
+    prefetch(&faces_.polygons.points[faces_.polygons.offsets[near]]);
+    prefetch(&faces_.polygons.lines[faces_.polygons.offsets[near]]);
 }
 
 void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
                           BucketEdges& into) const {
     const std::size_t first = first_line(bucket), count_of_lines = first_line(bucket + 1) - first;
-    const Corner* const corners = faces_.polygons.corners.data();
     const PlanVertexId* const of_point = plan_vertices.of_point.begin();
     const auto vertex_of = [&](std::size_t corner) {
-        return of_point[index(corners[corner].point)];
+        return of_point[index(faces_.polygons.points[corner])];
     };
     // Counted two further on, these become the ends, and filled up to their ends the beginnings.
     // About every other edge is on a line of another bucket: it is put down, too, and the next one
@@ -108,7 +108,7 @@ void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
         std::size_t leaving = end - 1;
         for (std::size_t c = begin; c < end; ++c) {
             const PlanVertexId to = vertex_of(c);
-            const std::size_t line = joined_line(corners[leaving]) - first;  // huge, where before
+            const std::size_t line = joined_line(leaving) - first;  // huge, where before
             const std::size_t known = std::min(line, count_of_lines);
             ++next[known + 2];
             found[count] = {{from, to, static_cast<std::uint32_t>(leaving), face},

@@ -46,9 +46,10 @@ public:
 
 private:
     using Found = BucketEdges::Found;
-    std::size_t joined_line(const Corner& corner) const {
-        const auto line = index(corner.line.id());
-        return static_cast<std::size_t>(lines_.of_line[line]);
+    /// Of the edge that leaves a corner.
+    std::size_t joined_line(std::size_t corner) const {
+        const LineId line = faces_.polygons.lines[corner].id();
+        return static_cast<std::size_t>(lines_.of_line[index(line)]);
     }
     void prefetch_faces(std::size_t number, std::size_t end) const;
 

@@ -13,7 +13,7 @@ EdgeMatching::Name EdgeMatching::name(const LineEdge& edge, const exact::Line& l
     const Name first = geometry_.plane(plane).above(line);
     if (first.is_edge()) return first;
     // several edges in a row are one line, each on a line of its own
-    const auto own = faces_.polygons.corners[edge.begin].line.id();
+    const auto own = faces_.polygons.lines[edge.begin].id();
     const Name second = geometry_.plane(plane).above(geometry_.line(own));
     return second.is_edge() ? second : Name(plane);
 }

@@ -64,11 +64,11 @@ XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8
 Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& faces,
                              const std::vector<ExtraPoint>& extra, const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
-    const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kVerticesAtOnce, execution,
+    const auto& points = faces.polygons.points;
+    parallel_ranges(points.size(), kVerticesAtOnce, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(corners[c].point)]);
+                            mark(used[index(points[c])]);
                     });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
 
 #include "base/parallel_counts.hpp"
 #include "strata/overlay/shared_polygons.hpp"
@@ -14,13 +15,23 @@ namespace {
 /// Room that most facets leave unused, each list of polygons for itself.
 constexpr std::size_t kPolygonsOfFacet = 8, kCornersOfFacet = 32, kSome = 4096;
 
-void pass(PoolStart& start, const PolygonPool& pool) {
+template <class Pool>
+void pass(PoolStart& start, const Pool& pool) {
     start.polygon += pool.size();
-    start.corner += pool.corners.size();
+    start.corner += pool.offsets.back();
+}
+
+/// Lists as long as the corners of polygons.
+auto corners_of(PolygonPool& pool) {
+    return std::tie(pool.corners);
+}
+auto corners_of(SplitPolygons& pool) {
+    return std::tie(pool.points, pool.lines);
 }
 
 /// Lists as long as the faces, facets or pieces that they are of.
-auto lists_of(FaceList& faces) {
+template <class Polygons>
+auto lists_of(FacesOf<Polygons>& faces) {
     return std::tie(faces.plane, faces.surface, faces.above, faces.below);
 }
 auto lists_of(PiecesBelow& below) {
@@ -39,9 +50,11 @@ void make_room(Array& array, std::size_t more) {
     const std::size_t size = array.size() + more;
     if (size > array.capacity()) array.reserve(std::max(size, 2 * array.capacity()));
 }
-void make_room(PolygonPool& pool, std::size_t facets) {
+template <class Pool>
+void make_room_in_pool(Pool& pool, std::size_t facets) {
     make_room(pool.offsets, facets * kPolygonsOfFacet + kSome);
-    make_room(pool.corners, facets * kCornersOfFacet + kSome);
+    for_each(corners_of(pool),
+             [&](auto& list) { make_room(list, facets * kCornersOfFacet + kSome); });
 }
 
 /// Makes memory ready for so many elements where there is room for them without moving any.
@@ -51,17 +64,21 @@ bool has_room(Array& array, std::size_t size) {
     array.make_ready(size);
     return true;
 }
+template <class... List>
+bool have_room(const std::tuple<List&...>& lists, std::size_t size) {
+    return std::apply([&](auto&... list) { return (has_room(list, size) && ...); }, lists);
+}
 /// The same for the polygons up to somewhere, and for the lists that go with them.
-template <class Lists>
-bool has_room(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
-    return has_room(pool.offsets, end.polygon + 1) && has_room(pool.corners, end.corner) &&
-           std::apply([&](auto&... list) { return (has_room(list, end.polygon) && ...); }, lists);
+template <class Pool, class Lists>
+bool has_room(Pool& pool, const Lists& lists, const PoolStart& end) {
+    return has_room(pool.offsets, end.polygon + 1) && have_room(corners_of(pool), end.corner) &&
+           have_room(lists, end.polygon);
 }
 
-template <class Lists>
-void resize(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
+template <class Pool, class Lists>
+void resize(Pool& pool, const Lists& lists, const PoolStart& end) {
     pool.offsets.resize(end.polygon + 1);
-    pool.corners.resize(end.corner);
+    for_each(corners_of(pool), [&](auto& list) { list.resize(end.corner); });
     for_each(lists, [&](auto& list) { list.resize(end.polygon); });
 }
 
@@ -71,8 +88,16 @@ void put(Array<Element>& to, std::size_t at, const From& from) {
 }
 
 /// Puts polygons of a scope that was committed.
-void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
-    share(scope, from, to.corners.begin() + static_cast<std::ptrdiff_t>(at.corner));
+template <class Pool>
+void put(Pool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
+    if constexpr (std::is_same_v<Pool, PolygonPool>) {
+        share(scope, from, to.corners.begin() + at.corner);
+    } else {
+        for (std::size_t c = 0; c < from.corners.size(); ++c) {
+            to.points[at.corner + c] = scope.shared_point(from.corners[c].point);
+            to.lines[at.corner + c] = scope.shared_directed(from.corners[c].line);
+        }
+    }
     for (std::size_t i = 1; i < from.offsets.size(); ++i)
         to.offsets[at.polygon + i] = static_cast<std::uint32_t>(at.corner) + from.offsets[i];
 }
@@ -110,9 +135,9 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
       fits_(chunks.size()) {
     end_.node = static_cast<std::int64_t>(construction.node_block.size());
     strata::pass(end_.face, construction.faces.polygons);
-    for (PolygonPool* pool :
-         {&construction.faces.polygons, &below.outlines, &next.outlines, &next.face_polygons})
-        make_room(*pool, facets);
+    make_room_in_pool(construction.faces.polygons, facets);
+    for (PolygonPool* pool : {&below.outlines, &next.outlines, &next.face_polygons})
+        make_room_in_pool(*pool, facets);
     const std::size_t polygons = facets * kPolygonsOfFacet + kSome;
     make_room(construction.node_block, polygons);
     make_room(construction.node_is_thick, polygons);

@@ -27,7 +27,7 @@ struct ChunkResult {
     std::unique_ptr<LocalArrangement> scope;
     Array<std::int32_t> node_block;
     Array<std::uint8_t> node_is_thick;
-    FaceList faces;  ///< finished; above is a shared node, below one of the chunk's
+    FacesOf<PolygonPool> faces;  ///< finished; above is a shared node, below one of the chunk's
     PolygonPool below_outlines;
     Array<PieceBelow> below;
     Envelope kept;

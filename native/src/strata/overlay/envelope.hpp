@@ -21,10 +21,34 @@ constexpr std::int32_t cell_of(std::int32_t node) {
     return node == kLeftOut ? kOutsideCell : node;
 }
 
+/// Convex plan polygons, the points of their corners and the lines of the edges that leave these
+/// apart: who reads all of them wants one of the two.
+struct SplitPolygons {
+    Array<std::uint32_t> offsets{0};
+    Array<PointId> points;
+    Array<DirectedLine> lines;
+
+    std::size_t size() const { return offsets.size() - 1; }
+    void add(PolygonView polygon) {
+        for (const Corner& corner : polygon) {
+            points.push_back(corner.point);
+            lines.push_back(corner.line);
+        }
+        offsets.push_back(static_cast<std::uint32_t>(points.size()));
+    }
+    Polygon operator[](std::size_t i) const {
+        Polygon polygon;
+        for (std::size_t c = offsets[i]; c < offsets[i + 1]; ++c)
+            polygon.push_back({points[c], lines[c]});
+        return polygon;
+    }
+};
+
 /// Faces that are finished: convex plan polygons, each in the plane of a triangle, between two
 /// nodes.
-struct FaceList {
-    PolygonPool polygons;
+template <class Polygons>
+struct FacesOf {
+    Polygons polygons;
     Array<PlaneId> plane;
     Array<std::int32_t> surface;  ///< number of the surface that the face lies on, -1 the base
     Array<std::int32_t> above;    ///< node, kOutsideCell or kLeftOut
@@ -40,6 +64,7 @@ struct FaceList {
         below.push_back(node_below);
     }
 };
+using FaceList = FacesOf<SplitPolygons>;
 
 /// The lower envelope of the surfaces seen so far, youngest first: what survives of them, as convex
 /// facets that tile the frame. Each facet lies in one plane and carries the faces that nodes above

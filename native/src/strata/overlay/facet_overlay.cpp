@@ -245,11 +245,12 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     return overlaid;
 }
 
-Envelope overlay_columns(PlanArrangement& geometry, const Envelope& envelope,
+Envelope overlay_columns(PlanArrangement& geometry, Envelope envelope,
                          const NumberedTiling& surface, Construction& construction,
                          const WantedBoxes* wanted, const Execution& execution) {
     Overlaid overlaid =
         overlay_facets(geometry, envelope, surface, nullptr, wanted, construction, execution);
+    envelope = {};
     const PiecesOfPolygons pieces =
         sort_by_polygon(overlaid.below, surface.tiling.plane.size(), execution);
     add_surface_facets(surface, overlaid.is_divided, overlaid.below, pieces, overlaid.kept,

@@ -41,7 +41,7 @@ Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelo
 /// Lays a surface under the envelope: where it is lower, a column is closed between the two
 /// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
 /// @param wanted  where columns are; those elsewhere are left out. Nothing: all of them are
-Envelope overlay_columns(exact::PlanArrangement& geometry, const Envelope& envelope,
+Envelope overlay_columns(exact::PlanArrangement& geometry, Envelope envelope,
                          const NumberedTiling& surface, Construction& construction,
                          const WantedBoxes* wanted, const Execution& execution);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "strata/tiling/polygon.hpp"
+#include "strata/overlay/envelope.hpp"
 
 namespace realmodel::strata {
 

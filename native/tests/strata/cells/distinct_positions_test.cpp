@@ -21,7 +21,6 @@ protected:
         for (int i = 0; i < inputs; ++i)
             geometry_.add_vertex(at[static_cast<std::size_t>(i)][0] + 10 * (i + 1), i);
         geometry_.freeze_vertices();
-        places_.of_point = Array<PlanVertexId>(3);
         places_.representative = Array<PointId>(3);
         places_.position = Array<PlanPosition>(3);
         loops_.vertex_offsets = Array<std::int32_t>(4);
@@ -29,13 +28,15 @@ protected:
         for (std::int32_t i = 0; i < 3; ++i) {
             const auto p = static_cast<std::size_t>(i);
             corners[p] = {PointId(i), DirectedLine(LineId(0))};
-            places_.of_point[p] = i;
             places_.representative[p] = PointId(i);
             places_.position[p] = at[p];
             loops_.vertex_offsets[p] = i;
             loops_.positions.push_back({at[p][0], at[p][1], 0.0});
         }
         loops_.vertex_offsets[3] = 3;
+        loops_.vertices = {0, 1, 2};
+        loops_.face_offsets = {0, 3};
+        loops_.entries = CornerOffsets({}, 3, {1, nullptr});
         FaceList faces;
         faces.add(corners, PlaneId(0), 0, kOutsideCell, 0);
         return make_distinct(geometry_, faces, places_, loops_, border, {1, nullptr});
