@@ -25,6 +25,7 @@ sys.path.insert(0, str(ROOT / "addon"))
 from realmodel.core.base.algebra import norm  # noqa: E402
 from realmodel.core.base.work import run  # noqa: E402
 from realmodel.core.fields import (  # noqa: E402
+    HeldData,
     Lattice,
     LevelSetData,
     SharedCorners,
@@ -65,8 +66,9 @@ def solved(horizons, share, left_out):
     lattice = Lattice(tuple(LOW), tuple((HIGH - LOW) / (COUNTS - 1)), tuple(COUNTS.tolist()))
     field = run(lambda work: solve_field(lattice, data, work))
     alone = SharedCorners(np.arange(lattice.nodes)[None], np.ones((1, len(data.contacts)), bool))
+    held = HeldData(data.dips, data.normals, data.bounds, np.empty(0), np.empty(0))
     through = run(
-        lambda work: fields_with_contacts(work, [field], data.contacts, data.contact_surfaces, alone)
+        lambda work: fields_with_contacts(work, [field], data.contacts, data.contact_surfaces, alone, held)
     )
     return field, through[0], given
 
@@ -92,7 +94,7 @@ def row(horizons, share, left_out):
         columns.append(f"{far.mean():.1f} ± {far.std():.1f}")
     what = f"{share:.0%}" + (f", without {left_out}" if left_out else "")
     count = sum((horizons[name][:, 4] < share).sum() for name in given)
-    critical = len(field.critical_points)
+    critical = len(through.critical_points)
     return f"| {what} | {count:,} | {field.order} | {' | '.join(columns)} | {critical} |"
 
 

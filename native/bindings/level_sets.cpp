@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between, values_through.
+// level_sets, moved_onto_levels, field_at, tetrahedra_at, points_between, values_through,
+// without_critical_points.
 #include "realmodel/fields/level_sets.hpp"
 
 #include <pybind11/numpy.h>
@@ -8,6 +9,7 @@
 #include "arrays.hpp"
 #include "execution.hpp"
 #include "lattice.hpp"
+#include "realmodel/fields/rising_field.hpp"
 #include "realmodel/fields/values_through.hpp"
 #include "rows.hpp"
 
@@ -99,6 +101,28 @@ py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& 
     return py::make_tuple(to_array(std::move(found.values)), to_array(std::move(found.missed)));
 }
 
+py::tuple without_critical_points(
+    const LatticeTuple& lattice, const Array<double>& values, const PointsTuple& points,
+    const Array<std::uint8_t>& fixed,
+    const std::tuple<Array<double>, Array<double>>& dips_and_normals,
+    const std::tuple<Array<double>, Array<double>, Array<double>>& of_bounds,
+    WatchedExecution* execution) {
+    const fields::LatticeField field = field_of(lattice, values, points);
+    const auto& [dips, normals] = dips_and_normals;
+    const auto& [bounds, signs, levels] = of_bounds;
+    const fields::HeldData held{
+        view(fixed), rows<3>(dips, "dips"), rows<3>(normals, "normals"), rows<3>(bounds, "bounds"),
+        view(signs), view(levels)};
+    fields::RisingField found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = fields::without_critical_points(field, held, run(execution));
+    }
+    return py::make_tuple(to_array(std::move(found.values)),
+                          to_array(std::move(found.point_values)),
+                          to_array(std::move(found.critical)));
+}
+
 }  // namespace
 
 void bind_level_sets(py::module_& m) {
@@ -124,6 +148,13 @@ nodes; (P, 4) float64, their weights, which sum to 1. points: as of level_sets.)
           py::arg("points"), py::arg("execution") = py::none(), R"doc(
 (P,) uint8: of each point of a field whether it has corners with lesser and with greater values beside it. Where
 not, the level set of its value does not pass through it. points: as of level_sets.)doc");
+    m.def("without_critical_points", &without_critical_points, py::arg("lattice"),
+          py::arg("values"), py::arg("points"), py::arg("fixed"), py::arg("dips"),
+          py::arg("bounds"), py::arg("execution") = py::none(), R"doc(
+(N,) and (P,) float64: the values of the nodes and the points of a field, moved as little as they must be for it to
+have as few critical points as its data allow; (C, 3) float64: where it has some still. fixed: (N + P,) uint8, those
+not to be moved. dips: positions (D, 3) and normals (D, 3), along which it goes on rising. bounds: positions (B, 3),
+signs (B,) and levels (B,): where it goes on being above, with sign 1, or below these. points: as of level_sets.)doc");
     m.def("values_through", &values_through, py::arg("given"), py::arg("corners"),
           py::arg("weights"), py::arg("levels"), py::arg("rounds"),
           py::arg("execution") = py::none(), R"doc(

@@ -3,20 +3,22 @@
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from folded_rocks import contacts, recumbent
-from realmodel.core import Lattice, ScalarField
+from realmodel.core import Lattice, ScalarField, build, load_project
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run
-from realmodel.core.fields import SharedCorners, are_on, fields_with_contacts, level_solids
+from realmodel.core.fields import HeldData, SharedCorners, are_on, fields_with_contacts, level_solids
 
 LATTICE = Lattice((-0.3, -0.4, -0.2), (0.9, 0.8, 0.85), (13, 14, 13))
 LEVELS = np.array([1.5, 3.0])
+CLAUDIUS = ROOT.parent / "shared" / "data" / "folds" / "claudius" / "project.toml"
 
 
-def with_contacts(field, places, surfaces):
+def with_contacts(field, places, surfaces, held=None):
     """One field through all contacts."""
     shared = SharedCorners(np.arange(field.lattice.nodes)[None], np.ones((1, len(places)), bool))
-    return run(lambda work: fields_with_contacts(work, [field], places, surfaces, shared))[0]
+    return run(lambda work: fields_with_contacts(work, [field], places, surfaces, shared, held))[0]
 
 
 @pytest.fixture
@@ -37,6 +39,28 @@ def test_the_field_has_its_levels_at_contacts(through):
     alone = ScalarField(LATTICE, own.values, LEVELS)
     assert np.abs(alone.at(places) - LEVELS[surfaces]).max() < 1e-3 * missed.max()
     assert np.abs(own.values - field.values).max() < 4 * missed.max()
+
+
+def test_critical_points_go_and_contacts_stay(through):
+    """A bubble in a field that rises, between contacts."""
+    field, places, surfaces = through
+    positions = LATTICE.positions()
+    bubble = 1.5 * np.exp(-((positions - [5.0, 5.2, 5.4]) ** 2).sum(axis=1))
+    field = ScalarField(LATTICE, 0.5 * positions[:, 2] + bubble, np.array([1.5, 3.6]))
+    places = np.concatenate(
+        [np.column_stack([places[:30, :2], np.full(30, 2 * level)]) for level in field.levels]
+    )
+    places = places[((places - [5.0, 5.2, 5.4]) ** 2).sum(axis=1) > 9]
+    surfaces = np.searchsorted(2 * field.levels, places[:, 2])
+    none = np.empty((0, 3))
+    held = with_contacts(
+        field, places, surfaces, HeldData([[5.1, 5.2, 6.2]], [[0.0, 0.0, -1.0]], none, none[:, 0], none[:, 0])
+    )
+    assert len(held.critical_points)
+    own = with_contacts(field, places, surfaces, HeldData(none, none, none, none[:, 0], none[:, 0]))
+    assert not len(own.critical_points)
+    np.testing.assert_array_equal(own.at(places), own.levels[surfaces])
+    assert np.abs(own.values - with_contacts(field, places, surfaces).values).max() < 0.5
 
 
 def test_contacts_are_vertices_of_closed_level_sets(through):
@@ -93,3 +117,10 @@ def test_a_vertex_is_on_a_sheet_where_it_is_exactly_there():
     sheet = Sheet(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]], np.int32))
     near = np.array([[1.0, 0, 0], [0.5, 0, 0], [0, 1, 1e-16], [-0.0, 0, 0]])
     assert are_on(near, sheet).tolist() == [True, False, False, True]
+
+
+@pytest.mark.skipif(not CLAUDIUS.exists(), reason="shared/data/folds is not here")
+def test_a_field_of_rough_horizons_has_no_critical_points():
+    """Of a tenth of the contacts it had 26."""
+    model = build(load_project(CLAUDIUS))
+    assert not [each for each in model.warnings if each.kind in ("critical_points", "contacts")]

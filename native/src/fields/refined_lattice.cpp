@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "base/keep_single.hpp"
 #include "exact/space_predicates.hpp"
 #include "fields/lattice_weights.hpp"
 #include "realmodel/base/errors.hpp"
@@ -108,6 +109,16 @@ Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corne
         const auto& step = kTetrahedraOfCell[number][i];
         found[i] = corners[static_cast<std::size_t>(step[0] + 2 * step[1] + 4 * step[2])];
     }
+    return found;
+}
+
+std::vector<std::int64_t> RefinedLattice::divided_corners() const {
+    std::vector<std::int64_t> found;
+    for (const auto& [cell, tetrahedra] : divided_) {
+        for (const Tetrahedron& tetrahedron : tetrahedra)
+            found.insert(found.end(), tetrahedron.begin(), tetrahedron.end());
+    }
+    sort_unique(found);
     return found;
 }
 
@@ -289,22 +300,12 @@ bool RefinedLattice::is_between(std::size_t point) const {
     const std::int64_t corner = corner_of_point_[point];
     const double own = value(corner);
     bool lesser = false, greater = false;
-    const auto look = [&](const Tetrahedron& tetrahedron) {
-        if (std::ranges::find(tetrahedron, corner) == tetrahedron.end()) return;
+    for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
         for (const std::int64_t other : tetrahedron) {
             lesser |= value(other) < own;
             greater |= value(other) > own;
         }
-    };
-    for (const CellIndex& cell : cells_at(points_[point])) {
-        if (const auto* tetrahedra = divided(cell)) {
-            std::ranges::for_each(*tetrahedra, look);
-            continue;
-        }
-        const auto all = corners(cell);
-        for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
-            look(tetrahedron(all, number));
-    }
+    });
     return lesser && greater;
 }
 

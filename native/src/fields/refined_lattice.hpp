@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -61,6 +62,26 @@ public:
     const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
         const auto found = divided_.find(node(cell));
         return found == divided_.end() ? nullptr : &found->second;
+    }
+    /// The corners of all tetrahedra that points divide others into, rising.
+    std::vector<std::int64_t> divided_corners() const;
+    /// The corner that a point is.
+    std::int64_t corner_of(std::size_t point) const { return corner_of_point_[point]; }
+    /// Calls `look` with each tetrahedron that has a corner.
+    template <class Look>
+    void for_each_around(std::int64_t corner, const Look& look) const {
+        const auto look_at = [&](const Tetrahedron& tetrahedron) {
+            if (std::ranges::find(tetrahedron, corner) != tetrahedron.end()) look(tetrahedron);
+        };
+        for (const CellIndex& cell : cells_at(position(corner))) {
+            if (const auto* tetrahedra = divided(cell)) {
+                std::ranges::for_each(*tetrahedra, look_at);
+                continue;
+            }
+            const auto all = corners(cell);
+            for (std::size_t number = 0; number < kTetrahedraOfCell.size(); ++number)
+                look_at(tetrahedron(all, number));
+        }
     }
     static Tetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners, std::size_t number);
     /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.

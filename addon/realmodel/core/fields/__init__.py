@@ -8,6 +8,7 @@ tetrahedron of the lattice, and the level of each surface.
 from .draws import FieldDraws
 from .lattice import Lattice, ScalarField, rises
 from .level_sets import (
+    HeldData,
     LevelSolid,
     SharedCorners,
     are_on,
@@ -19,6 +20,7 @@ from .solve import Anisotropy, LevelSetData, SlitData, SolvedField, solve_field
 __all__ = [
     "Anisotropy",
     "FieldDraws",
+    "HeldData",
     "Lattice",
     "LevelSetData",
     "LevelSolid",

@@ -108,7 +108,7 @@ class ScalarField:
 
     values: (nodes,) float64. levels: (surfaces,) float64, rising: f on each surface, oldest first. points:
     (P, 3) float64, corners of tetrahedra beside the nodes: each divides those that it lies in. point_values:
-    (P,) float64, f there.
+    (P,) float64, f there. critical_points: (C, 3) where f has critical points inside, if it was asked.
     """
 
     lattice: Lattice
@@ -116,6 +116,7 @@ class ScalarField:
     levels: np.ndarray
     points: np.ndarray = field(default_factory=lambda: np.empty((0, 3)), kw_only=True)
     point_values: np.ndarray = field(default_factory=lambda: np.empty(0), kw_only=True)
+    critical_points: np.ndarray = field(default_factory=lambda: np.empty((0, 3)), kw_only=True)
 
     def native(self) -> tuple:
         """The arguments of the native module: lattice, values, and the points with theirs."""

@@ -22,6 +22,18 @@ _BESIDE = 0.01  # of the range of f in its tetrahedron: what a contact may miss 
 
 
 @dataclass(frozen=True, eq=False)
+class HeldData:
+    """What goes on to hold: a field rises at dips (D, 3) along normals (D, 3), and at bounds (B, 3) it is, as
+    signs (B,) say, at least levels (B,) or, where -1, at most."""
+
+    dips: np.ndarray
+    normals: np.ndarray
+    bounds: np.ndarray
+    signs: np.ndarray
+    levels: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class SharedCorners:
     """What fields of one lattice have in common, each being one function on its side of faults that die out.
 
@@ -44,14 +56,20 @@ class SharedCorners:
 
 
 def fields_with_contacts(
-    work: Work, fields: Sequence[_Field], contacts: np.ndarray, surfaces: np.ndarray, shared: SharedCorners
+    work: Work,
+    fields: Sequence[_Field],
+    contacts: np.ndarray,
+    surfaces: np.ndarray,
+    shared: SharedCorners,
+    held: HeldData | None = None,
 ) -> list[_Field]:
     """Fields of one lattice with contacts (C, 3) as corners of tetrahedra, at which they have the level of
     their surfaces (C,) exactly. Before that their values are moved as little as they must be to have these
     levels there nearly: a corner alone would be a peak beside its surface where that passes another
     tetrahedron. Where contacts are denser than nodes, so that it cannot have them all, tetrahedra are halved
     along their longest edges (M. C. Rivara 1984) until it can. Nodes on a level but for next to nothing are
-    moved onto it. What fields share stays the same in them."""
+    moved onto it. What fields share stays the same in them. held: then fields have as few critical points as
+    contacts and these allow, and those that are left."""
     levels = fields[0].levels[surfaces]
     made = _Joined(work, fields, np.ascontiguousarray(contacts, np.float64), shared)
 
@@ -71,7 +89,8 @@ def fields_with_contacts(
             break
     corners, weights = made.tetrahedra()
     found, _ = through(corners, weights, _ROUNDS)
-    return made.fields_through(found, levels)
+    joined = made.fields_through(found, levels)
+    return joined if held is None else made.rising(joined, held)
 
 
 class _Joined:
@@ -133,6 +152,23 @@ class _Joined:
                     point_values=np.concatenate([values[numbers[nodes:]], levels[has]]),
                 )
             )
+        return found
+
+    def rising(self, fields: list, held: HeldData) -> list:
+        """The fields with as few critical points as contacts, held data and nodes that they share allow."""
+        found, same, middles = [], self.shared.same, self.of_middles
+        is_shared = np.bincount(same.ravel(), minlength=same.size) > 1
+        for number, field in enumerate(fields):
+            lattice, values, points = field.native()
+            fixed = np.ones(len(values) + len(field.points), np.uint8)
+            fixed[: len(values)] = is_shared[same[number]]
+            own = middles[:, middles[number]]
+            fixed[len(values) :][: own.shape[1]] = own.sum(axis=0) > 1
+            solve = native_module().without_critical_points
+            dips, bounds = (held.dips, held.normals), (held.bounds, held.signs, held.levels)
+            values, of_points, left = self.work.native(solve, lattice, values, points, fixed, dips, bounds)
+            values = native_module().moved_onto_levels(lattice, values, field.levels)
+            found.append(replace(field, values=values, point_values=of_points, critical_points=left))
         return found
 
     def missed(self, fields: list) -> np.ndarray:

@@ -114,10 +114,10 @@ class SolvedField(ScalarField):
     """A field with what its solution says: the anisotropy; the order of the derivatives that are least, 3, or
     2 where surfaces are rough, or 5: all up to it, where the data are smooth; how many contacts carry the
     field; the largest distance of a contact from its surface, nearly; rows of the dips and bounds that
-    contradict other data and do not hold; where the field has critical points inside, (C, 3), none of one
-    that is drawn; the fields on the other combinations of sides of slits; the kind of random function, of
-    which the native module draws others; and of each of the missed bounds what it contradicts: "contact",
-    "dip" or "bound", and the row."""
+    contradict other data and do not hold; the fields on the other combinations of sides of slits; the kind of
+    random function, of which the native module draws others; and of each of the missed bounds what it
+    contradicts: "contact", "dip" or "bound", and the row. Of one that is drawn critical points are not
+    asked."""
 
     anisotropy: Anisotropy
     order: int
@@ -125,7 +125,6 @@ class SolvedField(ScalarField):
     misfit: float
     dips_missed: np.ndarray
     bounds_missed: np.ndarray
-    critical_points: np.ndarray
     others: tuple[SolvedField, ...] = ()
     kind: tuple = field(default=(), repr=False, metadata=NOT_STORED)
     contradicted: list[list[tuple[str, int]]] = field(default_factory=list, repr=False, metadata=NOT_STORED)

@@ -13,6 +13,7 @@ from ..base.elementary import cube_root
 from ..base.errors import InputRefused, naming
 from ..base.work import Work, refused_as
 from ..fields import (
+    HeldData,
     Lattice,
     ScalarField,
     SolvedField,
@@ -149,13 +150,13 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             else:
                 field = draws.field(lattice, known, work, number)
         leave_out(entry, series, own, field)
-        solved = [field, *field.others]
-        for side, each in enumerate(solved):
+        kept = own.kept_rows(field.bounds_missed)
+        solved = _Solved([field, *field.others], slits, where[kept], is_drawn=draws is not None)
+        made = _through_data(work, entry, series, own.some(kept), solved)
+        for side, each in enumerate(made):
             points = each.critical_points
             own_sides = sides_of(work, points, structure.faults)
             critical.append(points[within.has(own_sides) & (slits.numbers(own_sides) == side)])
-        kept = own.kept_rows(field.bounds_missed)
-        made = _through_data(work, entry, series, own.some(kept), _Solved(solved, slits, where[kept]))
         for each, members_of in zip(made, slits.members, strict=True):
             fields |= dict.fromkeys(members_of, each)
     points = np.concatenate(critical)
@@ -195,11 +196,13 @@ def _warn_of_sides(
 
 
 class _Solved(NamedTuple):
-    """The fields on the combinations of sides of slits; where: (N,) the combination that each datum is on."""
+    """The fields on the combinations of sides of slits; where: (N,) the combination that each datum is on.
+    is_drawn: as rough as a realization is."""
 
     fields: list[SolvedField]
     slits: Slits
     where: np.ndarray
+    is_drawn: bool
 
 
 def _through_data(
@@ -207,11 +210,14 @@ def _through_data(
 ) -> list[SolvedField]:
     """The fields with contacts on their levels. Bounds that do not hold any more then are places on the
     level, too: they hold in the end. Warns of what is not honored."""
-    fields, slits, where = solved
+    fields, slits, where, is_drawn = solved
+    levels = fields[0].levels[data.bound_surfaces]
+    held = HeldData(data.dips, data.normals, data.bounds, np.where(data.is_lower, -1.0, 1.0), levels)
     of_contacts, _, of_bounds = np.split(where, np.cumsum([len(data.contacts), len(data.dips)]))
 
     def through(places: np.ndarray, surfaces: np.ndarray, numbers: np.ndarray) -> list[SolvedField]:
-        return fields_with_contacts(work, fields, places, surfaces, slits.shared(places, numbers))
+        alike = slits.shared(places, numbers)
+        return fields_with_contacts(work, fields, places, surfaces, alike, None if is_drawn else held)
 
     with refused_as(lambda error: InputRefused(str(error), item=f"{entry.rock.item}, {series.item}")):
         made = through(data.contacts, data.surfaces, of_contacts)
