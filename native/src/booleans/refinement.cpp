@@ -29,6 +29,8 @@ constexpr double kFarthest = 0x1p31;
 constexpr int kExactRounds = 4, kSnapRounds = 4;  ///< before that
 constexpr int kLocalRounds = 16;
 constexpr int kMostRounds = 40;
+/// Rounds that make so many times the pieces of the first division, and some more, do not settle.
+constexpr std::size_t kMostPieces = 16, kFewPieces = 1 << 12;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
 /// nothing meets out of order.
@@ -79,6 +81,7 @@ private:
     double ulps_ = kNearest;
     std::size_t last_meetings_ = SIZE_MAX;  ///< that were brought together
     int exact_rounds_ = 0, snap_rounds_ = 0;
+    std::size_t most_pieces_ = SIZE_MAX;
 };
 
 bool Refiner::is_flat(const TriangleCorners& c) const {
@@ -185,6 +188,7 @@ bool Refiner::round() {
     } else if (state_ != State::kDivided) {
         divide_first(division);
         state_ = State::kDivided;
+        most_pieces_ = kMostPieces * pieces_.count() + kFewPieces;
     } else {
         divide_or_snap(division, touched);
     }
@@ -307,7 +311,7 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
 }
 
 RefinedTriangles Refiner::run() {
-    for (int n = 0; n < kMostRounds; ++n) {
+    for (int n = 0; n < kMostRounds && pieces_.count() <= most_pieces_; ++n) {
         const double share = 0.8 * n / (n + 1.0);
         if (execution_.progress != nullptr)
             execution_.progress->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");

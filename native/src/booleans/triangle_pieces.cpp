@@ -56,6 +56,7 @@ TrianglePieces::TrianglePieces(const std::array<TriangleView, 2>& surfaces,
             whole_.push_back(piece);
         }
     }
+    count_ = whole_.size();
     list_.assign(whole_.size(), -1);
     for (std::size_t v = 0; v < points.size(); ++v) {
         for (const double x : points.rounded(SpacePointId(v)))
@@ -73,6 +74,8 @@ TrianglePieces::TrianglePieces(const std::array<TriangleView, 2>& surfaces,
 void TrianglePieces::replace(std::int32_t input, std::vector<TrianglePiece>&& pieces) {
     assert(std::ranges::none_of(
         pieces, [](const TrianglePiece& p) { return has_equal_corners(p.corners); }));
+    count_ += pieces.size();
+    count_ -= of(input).size();
     std::int32_t& list = list_[index(input)];
     if (list < 0) {
         list = static_cast<std::int32_t>(lists_.size());

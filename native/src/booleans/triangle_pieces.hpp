@@ -37,6 +37,8 @@ public:
     SpacePoints points;
 
     std::size_t input_count() const { return whole_.size(); }
+    /// Of all pieces, undivided triangles too.
+    std::size_t count() const { return count_; }
     /// Whether none has been divided.
     bool are_whole() const { return lists_.empty(); }
     std::uint8_t source(std::int32_t input) const { return index(input) < second_ ? 0 : 1; }
@@ -98,6 +100,7 @@ private:
     };
     Progress* progress_;
     std::vector<TrianglePiece> whole_;
+    std::size_t count_ = 0;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
     std::vector<List> lists_;
     std::size_t second_ = 0;  ///< the first triangle of the second surface
