@@ -95,7 +95,7 @@ def test_a_sphere_cuts_as_much_from_ours_as_from_its_peer():
         theirs = structures.manifold_cut(spec, 8)
     except process.Skipped as missing:
         pytest.skip(str(missing))
-    assert structures.ours_cut(spec, 8, 1)["volume"] == pytest.approx(theirs["volume"], rel=1e-9)
+    assert structures.ours_cut(spec, "columns", 8, 1)["volume"] == pytest.approx(theirs["volume"], rel=1e-9)
 
 
 @pytest.mark.parametrize("graded", [False, True])

@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::vector<std::array<double, 3>>;
 
-const Lattice kLattice{{0, 0, 0}, {1, 1, 1}, {17, 17, 17}};
+const Lattice kCube{{0, 0, 0}, {1, 1, 1}, {17, 17, 17}};
 
 template <class Function>
 std::vector<double> values_of(const Function& function) {
@@ -52,7 +52,7 @@ struct Fields {
             fixed[values.size() + p] = 1;
         const std::span<const double> coordinates(points.empty() ? nullptr : points[0].data(),
                                                   3 * points.size());
-        return without_critical_points({kLattice, values, coordinates, of_points},
+        return without_critical_points({kCube, values, coordinates, of_points},
                                        {fixed, dips, normals, bounds, signs, levels});
     }
 };
@@ -106,7 +106,7 @@ TEST(RisingField, BoundsThatHeldHold) {
 
 TEST(RisingField, WhatIsHeldIsOneForEach) {
     const Fields given{values_of(bubble), {}, {}, {}, {}};
-    EXPECT_THROW(without_critical_points({kLattice, given.values, {}, {}}, {}), InputError);
+    EXPECT_THROW(without_critical_points({kCube, given.values, {}, {}}, {}), InputError);
 }
 
 }  // namespace
