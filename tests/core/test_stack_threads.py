@@ -43,7 +43,12 @@ def far_away(seed):
     return Stack(surfaces, base_elevation=float(min(v[:, 2].min() for v, _ in surfaces)) - 1.0)
 
 
-MAKERS = {"sines": sines, "ties": ties, "far away": far_away}
+def many_vertices(seed):
+    """Vertices are numbered in ranges of at least 65,536 places in plan: here there are three."""
+    return sines(seed, surfaces=2, cells=170)
+
+
+MAKERS = {"sines": sines, "ties": ties, "far away": far_away, "many vertices": many_vertices}
 
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
