@@ -297,16 +297,8 @@ double RefinedLattice::at(const Vec3& p) const {
 }
 
 bool RefinedLattice::is_between(std::size_t point) const {
-    const std::int64_t corner = corner_of_point_[point];
-    const double own = value(corner);
-    bool lesser = false, greater = false;
-    for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
-        for (const std::int64_t other : tetrahedron) {
-            lesser |= value(other) < own;
-            greater |= value(other) > own;
-        }
-    });
-    return lesser && greater;
+    return is_between(corner_of_point_[point],
+                      [this](std::int64_t corner) { return value(corner); });
 }
 
 }  // namespace realmodel::fields

@@ -83,6 +83,19 @@ public:
                 look_at(tetrahedron(all, number));
         }
     }
+    /// Whether beside a corner there are corners with lesser and with greater values: then the
+    /// level set of its value passes through it.
+    template <class Value>
+    bool is_between(std::int64_t corner, const Value& value_of) const {
+        bool lesser = false, greater = false;
+        for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
+            for (const std::int64_t other : tetrahedron) {
+                lesser |= value_of(other) < value_of(corner);
+                greater |= value_of(other) > value_of(corner);
+            }
+        });
+        return lesser && greater;
+    }
     static Tetrahedron tetrahedron(const std::array<std::int64_t, 8>& corners, std::size_t number);
     /// The corners of a cell: number x + 2 y + 4 z of those at steps x, y, z.
     std::array<std::int64_t, 8> corners(const CellIndex& cell) const;
@@ -90,8 +103,7 @@ public:
     std::optional<Located> located(const Vec3& p) const;
     /// The function at a position of the lattice; NaN outside.
     double at(const Vec3& p) const;
-    /// Whether beside a point there are corners with lesser and with greater values: then the level
-    /// set of its value passes through it.
+    /// The same of a point, with the function's own values.
     bool is_between(std::size_t point) const;
 
 private:

@@ -157,19 +157,6 @@ private:
         return parts != std::array{1, 1};
     }
 
-    /// Whether there are lesser and greater values beside a corner; else the level set of its value
-    /// does not reach it.
-    bool is_between(std::int64_t corner) const {
-        bool lesser = false, greater = false;
-        lattice_.for_each_around(corner, [&](const Tetrahedron& tetrahedron) {
-            for (const std::int64_t other : tetrahedron) {
-                lesser |= values_[index(other)] < values_[index(corner)];
-                greater |= values_[index(other)] > values_[index(corner)];
-            }
-        });
-        return lesser && greater;
-    }
-
     /// Whether there are fewer critical points then; else all is as before.
     bool remove(std::int64_t corner) {
         const auto mean = mean_rise(corner);
@@ -191,8 +178,10 @@ private:
         }
         const auto had = static_cast<std::size_t>(std::ranges::count_if(
             near, [&](std::int64_t each) { return critical_.contains(each); }));
+        const auto value_of = [this](std::int64_t each) { return values_[index(each)]; };
         const bool is_lost = std::ranges::any_of(near, [&](std::int64_t each) {
-            return fixed_[index(each)] != 0 && lattice_.sides(each) == 0 && !is_between(each);
+            return fixed_[index(each)] != 0 && lattice_.sides(each) == 0 &&
+                   !lattice_.is_between(each, value_of);
         });
         if (critical.size() >= had || is_lost || !is_allowed(mean->steepness)) {
             for (const auto& [changed, value] : before_)

@@ -12,6 +12,7 @@ namespace realmodel::strata {
 namespace {
 
 constexpr std::size_t kFacesCopied = 1 << 13;  // copied at a time
+constexpr std::size_t kManyFaces = 1000000;
 
 /// The faces on surfaces, which come first; those that only have a cell above are seen from below.
 class SurfaceFaces {
@@ -119,10 +120,12 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
     complex.face_offsets[face_count] = static_cast<std::int64_t>(complex.face_vertices.size());
     complex.face_cells.resize(face_count);
     complex.face_surface.resize(face_count);
-    give_back_memory();
+    // Of a small model, as of a part of space, it is worth less than the time, and others reuse it.
+    const bool is_large = face_count > kManyFaces;
+    if (is_large) give_back_memory();
     surface_faces.copy(surface_of_plane, complex);
     conformed = {};
-    give_back_memory();
+    if (is_large) give_back_memory();
     parallel_chunks(walls.size(), execution, [&](std::size_t batch) {
         copy_walls(walls[batch], faces.size() + first_wall[batch],
                    corners_of_faces + first_corner[batch], complex);
