@@ -314,9 +314,9 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
 
 RefinedTriangles Refiner::run() {
     for (int n = 0; n < kMostRounds && pieces_.count() <= most_pieces_; ++n) {
-        const double share = 0.8 * n / (n + 1.0);
+        const auto share = [](double rounds) { return 0.02 + 0.78 * rounds / (rounds + 1); };
         if (execution_.progress != nullptr)
-            execution_.progress->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");
+            execution_.progress->begin(share(n), share(n + 1), "intersecting triangles");
         if (fresh_.empty() || !round()) return result();
     }
     throw InputError(
