@@ -36,8 +36,8 @@ using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::ar
 using SlitsTuple =
     std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>, Array<double>,
                Array<double>, Array<double>, Array<std::int64_t>, Indices>;
-/// Tolerance, most centers, and what is known of the anisotropy.
-using OptionsTuple = std::tuple<double, int, std::optional<AnisotropyTuple>>;
+/// Tolerance and most centers.
+using OptionsTuple = std::tuple<double, int>;
 /// Axes and ratios, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left
 /// out.
 using KindTuple =
@@ -106,13 +106,10 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                       sides,           view(nodes),       view(same),
                       view(of_bound)};
     }
-    const auto& [tolerance, most_centers, anisotropy] = given;
-    std::optional<fields::AxisRatios> known;
-    if (anisotropy) known = std::make_from_tuple<fields::AxisRatios>(*anisotropy);
+    const auto& [tolerance, most_centers] = given;
     std::optional<fields::FieldDraw> draw;
     if (drawn) draw = draw_of(*drawn, data.slits.count);
-    const fields::FieldOptions options{tolerance, most_centers, known ? &*known : nullptr,
-                                       draw ? &*draw : nullptr};
+    const fields::FieldOptions options{tolerance, most_centers, draw ? &*draw : nullptr};
     fields::Field made;
     {
         const py::gil_scoped_release unlocked;
@@ -157,16 +154,15 @@ void bind_fields(py::module_& module) {
                py::arg("draw") = py::none(), py::arg("execution") = py::none(),
                R"(The smoothest field in space that honors the data, and the level of each surface.
 
-lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), and the surface of
-each (N,), 0 the oldest, and how far they may be off, as a standard deviation. dips: positions (M, 3) and normals of length 1 toward younger rock (M, 3). bounds: positions
-(B, 3), the surface below each and above it (B,), -1: none. options: the distance by which surfaces may miss contacts;
-at most how many contacts carry the field; (axes, ratios) of an anisotropy as it is returned, None: the most likely
-one. slits: of faults that part the field how many, and the combinations of their sides; the further coordinates that
-these give contacts (N, F), dips (M, F), bounds (B, F), how they rise at dips (M, F, 3); normals of the faults (F, 3),
-of length 1; those of nodes (S, nodes, F) on each
-combination, the first of these S * nodes that each is the same as (S * nodes,), and the combination of each bound (B,).
-draw: None, or of a field that is drawn at random its kind, as it is returned of the same data, and normal numbers:
-(lines, 3 + F), (lines, steps) and (M, 2).
+lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), the surface of each (N,),
+0 the oldest, and how far they may be off, as a standard deviation. dips: positions (M, 3) and normals of length 1
+toward younger rock (M, 3). bounds: positions (B, 3), the surface below each and above it (B,), -1: none. options: the
+distance by which surfaces may miss contacts; at most how many contacts carry the field. slits: of faults that part
+the field how many, and the combinations of their sides; the further coordinates that these give contacts (N, F),
+dips (M, F), bounds (B, F), how they rise at dips (M, F, 3); normals of the faults (F, 3), of length 1; those of nodes
+(S, nodes, F) on each combination, the first of these S * nodes that each is the same as (S * nodes,), and the
+combination of each bound (B,). draw: None, or of a field that is drawn at random its kind, as it is returned of the
+same data, and normal numbers: (lines, 3 + F), (lines, steps) and (M, 2).
 Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
 each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
 (axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of

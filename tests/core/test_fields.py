@@ -221,13 +221,6 @@ def test_many_contacts_are_met_by_few_of_them():
     np.testing.assert_allclose(field.at(data.contacts), field.levels[surfaces], atol=5.0)
 
 
-def test_a_known_anisotropy_is_used():
-    data = _data(overturned)
-    field = _solve(data)
-    again = _solve(data, anisotropy=field.anisotropy)
-    np.testing.assert_array_equal(field.values, again.values)
-
-
 def test_the_same_bytes_for_any_number_of_threads():
     data = _data(cylinder)
     one, five = (run(lambda work: solve_field(LATTICE, data, work), threads=n) for n in (1, 5))

@@ -41,7 +41,7 @@ struct EdgeUse {
 /// Edges in order, and all uses of each.
 struct EdgeUses {
     Array<EdgeUse> uses;
-    std::vector<std::size_t> begins{0};  ///< of each edge in `uses`, and the end of the last
+    Array<std::size_t> begins{0};  ///< of each edge in `uses`, and the end of the last
 
     std::size_t size() const { return begins.size() - 1; }
     std::span<const EdgeUse> operator[](std::size_t edge) const {
@@ -86,11 +86,15 @@ EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
         },
         execution);
     EdgeUses edges{std::move(sorted.values)};
-    for (std::size_t i = 1; i <= edges.uses.size(); ++i) {
-        if (i == edges.uses.size() || edges.uses[i].key() != edges.uses[i - 1].key())
-            edges.begins.push_back(i);
-    }
-    checked_number(edges.size(), "edges");
+    number_in_order(
+        edges.uses.size(), execution,
+        [&](std::size_t i) { return i == 0 || edges.uses[i].key() != edges.uses[i - 1].key(); },
+        [&](std::size_t count) {
+            checked_number(count, "edges");
+            edges.begins.resize(count + 1);
+            edges.begins[count] = edges.uses.size();
+        },
+        [&](std::size_t i, std::size_t edge) { edges.begins[edge] = i; });
     return edges;
 }
 

@@ -70,17 +70,19 @@ public:
     /// Numbers the cells in the order of their first sides.
     /// @param counts  whether a side does
     template <class Counts>
-    void number(const Counts& counts) {
+    void number(const Counts& counts, const Execution& execution) {
         const std::size_t sides = joined_.size();
+        cell_.resize(sides);
+        parallel_each(sides, execution, [&](std::size_t i) {
+            cell_[i] = counts(i) ? joined_.find(static_cast<std::int32_t>(i)) : -1;
+        });
         std::vector<std::int32_t> of_set(sides, -1);
-        cell_.assign(sides, -1);
         for (std::size_t i = 0; i < sides; ++i) {
-            const auto side = static_cast<std::int32_t>(i);
-            if (!counts(i)) continue;
-            std::int32_t& known = of_set[index(joined_.find(side))];
+            if (cell_[i] < 0) continue;
+            std::int32_t& known = of_set[index(cell_[i])];
             if (known < 0) {
                 known = static_cast<std::int32_t>(first_.size());
-                first_.push_back(side);
+                first_.push_back(static_cast<std::int32_t>(i));
             }
             cell_[i] = known;
         }

@@ -86,12 +86,16 @@ Buckets<Value> bucketize_in_any_order(std::size_t buckets, std::size_t chunks,
 /// @throws InputError kind too_large, Cancelled
 template <class Value, class Produce>
 Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const Produce& produce,
-                                  const Execution& execution) {
+                                  const Execution& execution, double share = 0.2) {
     std::vector<std::vector<std::uint32_t>> next(chunks);
-    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
-        next[chunk].resize(buckets);
-        produce(chunk, [&](std::size_t bucket, const Value&) { ++next[chunk][bucket]; });
-    });
+    parallel_chunks(
+        chunks, execution,
+        [&](std::size_t chunk) {
+            next[chunk].resize(buckets);
+            std::uint32_t* const count = next[chunk].data();
+            produce(chunk, [count](std::size_t bucket, const Value&) { ++count[bucket]; });
+        },
+        share);
     Buckets<Value> made;
     made.offsets.reserve(buckets + 1);
     std::size_t total = 0;
@@ -102,12 +106,17 @@ Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const
         made.offsets.push_back(static_cast<std::uint32_t>(total));
     }
     made.values.resize(total);
-    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
-        produce(chunk, [&](std::size_t bucket, const Value& value) {
-            made.values[next[chunk][bucket]++] = value;
-        });
-        next[chunk] = {};
-    });
+    parallel_chunks(
+        chunks, execution,
+        [&](std::size_t chunk) {
+            std::uint32_t* const to = next[chunk].data();
+            Value* const values = made.values.data();
+            produce(chunk, [to, values](std::size_t bucket, const Value& value) {
+                values[to[bucket]++] = value;
+            });
+            next[chunk] = {};
+        },
+        share);
     return made;
 }
 

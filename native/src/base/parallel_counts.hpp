@@ -23,6 +23,27 @@ inline std::size_t count_before(std::vector<std::size_t>& counts) {
     return total;
 }
 
+/// Numbers those of some items of which is_one(item) holds, in their order: take(item, number) is
+/// called for each, on several threads.
+/// @param make_room  called with how many there are, before they are taken
+template <class IsOne, class MakeRoom, class Take>
+void number_in_order(std::size_t items, const Execution& execution, const IsOne& is_one,
+                     const MakeRoom& make_room, const Take& take) {
+    constexpr std::size_t kChunk = 1 << 14;
+    std::vector<std::size_t> before((items + kChunk - 1) / kChunk);
+    parallel_ranges(items, kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            before[begin / kChunk] += is_one(i) ? 1 : 0;
+    });
+    make_room(count_before(before));
+    parallel_ranges(items, kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        std::size_t number = before[begin / kChunk];
+        for (std::size_t i = begin; i < end; ++i) {
+            if (is_one(i)) take(i, number++);
+        }
+    });
+}
+
 /// @throws InputError kind too_large, where there are more vertices than so many
 inline void check_total(std::size_t vertices, std::uint64_t largest) {
     if (vertices > largest) {

@@ -111,16 +111,18 @@ void CellFinder::join_along_rays() {
     arrangement::RayBoxes ray_boxes(std::move(boxes));
     // facets of each part, of which one after another is tried
     std::vector<std::vector<std::int32_t>> parts;
-    std::vector<std::int32_t> part_of(count, -1);
+    std::vector<std::int32_t> root(count), part_of(count, -1);
+    parallel_each(count, execution_,
+                  [&](std::size_t f) { root[f] = connected_.find(static_cast<std::int32_t>(f)); });
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
         poll(execution_.progress, f);
-        const auto root = index(connected_.find(static_cast<std::int32_t>(f)));
-        if (part_of[root] < 0) {
-            part_of[root] = static_cast<std::int32_t>(parts.size());
+        std::int32_t& part = part_of[index(root[f])];
+        if (part < 0) {
+            part = static_cast<std::int32_t>(parts.size());
             parts.emplace_back();
         }
-        auto& own = parts[index(part_of[root])];
+        auto& own = parts[index(part)];
         if (own.size() < kTried) own.push_back(static_cast<std::int32_t>(f));
     }
     for (const auto& facets : parts) {
@@ -199,20 +201,21 @@ bool CellFinder::cast(std::int32_t facet, int attempt, arrangement::RayBoxes& bo
 FacetCells CellFinder::number_cells() {
     using Winding = std::array<std::int32_t, 2>;
     const std::size_t count = mesh_.facets.size();
-    cells_.number([&](std::size_t side) {
-        poll(execution_.progress, side);
-        return true;
-    });
+    cells_.number([](std::size_t) { return true; }, execution_);
     assert(cells_.of(kOutsideSide) == FacetCells::kOutside);
     FacetCells found;
     found.of_facet.resize(count);
+    parallel_each(count, execution_, [&](std::size_t f) {
+        for (std::size_t side = 0; side < 2; ++side)
+            found.of_facet[f][side] = cells_.of(index(side_of(f, side)));
+    });
     cells_.connect([&](const auto& visit) {
+        std::array<std::int32_t, 2> last{-1, -1};  // most are between the cells of the one before
         for (std::size_t f = 0; f < count; ++f) {
             poll(execution_.progress, f);
-            auto& [below, above] = found.of_facet[f];
-            below = cells_.of(index(side_of(f, 0)));
-            above = cells_.of(index(side_of(f, 1)));
-            if (below != above) visit(f, below, above);
+            const auto& [below, above] = found.of_facet[f];
+            if (below != above && found.of_facet[f] != last) visit(f, below, above);
+            last = found.of_facet[f];
         }
     });
     std::vector<std::optional<Winding>> windings(cells_.size());

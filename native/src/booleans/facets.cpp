@@ -41,26 +41,40 @@ void find_facets(const RefinedTriangles& parts, FacetMesh& mesh, const Execution
             },
             execution)
             .values;
-    std::vector<std::int32_t> first(count);  // of the parts that coincide
-    for (std::size_t i = 0, begin = 0; i < count; ++i) {
-        poll(execution.progress, i);
-        if (keyed[i].sorted != keyed[begin].sorted) begin = i;
-        first[index(keyed[i].part)] = keyed[begin].part;
-    }
+    // parts that coincide lie one after another, the first of them first
+    const auto each_first = [&](const auto& visit) {
+        parallel_each(count, execution, [&](std::size_t i) {
+            if (i > 0 && keyed[i].sorted == keyed[i - 1].sorted) return;
+            std::size_t end = i + 1;
+            while (end < count && keyed[end].sorted == keyed[i].sorted)
+                ++end;
+            visit(std::span(keyed.begin() + i, keyed.begin() + end));
+        });
+    };
+    mesh.first_part.resize(count);
+    each_first([&](std::span<const Keyed> parts_of_one) {
+        for (const Keyed& key : parts_of_one)
+            mesh.first_part[index(key.part)] = parts_of_one[0].part;
+    });
     mesh.of_part.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        poll(execution.progress, i);
-        const RefinedTriangle& part = parts.triangles[i];
-        if (first[i] == static_cast<std::int32_t>(i)) {
-            mesh.of_part[i] = static_cast<std::int32_t>(mesh.facets.size());
-            mesh.facets.push_back({part.corners});
-        } else {
-            mesh.of_part[i] = mesh.of_part[index(first[i])];
+    number_in_order(
+        count, execution,
+        [&](std::size_t i) { return mesh.first_part[i] == static_cast<std::int32_t>(i); },
+        [&](std::size_t facets) { mesh.facets.resize(facets); },
+        [&](std::size_t i, std::size_t facet) {
+            mesh.facets[facet].corners = parts.triangles[i].corners;
+            mesh.of_part[i] = static_cast<std::int32_t>(facet);
+        });
+    each_first([&](std::span<const Keyed> parts_of_one) {
+        const std::int32_t number = mesh.of_part[index(parts_of_one[0].part)];
+        Facet& facet = mesh.facets[index(number)];
+        for (const Keyed& key : parts_of_one) {
+            const RefinedTriangle& part = parts.triangles[index(key.part)];
+            mesh.of_part[index(key.part)] = number;
+            facet.times[part.source] += turn_alike(part.corners, facet.corners) ? 1 : -1;
+            facet.is_of[part.source] = true;
         }
-        Facet& facet = mesh.facets[index(mesh.of_part[i])];
-        facet.times[part.source] += turn_alike(part.corners, facet.corners) ? 1 : -1;
-        facet.is_of[part.source] = true;
-    }
+    });
 }
 
 }  // namespace
@@ -75,17 +89,6 @@ FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution) {
         parts.vertices.size(), [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; },
         execution);
     assert(mesh.edges.uses.size() == 3 * count);
-    mesh.edges_of.resize(count);
-    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-        poll(execution.progress, e);
-        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
-            const auto& corners = mesh.facets[index(use.item)].corners;
-            std::size_t k = 0;
-            while (unordered(corners[k], corners[(k + 1) % 3]) != use.edge)
-                ++k;
-            mesh.edges_of[index(use.item)][k] = static_cast<std::int32_t>(e);
-        }
-    }
     return mesh;
 }
 

@@ -22,9 +22,9 @@ struct Facet {
 /// The facets, their edges, and which facets meet there.
 struct FacetMesh {
     std::vector<Facet> facets;
-    std::vector<std::int32_t> of_part;                  ///< the facet of each part
-    arrangement::EdgeUses edges;                        ///< of facets as items
-    std::vector<std::array<std::int32_t, 3>> edges_of;  ///< of each facet
+    std::vector<std::int32_t> of_part;     ///< the facet of each part
+    std::vector<std::int32_t> first_part;  ///< of each part, of those that coincide with it
+    arrangement::EdgeUses edges;           ///< of facets as items
 };
 
 /// @throws InputError kind too_large, where the two sides of all facets cannot be numbered;

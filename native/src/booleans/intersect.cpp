@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "booleans/facet_cells.hpp"
@@ -61,51 +62,67 @@ void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
+    const auto side_of = [](std::int32_t facet, std::size_t source) {
+        return 2 * facet + static_cast<std::int32_t>(source);
+    };
     const auto join_along = [&](std::size_t e) {
         if (loops.of_edge[e] >= 0) return;
         std::array<std::int32_t, 2> first{-1, -1};
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
-            for (std::int32_t source = 0; source < 2; ++source) {
-                if (!mesh.facets[index(use.item)].is_of[index(source)]) continue;
-                std::int32_t& other = first[index(source)];
+            for (std::size_t source = 0; source < 2; ++source) {
+                if (!mesh.facets[index(use.item)].is_of[source]) continue;
+                std::int32_t& other = first[source];
                 if (other < 0) {
-                    other = 2 * use.item + source;
+                    other = side_of(use.item, source);
                 } else {
-                    joined.join(other, 2 * use.item + source);
+                    joined.join(other, side_of(use.item, source));
                 }
             }
         }
     };
     parallel_each(mesh.edges.size(), execution, join_along);
-    std::vector<std::int32_t> number(2 * count, -1);
-    for (std::size_t t = 0; t < result.triangles.size(); ++t) {
+    std::vector<std::int32_t> root(result.source.size()), number(2 * count, -1);
+    parallel_each(root.size(), execution, [&](std::size_t t) {
+        root[t] = joined.find(side_of(mesh.of_part[t], result.source[t]));
+    });
+    for (std::size_t t = 0; t < root.size(); ++t) {
         poll(execution.progress, t);
-        const auto source = static_cast<std::int32_t>(result.source[t]);
-        const std::int32_t facet = mesh.of_part[t];
-        std::int32_t& own = number[index(joined.find(2 * facet + source))];
+        std::int32_t& own = number[index(root[t])];
         if (own < 0) {
             own = static_cast<std::int32_t>(result.sub_surfaces.size());
-            const auto& [below, above] = cells.of_facet[index(facet)];
+            const auto& [below, above] = cells.of_facet[index(mesh.of_part[t])];
             const bool is_between =
                 below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
-            result.sub_surfaces.push_back({source, {}, {}, is_between});
+            result.sub_surfaces.push_back({result.source[t], {}, {}, is_between});
         }
-        SubSurface& part = result.sub_surfaces[index(own)];
-        part.triangles.push_back(static_cast<std::int32_t>(t));
-        for (const std::int32_t edge : mesh.edges_of[index(facet)]) {
-            if (const std::int32_t loop = loops.of_edge[index(edge)]; loop >= 0)
-                part.loops.push_back(loop);
+        result.sub_surfaces[index(own)].triangles.push_back(static_cast<std::int32_t>(t));
+    }
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        poll(execution.progress, e);
+        if (loops.of_edge[e] < 0) continue;
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
+            for (std::size_t source = 0; source < 2; ++source) {
+                if (!mesh.facets[index(use.item)].is_of[source]) continue;
+                const std::int32_t part = number[index(joined.find(side_of(use.item, source)))];
+                result.sub_surfaces[index(part)].loops.push_back(loops.of_edge[e]);
+            }
         }
     }
-    for (SubSurface& part : result.sub_surfaces) {
-        std::sort(part.loops.begin(), part.loops.end());
-        part.loops.erase(std::unique(part.loops.begin(), part.loops.end()), part.loops.end());
-    }
+    for (SubSurface& part : result.sub_surfaces)
+        sort_unique(part.loops);
 }
 
 void find_sub_blocks(const FacetMesh& mesh, const FacetCells& cells, Refinement& result,
                      Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
+    std::vector<std::size_t> facets(cells.size());
+    for (const auto& [below, above] : cells.of_facet) {
+        if (below == above) continue;
+        ++facets[index(below)];
+        ++facets[index(above)];
+    }
+    for (std::size_t i = 0; i < result.sub_blocks.size(); ++i)
+        result.sub_blocks[i].triangles.reserve(facets[i + 1]);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         poll(progress, f);
         const auto& [below, above] = cells.of_facet[f];
@@ -121,6 +138,29 @@ void find_sub_blocks(const FacetMesh& mesh, const FacetCells& cells, Refinement&
             result.sub_blocks[i].is_in[source] =
                 result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
+}
+
+/// The vertices and triangles, and what these are inside of.
+void write_triangles(const RefinedTriangles& parts, const FacetMesh& mesh, const FacetCells& cells,
+                     Refinement& result, const Execution& execution) {
+    const std::size_t count = parts.triangles.size();
+    result.vertices.resize(3 * parts.vertices.size());
+    std::memcpy(result.vertices.data(), parts.vertices.data(),
+                sizeof(double) * result.vertices.size());
+    result.triangles.resize(count);
+    result.source_triangle.resize(count);
+    result.is_in.resize(count);
+    parallel_each(count, execution, [&](std::size_t t) {
+        result.triangles[t] = parts.triangles[t].corners;
+        result.source_triangle[t] = parts.triangles[t].origin;
+        // the first part of a facet is turned as that is, the others are not asked
+        const auto& sides = cells.of_facet[index(mesh.of_part[t])];
+        for (std::size_t side = 0; side < 2; ++side) {
+            for (std::size_t source = 0; source < 2; ++source)
+                result.is_in[t][source][side] =
+                    result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
+        }
+    });
 }
 
 bool is_kept(Operation operation, bool in_first, bool in_second) {
@@ -142,46 +182,29 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution) {
     const RefinedTriangles parts = refine({first, second}, execution);
     if (execution.progress != nullptr) execution.progress->begin(0.8, 0.9, "finding facets");
-    const FacetMesh mesh = facets_of(parts, execution);
+    FacetMesh mesh = facets_of(parts, execution);
     if (execution.progress != nullptr)
         execution.progress->begin(0.9, 0.99, "finding what is inside");
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
     IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution);
     Refinement result;
     const std::size_t count = parts.triangles.size();
-    result.vertices.resize(3 * parts.vertices.size());
-    std::memcpy(result.vertices.data(), parts.vertices.data(),
-                sizeof(double) * result.vertices.size());
     result.is_closed = closed_surfaces(mesh, execution);
     assert(are_wound(mesh, cells, result.is_closed));
-    std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
-    result.coinciding.resize(count);
-    for (std::size_t t = 0; t < count; ++t) {
-        poll(execution.progress, t);
-        std::int32_t& coinciding = first_part[index(mesh.of_part[t])];
-        if (coinciding < 0) coinciding = static_cast<std::int32_t>(t);
-        result.coinciding[t] = coinciding;
-    }
-    result.triangles.resize(count);
     result.source.resize(count);
-    result.source_triangle.resize(count);
-    result.is_in.resize(count);
-    parallel_each(count, execution, [&](std::size_t t) {
-        const RefinedTriangle& part = parts.triangles[t];
-        result.triangles[t] = part.corners;
-        result.source[t] = part.source;
-        result.source_triangle[t] = part.origin;
-        // the first part of a facet is turned as that is, the others are not asked
-        const auto& sides = cells.of_facet[index(mesh.of_part[t])];
-        for (std::size_t side = 0; side < 2; ++side) {
-            for (std::size_t source = 0; source < 2; ++source)
-                result.is_in[t][source][side] =
-                    result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
+    parallel_each(count, execution,
+                  [&](std::size_t t) { result.source[t] = parts.triangles[t].source; });
+    parallel_tasks(3, execution, 0.01, [&](std::size_t task, const Execution& own) {
+        if (task == 0) {
+            find_sub_surfaces(mesh, loops, cells, result, own);
+        } else if (task == 1) {
+            find_sub_blocks(mesh, cells, result, own.progress);
+        } else {
+            write_triangles(parts, mesh, cells, result, own);
         }
     });
-    find_sub_surfaces(mesh, loops, cells, result, execution);
-    find_sub_blocks(mesh, cells, result, execution.progress);
     result.loops = std::move(loops.loops);
+    result.coinciding = std::move(mesh.first_part);
     if (execution.progress != nullptr) execution.progress->report(1.0, nullptr);
     return result;
 }

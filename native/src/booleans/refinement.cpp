@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "base/keep_single.hpp"
@@ -38,8 +39,8 @@ class Refiner {
 public:
     Refiner(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
         : pieces_(surfaces, execution), execution_(execution) {
-        for (std::size_t i = 0; i < pieces_.input_count(); ++i)
-            fresh_.push_back(static_cast<std::int32_t>(i));
+        fresh_.resize(pieces_.input_count());
+        std::iota(fresh_.begin(), fresh_.end(), 0);
     }
 
     RefinedTriangles run();
@@ -150,6 +151,7 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
             inputs.insert(inputs.end(), some.begin(), some.end());
         sort_unique(inputs);
     }
+    found.reserve(inputs.size());
     for (const std::int32_t input : inputs) {
         for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
             found.push_back({input, static_cast<std::int32_t>(k)});
@@ -312,9 +314,9 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
 
 RefinedTriangles Refiner::run() {
     for (int n = 0; n < kMostRounds && pieces_.count() <= most_pieces_; ++n) {
-        const double share = 0.8 * n / (n + 1.0);
+        const auto share = [](double rounds) { return 0.02 + 0.78 * rounds / (rounds + 1); };
         if (execution_.progress != nullptr)
-            execution_.progress->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");
+            execution_.progress->begin(share(n), share(n + 1), "intersecting triangles");
         if (fresh_.empty() || !round()) return result();
     }
     throw InputError(
@@ -325,6 +327,8 @@ RefinedTriangles Refiner::run() {
 
 RefinedTriangles Refiner::result() const {
     RefinedTriangles parts;
+    parts.vertices.reserve(pieces_.points.size());
+    parts.triangles.reserve(pieces_.count());
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
         poll(execution_.progress, i);

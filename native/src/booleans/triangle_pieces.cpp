@@ -12,7 +12,6 @@ namespace realmodel::booleans {
 
 namespace {
 
-constexpr std::size_t kPiecesAtOnce = 1 << 12;
 constexpr std::size_t kMany = 1 << 6;  ///< so many pieces of one triangle are found by a tree
 
 void check(const TriangleView& mesh, int surface) {
@@ -31,43 +30,63 @@ void check(const TriangleView& mesh, int surface) {
     }
 }
 
+exact::SpacePosition position(const TriangleView& mesh, std::size_t vertex) {
+    return {mesh.vertices[3 * vertex], mesh.vertices[3 * vertex + 1],
+            mesh.vertices[3 * vertex + 2]};
+}
+
 }  // namespace
 
 TrianglePieces::TrianglePieces(const std::array<TriangleView, 2>& surfaces,
                                const Execution& execution)
-    : progress_(execution.progress) {
-    for (std::uint8_t source = 0; source < 2; ++source) {
-        const TriangleView& mesh = surfaces[source];
-        check(mesh, source);
-        checked_number(whole_.size() + mesh.triangle_count(), "triangles");
-        second_ = whole_.size();
+    : progress_(execution.progress), second_(surfaces[0].triangle_count()) {
+    for (std::uint8_t source = 0; source < 2; ++source)
+        check(surfaces[source], source);
+    checked_number(second_ + surfaces[1].triangle_count(), "triangles");
+    parallel_tasks(2, execution, 0.02, [&](std::size_t task, const Execution& own) {
+        if (task == 0) {
+            add_triangles(surfaces, own.progress);
+        } else {
+            make_tree(surfaces, own);
+        }
+    });
+    count_ = whole_.size();
+    list_.assign(whole_.size(), -1);
+}
+
+void TrianglePieces::add_triangles(const std::array<TriangleView, 2>& surfaces,
+                                   Progress* progress) {
+    points.reserve((surfaces[0].vertices.size() + surfaces[1].vertices.size()) / 3);
+    whole_.reserve(second_ + surfaces[1].triangle_count());
+    for (const TriangleView& mesh : surfaces) {
         std::vector<SpacePointId> number(mesh.vertices.size() / 3, kNone);
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-            poll(execution.progress, t);
+            poll(progress, t);
             TrianglePiece piece;
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t v = index(mesh.triangles[3 * t + k]);
-                if (!number[v].has_value())
-                    number[v] = points.add(exact::SpacePosition{
-                        mesh.vertices[3 * v], mesh.vertices[3 * v + 1], mesh.vertices[3 * v + 2]});
+                if (!number[v].has_value()) number[v] = points.add(position(mesh, v));
                 piece.corners[k] = number[v];
             }
             piece.is_fresh = true;
             whole_.push_back(piece);
         }
     }
-    count_ = whole_.size();
-    list_.assign(whole_.size(), -1);
     for (std::size_t v = 0; v < points.size(); ++v) {
         for (const double x : points.rounded(SpacePointId(v)))
             largest_ = std::max(largest_, std::abs(x));
     }
-    std::vector<spatial::Box> boxes(whole_.size());
-    parallel_ranges(whole_.size(), kPiecesAtOnce, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                            boxes[i] = box(whole_[i].corners);
-                    });
+}
+
+void TrianglePieces::make_tree(const std::array<TriangleView, 2>& surfaces,
+                               const Execution& execution) {
+    std::vector<spatial::Box> boxes(second_ + surfaces[1].triangle_count());
+    parallel_each(boxes.size(), execution, [&](std::size_t i) {
+        const TriangleView& mesh = surfaces[i < second_ ? 0 : 1];
+        const std::size_t t = i < second_ ? i : i - second_;
+        for (std::size_t k = 0; k < 3; ++k)
+            boxes[i].include(position(mesh, index(mesh.triangles[3 * t + k])));
+    });
     tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution);
 }
 

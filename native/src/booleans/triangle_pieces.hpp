@@ -98,12 +98,15 @@ private:
         std::vector<TrianglePiece> pieces;
         std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
     };
+    void add_triangles(const std::array<TriangleView, 2>& surfaces, Progress* progress);
+    void make_tree(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
+
     Progress* progress_;
+    std::size_t second_;  ///< the first triangle of the second surface
     std::vector<TrianglePiece> whole_;
     std::size_t count_ = 0;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
     std::vector<List> lists_;
-    std::size_t second_ = 0;  ///< the first triangle of the second surface
     std::unique_ptr<spatial::BoxTree> tree_;
     double reach_ = 0;  ///< how far pieces may be outside of the boxes in the tree
     double largest_ = 0;

@@ -208,6 +208,7 @@ void CutterWinding::find_fans(Progress* progress) {
     blade_begins_.resize(edges_.uses.size() + edge_count());
     blades_.resize(edge_count());
     is_known_.assign(edge_count(), 0);
+    [[maybe_unused]] const std::size_t points = overlay_.points().size();
     parallel_ranges(
         edge_count(), 1 << 8, {overlay_.threads(), progress},
         [this](std::size_t begin, std::size_t end) {
@@ -221,6 +222,7 @@ void CutterWinding::find_fans(Progress* progress) {
                 blades_[e] = to_number(fan.blades());
             }
         });
+    assert(overlay_.points().size() == points);  // all are known, so threads add none
 }
 
 std::int32_t CutterWinding::number(const Winding& winding) {

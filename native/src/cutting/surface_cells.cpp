@@ -39,13 +39,14 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
     join_beside(winding, reaches, progress);
     join_sectors(winding, rules, progress);
     join_undivided(winding, rules);
-    cells_.number([&](std::size_t side) {
+    const auto counts = [&](std::size_t side) {
         if (side >= items_ + overlay.size()) return false;
         const std::size_t item = side >= items_ ? side - items_ : side;
         if (item >= overlay.size()) return !overlay.is_active(item - overlay.size());
         if (overlay.of_cutter(item)) return winding.counts(item) && winding.touches_model(item);
         return side < items_ && winding.level(item) < 0;
-    });
+    };
+    cells_.number(counts, {1, progress});
     for (std::size_t part = 0; part < size(); ++part)
         first_.push_back(cells_.first_side(part));
     for (std::size_t item = items_; item-- > 0;) {

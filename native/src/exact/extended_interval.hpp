@@ -9,7 +9,7 @@
 // Lines, planes and points in extended precision (64 bits of mantissa, as on x86), each with bounds
 // on its errors. Enough to round nearly all coordinates at a fraction of what twice the precision
 // of doubles costs. Where `long double` is no such type every bound is infinite, and the slower
-// ways (ball.hpp, GMP) give the same doubles.
+// ways (double_double_interval.hpp, GMP) give the same doubles.
 namespace realmodel::exact {
 
 /// a x + b y + c relative to a plan vertex.

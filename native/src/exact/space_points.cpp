@@ -23,6 +23,12 @@ std::uint32_t hash_of(const SpacePosition& p) {
     return KeyTable::hash(words);
 }
 
+template <class Value>
+void reserve_more(std::vector<Value>& values, std::size_t more) {
+    if (values.capacity() - values.size() < more)
+        values.reserve(std::max(values.size() + more, 2 * values.capacity()));
+}
+
 }  // namespace
 
 /// The number of a point: a new one where none is the same. Only new points keep their source.
@@ -117,16 +123,16 @@ bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointI
     return own[0] == line || own[1] == line;
 }
 
-void SpacePoints::reserve_intersections(std::size_t more) {
-    const auto reserve = [more](auto& values) {
-        if (values.capacity() - values.size() < more)
-            values.reserve(std::max(values.size() + more, 2 * values.capacity()));
-    };
-    reserve(rounded_);
-    reserve(source_);
-    reserve(constructions_);
-    reserve(intersections_);
+void SpacePoints::reserve(std::size_t more) {
+    reserve_more(rounded_, more);
+    reserve_more(source_, more);
     by_doubles_.reserve(rounded_.size() + more);
+}
+
+void SpacePoints::reserve_intersections(std::size_t more) {
+    reserve(more);
+    reserve_more(constructions_, more);
+    reserve_more(intersections_, more);
     by_intersection_.reserve(intersections_.size() + more);
 }
 

@@ -83,7 +83,9 @@ public:
     /// The middle of three points.
     SpacePointId middle(const std::array<SpacePointId, 3>& corners);
 
-    /// Makes room for so many more points where lines pass through planes.
+    /// Makes room for so many more points.
+    void reserve(std::size_t more);
+    /// The same for points where lines pass through planes.
     void reserve_intersections(std::size_t more);
 
     std::size_t size() const { return rounded_.size(); }

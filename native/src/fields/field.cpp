@@ -66,7 +66,6 @@ public:
         LikelyField found = likely_field(known, execution);
         likely_ = found.likely;
         gaps_ = std::move(found.gaps);
-        if (options.anisotropy != nullptr) likely_.anisotropy = *options.anisotropy;
         begin(0.3, 0.7, "field through the data");
     }
 

@@ -13,7 +13,7 @@ SpaceCells layers() {
     SpaceCells cells(6);
     cells.join(1, 2);
     cells.join(3, 4);
-    cells.number([](std::size_t) { return true; });
+    cells.number([](std::size_t) { return true; }, {1});
     cells.connect([&cells](const auto& visit) {
         for (std::size_t f = 0; f < 3; ++f)
             visit(f, cells.of(2 * f), cells.of(2 * f + 1));
@@ -34,7 +34,7 @@ TEST(SpaceCells, AreNumberedInTheOrderOfTheirFirstSides) {
 TEST(SpaceCells, WhatDoesNotCountIsInNone) {
     SpaceCells cells(4);
     cells.join(0, 3);
-    cells.number([](std::size_t side) { return side != 0 && side != 1; });
+    cells.number([](std::size_t side) { return side != 0 && side != 1; }, {1});
     EXPECT_EQ(cells.size(), 2U);
     EXPECT_EQ(cells.of(0), -1);
     EXPECT_EQ(cells.of(1), -1);
@@ -71,7 +71,7 @@ TEST(SpaceCells, AWayThatEndsLeadsNowhere) {
 TEST(SpaceCells, WhereASurfaceEndsTwoWaysDiffer) {
     SpaceCells cells(2);
     cells.join(0, 1);  // round the border of the only facet
-    cells.number([](std::size_t) { return true; });
+    cells.number([](std::size_t) { return true; }, {1});
     cells.connect([](const auto& visit) { visit(0, 0, 0); });
     std::vector<std::optional<int>> labels{0};
     int differ = 0;
@@ -96,7 +96,7 @@ TEST(SpaceCells, ASectorIsBetweenWhatIsAheadOfABladeAndBehindTheNext) {
     };
     for (std::size_t blade = 0; blade < fan.blades(); ++blade)
         cells.join_sector(uses, fan, blade, side_of);
-    cells.number([](std::size_t) { return true; });
+    cells.number([](std::size_t) { return true; }, {1});
     EXPECT_EQ(cells.size(), 3U);
     EXPECT_EQ(cells.of(0), cells.of(3));  // ahead of 0, behind 1
     EXPECT_EQ(cells.of(0), cells.of(4));  // and behind 2, which is turned over
@@ -112,7 +112,7 @@ TEST(SpaceCells, WhatIsLeftOutOfASectorIsJoinedWithNothing) {
     cells.join_sector(uses, fan, 0, [](std::size_t item, std::size_t side) {
         return item == 1 ? -1 : static_cast<std::int32_t>(2 * item + side);
     });
-    cells.number([](std::size_t) { return true; });
+    cells.number([](std::size_t) { return true; }, {1});
     EXPECT_EQ(cells.size(), 4U);
 }
 

@@ -54,5 +54,19 @@ TEST(ParallelCounts, EachItemIsCountedOnce) {
     }
 }
 
+TEST(ParallelCounts, WhatIsNumberedKeepsItsOrder) {
+    constexpr std::size_t kItems = 100000;  // several ranges
+    for (const int threads : {1, 3}) {
+        std::vector<std::size_t> items;
+        number_in_order(
+            kItems, {threads, nullptr}, [](std::size_t item) { return item % 3 == 1; },
+            [&](std::size_t count) { items.assign(count, 0); },
+            [&](std::size_t item, std::size_t number) { items.at(number) = item; });
+        ASSERT_EQ(items.size(), (kItems + 1) / 3);
+        for (std::size_t number = 0; number < items.size(); ++number)
+            ASSERT_EQ(items[number], 3 * number + 1);
+    }
+}
+
 }  // namespace
 }  // namespace realmodel

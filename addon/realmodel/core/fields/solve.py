@@ -135,14 +135,13 @@ def solve_field(
     data: LevelSetData,
     work: Work,
     tolerance: float = 0.0,
-    anisotropy: Anisotropy | None = None,
     draw: FieldDraw | None = None,
 ) -> SolvedField:
     """The smoothest field that honors the data (docs/reference/methods.md#fields), or with `draw` one that is
     as rough as the data say.
 
     tolerance: the distance by which surfaces may miss contacts where there are too many for all of them to
-    carry the field. anisotropy: of another solution; None: the most likely one. Raises InputRefused for data
+    carry the field. Raises InputRefused for data
     outside the lattice, contacts that contradict one another, surfaces whose order contradicts the data, and
     a dip whose polarity is against that of its neighbors.
     """
@@ -155,11 +154,7 @@ def solve_field(
                 (len(data.names), data.contacts, data.contact_surfaces, data.error),
                 (data.dips, data.normals),
                 (data.bounds, data.bound_below, data.bound_above),
-                (
-                    tolerance,
-                    MOST_CENTERS,
-                    None if anisotropy is None else (anisotropy.axes, anisotropy.ratios),
-                ),
+                (tolerance, MOST_CENTERS),
                 None if data.slits is None else data.slits.native(),
                 None if draw is None else draw.native(data),
             )

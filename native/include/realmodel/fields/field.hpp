@@ -85,8 +85,6 @@ struct FieldDraw {
 struct FieldOptions {
     double tolerance = 0;     ///< distance by which surfaces may miss contacts; 0: only by rounding
     int most_centers = 2500;  ///< at most so many contacts carry the field
-    /// Found before; null: the one under which the data are most likely.
-    const AxisRatios* anisotropy = nullptr;
     const FieldDraw* draw = nullptr;  ///< null: the smoothest field, the mean of all
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/counting_sort.hpp"
 #include "base/parallel_counts.hpp"
 #include "strata/conform/vertex_heights.hpp"
 
@@ -15,7 +16,7 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
+constexpr std::size_t kFaces = 1 << 10, kEntries = 1 << 15,
                       kTogether = ConformedFaces::kVerticesTogether;  // at a time
 
 /// The plan vertices that faces pass, entry by entry; their complement where they are passed
@@ -26,7 +27,7 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
                                         const Execution& execution) {
     const auto& points = faces.polygons.points;
     Array<PlanVertexId> plan_vertex(conformed.entries.first(points.size()));
-    parallel_ranges(points.size(), 4 * kFaces, execution, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(points.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
         conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
             plan_vertex[entry] = plan_vertices.of_point[index(points[c])];
         });
@@ -66,7 +67,8 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
 
 /// Finds the heights on each plan vertex and gives entries their vertices. For that the planes of
 /// faces are sorted by plan vertex, those of some plan vertices at a time: all of them would take
-/// as much memory as the faces' corners.
+/// as much memory as the faces' corners. The last plan vertices come first, and numbers of vertices
+/// fall from the largest: so no entry's vertex is taken for one of the plan vertices to come.
 class VertexNumbering {
 public:
     /// @param conformed  whose `vertices` are the plan vertices of entries; replaced
@@ -81,172 +83,156 @@ public:
           runs_((faces.size() + kFaces - 1) / kFaces) {}
 
     void run() {
-        count();
+        find_runs();
         conformed_.vertex_offsets = Array<std::int32_t>(plan_vertices_.size() + 1);
         conformed_.heights.resize((plan_vertices_.size() + kTogether - 1) / kTogether);
         const std::size_t heights = conformed_.heights.size();
         const std::size_t ranges = std::clamp<std::size_t>(heights / kLeast, 1, kMostRanges);
-        std::size_t vertices = 0;
-        for (std::size_t r = 0; r < ranges; ++r) {
-            share_ = 0.2 / static_cast<double>(ranges - r);
-            begin_ = heights * r / ranges * kTogether;
-            end_ = std::min(heights * (r + 1) / ranges * kTogether, plan_vertices_.size());
-            planes_.resize(offsets_[end_] - offsets_[begin_]);
-            sort_planes();
-            find_heights();
-            number_vertices(vertices);
-            take_vertices();
+        for (std::size_t r = ranges; r-- > 0;) {
+            share_ = 0.2 / static_cast<double>(r + 1);
+            first_ = heights * r / ranges;
+            number_vertices(heights * (r + 1) / ranges - first_);
         }
-        conformed_.vertex_offsets[plan_vertices_.size()] = static_cast<std::int32_t>(vertices);
+        conformed_.vertex_offsets[plan_vertices_.size()] = kEnd;
+        count_from_zero();
     }
 
 private:
     /// How many ranges of plan vertices at most, and how much of kTogether is in one at least.
-    static constexpr std::size_t kMostRanges = 8, kLeast = 32;
-    /// Instead of an entry's number: it has a larger one; it says where its plane is; it has its
-    /// vertex.
-    static constexpr std::uint8_t kLarge = 253, kSorted = 254, kDone = 255;
+    static constexpr std::size_t kMostRanges = 8, kLeast = 32, kMostChunks = 64;
+    /// What vertices are counted down from, and what an entry has that takes up none.
+    static constexpr std::int32_t kEnd = INT32_MAX, kNoVertex = ~kEnd;
 
-    /// The entries of kFaces faces. Their numbers on their plan vertices: which comes first depends
-    /// on threads, and few plan vertices have more than a byte can count.
+    /// The plan vertices of the entries of kFaces faces.
     struct Run {
-        std::size_t lowest = SIZE_MAX, highest = 0;  ///< of their plan vertices
-        std::vector<std::uint8_t> number;
-        std::vector<std::pair<std::size_t, std::uint32_t>> large;
-
-        std::uint32_t number_of(std::size_t i) const {
-            if (number[i] < kLarge) return number[i];
-            return std::lower_bound(large.begin(), large.end(), std::pair(i, 0U))->second;
-        }
+        std::size_t lowest = SIZE_MAX, highest = 0;
+    };
+    /// An entry on a plan vertex.
+    struct Entry {
+        std::uint32_t number;
+        std::uint32_t plan_vertex;  ///< of kTogether; then where its plane is among theirs
+        std::int32_t value;         ///< code of its plane; then its vertex of theirs, or -1
     };
 
-    std::size_t first_entry(std::size_t face) const {
-        return conformed_.entries.first(faces_.polygons.offsets[face]);
-    }
     static std::size_t plan_vertex(std::int32_t value) {
         return static_cast<std::size_t>(value < 0 ? ~value : value);
     }
 
-    /// Counts the entries on each plan vertex.
-    void count() {
-        offsets_ = zeros<std::uint32_t>(plan_vertices_.size() + 1, execution_);
+    void find_runs() {
         parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
-            Run& run = runs_[begin / kFaces];
-            const std::int32_t* const value = conformed_.vertices.begin() + first_entry(begin);
-            run.number.resize(first_entry(end) - first_entry(begin));
-            for (std::size_t i = 0; i < run.number.size(); ++i) {
-                prefetch(&offsets_[plan_vertex(value[std::min(i + 32, run.number.size() - 1)])]);
-                const std::size_t at = plan_vertex(value[i]);
-                const std::uint32_t before = count_one(offsets_[at]);
-                run.number[i] = static_cast<std::uint8_t>(std::min<std::uint32_t>(before, kLarge));
-                if (before >= kLarge) run.large.emplace_back(i, before);
-                run.lowest = std::min(run.lowest, at);
-                run.highest = std::max(run.highest, at);
-            }
-        });
-        running_totals(offsets_, UINT32_MAX, execution_);
-    }
-
-    /// Calls visit(run, first entry, begin, end) for runs of faces that have plan vertices of the
-    /// range.
-    template <class Visit>
-    void for_each_run(const Visit& visit) {
-        parallel_ranges(
-            faces_.size(), kFaces, execution_,
-            [&](std::size_t begin, std::size_t end) {
-                Run& run = runs_[begin / kFaces];
-                if (run.lowest < end_ && run.highest >= begin_) visit(run, begin, end);
-            },
-            share_);
-    }
-
-    /// Sorts the planes by plan vertex; an entry says where its plane is.
-    void sort_planes() {
-        const std::uint32_t before = offsets_[begin_];
-        for_each_run([&](Run& run, std::size_t begin, std::size_t end) {
-            const std::size_t first = first_entry(begin), last = run.number.size() - 1;
-            std::int32_t* const value = conformed_.vertices.begin() + first;
-            const auto offset = [&](std::size_t i) -> const std::uint32_t& {
-                return offsets_[std::min(plan_vertex(value[std::min(i, last)]), end_)];
-            };
-            std::size_t i = 0;
-            for (std::size_t f = begin; f < end; ++f) {
-                for (const std::size_t next = first_entry(f + 1) - first; i < next; ++i) {
-                    prefetch(&offset(i + 32));
-                    prefetch(planes_.begin() + (offset(i + 16) - before));
-                    const std::size_t p = plan_vertex(value[i]);
-                    if (run.number[i] > kLarge || p < begin_ || p >= end_) continue;
-                    const std::uint32_t at = offsets_[p] - before + run.number_of(i);
-                    planes_[at] = code_of(faces_.plane[f], value[i] < 0);
-                    value[i] = static_cast<std::int32_t>(at);
-                    run.number[i] = kSorted;
-                }
-            }
+            Run run;
+            const std::int32_t* const values = conformed_.vertices.begin();
+            std::for_each(values + conformed_.face_offsets[begin],
+                          values + conformed_.face_offsets[end], [&](std::int32_t value) {
+                              run.lowest = std::min(run.lowest, plan_vertex(value));
+                              run.highest = std::max(run.highest, plan_vertex(value));
+                          });
+            runs_[begin / kFaces] = run;
         });
     }
 
-    /// The planes on a plan vertex of the range.
-    std::span<std::int32_t> planes_on(std::size_t p) {
-        return {planes_.begin() + (offsets_[p] - offsets_[begin_]), offsets_[p + 1] - offsets_[p]};
+    /// The entries on `count` times kTogether plan vertices, by kTogether of these.
+    Buckets<Entry> entries_on(std::size_t count) const {
+        const std::size_t first = first_ * kTogether, size = count * kTogether;
+        const std::size_t chunks = std::min(runs_.size(), kMostChunks);
+        const auto produce = [&](std::size_t chunk, const auto& put) {
+            for (std::size_t r = runs_.size() * chunk / chunks;
+                 r < runs_.size() * (chunk + 1) / chunks; ++r) {
+                if (runs_[r].lowest < first + size && runs_[r].highest >= first)
+                    put_entries(r, first, size, put);
+            }
+        };
+        return bucketize_in_order<Entry>(count, chunks, produce, execution_, share_);
     }
-
-    /// Finds the heights on the plan vertices and replaces planes by ranks.
-    void find_heights() {
-        parallel_ranges(
-            end_ - begin_, kTogether, execution_,
-            [&](std::size_t first, std::size_t last) {
-                VertexHeights heights_there(geometry_);
-                std::vector<double> all;
-                all.reserve(2 * kTogether);
-                for (std::size_t p = begin_ + first; p < begin_ + last; ++p) {
-                    prefetch_points(geometry_, plan_vertices_, p);
-                    heights_there.find(plan_vertices_.representative[p], planes_on(p));
-                    const auto& found = heights_there.heights();
-                    all.insert(all.end(), found.begin(), found.end());
-                    conformed_.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
-                }
-                conformed_.heights[(begin_ + first) / kTogether].assign(
-                    all.begin(), all.end());  // without room for more
-            },
-            2 * share_);
-    }
-
-    /// Replaces ranks by vertices.
-    /// @param vertices  how many there are of the plan vertices before, and then of these, too
-    void number_vertices(std::size_t& vertices) {
-        std::vector<std::size_t> before;
-        for (std::size_t p = begin_; p < end_; p += kTogether) {
-            before.push_back(vertices);
-            vertices += conformed_.heights[p / kTogether].size();
+    template <class Put>
+    void put_entries(std::size_t run, std::size_t first, std::size_t size, const Put& put) const {
+        const std::uint32_t* const offsets = conformed_.face_offsets.begin();
+        const std::int32_t* const values = conformed_.vertices.begin();
+        const PlaneId* const planes = faces_.plane.begin();
+        const std::size_t last = std::min((run + 1) * kFaces, faces_.size());
+        std::uint32_t e = offsets[run * kFaces];
+        for (std::size_t f = run * kFaces; f < last; ++f) {
+            for (const std::uint32_t end = offsets[f + 1]; e < end; ++e) {
+                const std::size_t p = plan_vertex(values[e]) - first;  // huge, where before
+                if (p >= size) continue;
+                put(p / kTogether, Entry{e, static_cast<std::uint32_t>(p % kTogether),
+                                         code_of(planes[f], values[e] < 0)});
+            }
         }
-        check_total(vertices, INT32_MAX);
-        parallel_ranges(
-            end_ - begin_, kTogether, execution_,
-            [&](std::size_t first, std::size_t last) {
-                auto vertex = static_cast<std::int32_t>(before[first / kTogether]);
-                for (std::size_t p = begin_ + first; p < begin_ + last; ++p) {
-                    for (std::int32_t& rank : planes_on(p))
-                        rank += rank < 0 ? 0 : vertex;
-                    vertex += std::exchange(conformed_.vertex_offsets[p], vertex);
-                }
+    }
+
+    /// Finds the heights on kTogether plan vertices, and which of them entries have.
+    void find_heights(std::size_t number, std::span<Entry> entries) {
+        const std::size_t first = number * kTogether,
+                          count = std::min(kTogether, plan_vertices_.size() - first);
+        std::vector<std::uint32_t> ends(count + 1);  // the beginnings, until they are filled
+        for (const Entry& entry : entries)
+            ++ends[entry.plan_vertex + 1];
+        for (std::size_t p = 1; p <= count; ++p)
+            ends[p] += ends[p - 1];
+        std::vector<std::int32_t> planes(entries.size());
+        for (Entry& entry : entries) {
+            const std::uint32_t at = ends[entry.plan_vertex]++;
+            planes[at] = entry.value;
+            entry.plan_vertex = at;
+        }
+        VertexHeights heights_there(geometry_);
+        std::vector<double> all;
+        all.reserve(2 * kTogether);
+        std::size_t begin = 0;
+        for (std::size_t p = 0; p < count; begin = ends[p++]) {
+            prefetch_points(geometry_, plan_vertices_, first + p);
+            const std::span<std::int32_t> there(&planes[begin], ends[p] - begin);
+            heights_there.find(plan_vertices_.representative[first + p], there);
+            const auto before = static_cast<std::int32_t>(all.size());
+            conformed_.vertex_offsets[first + p] = before;
+            for (std::int32_t& rank : there)
+                rank += rank < 0 ? 0 : before;
+            const auto& found = heights_there.heights();
+            all.insert(all.end(), found.begin(), found.end());
+        }
+        for (Entry& entry : entries)
+            entry.value = planes[entry.plan_vertex];
+        conformed_.heights[number].assign(all.begin(), all.end());  // without room for more
+    }
+
+    /// Numbers the vertices of `count` times kTogether plan vertices.
+    void number_vertices(std::size_t count) {
+        Buckets<Entry> on = entries_on(count);
+        parallel_chunks(
+            count, execution_, [&](std::size_t i) { find_heights(first_ + i, on[i]); }, 2 * share_);
+        std::vector<std::int32_t> before(count);
+        for (std::size_t i = count; i-- > 0;) {
+            const std::size_t own = conformed_.heights[first_ + i].size();
+            // those that are left are larger than any plan vertex
+            check_total(own + plan_vertices_.size(), static_cast<std::uint64_t>(next_));
+            before[i] = next_ -= static_cast<std::int32_t>(own);
+        }
+        parallel_chunks(
+            count, execution_,
+            [&](std::size_t i) {
+                std::int32_t* const vertices = conformed_.vertices.begin();
+                const std::int32_t own = before[i];
+                for (const Entry& entry : on[i])
+                    vertices[entry.number] = entry.value < 0 ? kNoVertex : own + entry.value;
+                const std::size_t begin = (first_ + i) * kTogether;
+                for (std::size_t p = begin; p < std::min(begin + kTogether, plan_vertices_.size());
+                     ++p)
+                    conformed_.vertex_offsets[p] += before[i];
             },
             share_);
     }
 
-    /// Gives the entries that say where their planes were the vertices that are there now.
-    void take_vertices() {
-        for_each_run([&](Run& run, std::size_t begin, std::size_t) {
-            std::int32_t* const value = conformed_.vertices.begin() + first_entry(begin);
-            for (std::size_t i = 0; i < run.number.size(); ++i) {
-                const std::size_t ahead = std::min(i + 32, run.number.size() - 1);
-                if (run.number[ahead] == kSorted)
-                    prefetch(&planes_[static_cast<std::uint32_t>(value[ahead])]);
-                if (run.number[i] != kSorted) continue;
-                value[i] = planes_[static_cast<std::uint32_t>(value[i])];
-                run.number[i] = kDone;
-            }
-            if (run.highest < end_) run = {};
-        });
+    void count_from_zero() {
+        for (Array<std::int32_t>* numbers : {&conformed_.vertices, &conformed_.vertex_offsets}) {
+            parallel_ranges(
+                numbers->size(), kEntries, execution_, [&](std::size_t begin, std::size_t end) {
+                    std::transform(numbers->begin() + begin, numbers->begin() + end,
+                                   numbers->begin() + begin, [lowest = next_](std::int32_t number) {
+                                       return number < 0 ? -1 : number - lowest;
+                                   });
+                });
+        }
     }
 
     const PlanArrangement& geometry_;
@@ -255,13 +241,9 @@ private:
     ConformedFaces& conformed_;
     Execution execution_;
     std::vector<Run> runs_;
-    Array<std::uint32_t> offsets_;     ///< of each plan vertex, how many entries come before
-    std::size_t begin_ = 0, end_ = 0;  ///< the range of plan vertices
-    double share_ = 0;                 ///< of the progress, of a loop over it
-    /// Of the range, by plan vertex: first the codes of the faces' planes, tentative where they
-    /// pass tentatively, then which of the heights there those have, at last vertices; -1 for what
-    /// takes up none.
-    Array<std::int32_t> planes_;
+    std::size_t first_ = 0;     ///< of the range of plan vertices: which kTogether begin it
+    std::int32_t next_ = kEnd;  ///< the number given last
+    double share_ = 0;          ///< of the progress, of a loop over a range
 };
 
 /// What follows asks for faces, not for their corners.
@@ -316,8 +298,8 @@ ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& fa
     collinear.passed = {};
     if (points != nullptr) *points = {};
     name_entries(collinear, conformed, execution);
-    VertexNumbering(geometry, faces, plan_vertices, conformed, execution).run();
     number_faces(faces, conformed, execution);
+    VertexNumbering(geometry, faces, plan_vertices, conformed, execution).run();
     add_inserted_vertices(collinear, conformed, execution);
     return conformed;
 }
