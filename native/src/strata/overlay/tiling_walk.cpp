@@ -13,10 +13,10 @@ std::uint32_t after(std::uint32_t corner) {
 
 }  // namespace
 
-/// The same edge seen from the neighbor; none where the walk may not go there.
+/// The same edge seen from the neighbor; none where there is no neighbor.
 TilingWalk::HalfEdge TilingWalk::beyond(HalfEdge edge) const {
     const std::int32_t next = tiling_.neighbor[index(edge.triangle)][edge.corner];
-    if (next < 0 || tiling_.runs_on[index(next)] == 0) return {};
+    if (next < 0) return {};
     const PointId to = triangle(edge.triangle)[after(edge.corner)].point;
     const PolygonView there = triangle(next);
     return {next, there[0].point == to ? 0U : (there[1].point == to ? 1U : 2U)};
@@ -52,7 +52,7 @@ std::int32_t TilingWalk::locate(PointId point) {
 }
 
 /// Walks along an edge from triangle t, which has its first point; false where something coincides
-/// or the walk may not go on.
+/// or a neighbor is missing.
 bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
     const std::int32_t goal = known_place(edge.to);
     if (t == goal) return true;
@@ -106,7 +106,9 @@ TilingWalk::Way TilingWalk::way_along(const exact::DirectedEdge& edge, std::int3
 }
 
 void TilingWalk::set_start(std::int32_t polygon) {
-    if (tiling_.runs_on[index(polygon)] == 0) return;
+    if (index(polygon) >= tiling_.neighbor.size() ||
+        std::ranges::max(tiling_.neighbor[index(polygon)]) < 0)
+        return;
     start_ = polygon;
     ways_.resize(kKnown);
     places_.resize(kKnown);
@@ -166,7 +168,7 @@ void TilingWalk::find_stretches() {
 }
 
 /// Finds the triangles that are met: those of the border's stretches, and from these on those that
-/// lie in the facet. False where these are many, or not for the walk.
+/// lie in the facet. False where these are many or missing.
 bool TilingWalk::find_met() {
     order_.clear();
     for (std::size_t s = 0; s < stretches_.size(); ++s)

@@ -14,7 +14,7 @@ namespace realmodel::strata {
 /// Walks along the edges of facets through the triangles of a tiling, from neighbor to neighbor:
 /// which way an edge leaves a triangle follows from the side of one corner. What is found of an
 /// edge is kept for the facet beyond it, points where lines cross included. Only where nothing
-/// coincides: no corner lies on a line of the other, and all triangles that are met run on.
+/// coincides, no corner with an edge of the other, and the tiling has neighbors all over the facet.
 class TilingWalk {
 public:
     TilingWalk(LocalArrangement& scope, const SurfaceTiling& tiling)
@@ -31,7 +31,7 @@ public:
     void set_start(std::int32_t polygon);
 
 private:
-    /// Instead of a triangle: not known yet, not in the interior of one that the walk is for.
+    /// Instead of a triangle: not known yet, in the interior of none with neighbors.
     static constexpr std::int32_t kUnknown = -1, kNowhere = -2;
     /// Known things are looked up in the slot that their number gives; who comes last stays.
     static constexpr std::size_t kKnown = 2048;

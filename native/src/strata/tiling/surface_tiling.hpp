@@ -34,7 +34,8 @@ struct SurfaceTiling {
     /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
     /// edges, with one polygon beyond each.
     std::vector<std::uint8_t> runs_on;
-    /// Of those that run on, which are triangles: the polygon across each edge.
+    /// Of the first polygons, where they are known: across each edge of a triangle the triangle
+    /// there, or -1.
     std::vector<std::array<std::int32_t, 3>> neighbor;
     Array<HeightRange> heights;  ///< of each polygon's plane, where it has one
     PlanGrid grid;
