@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/overlay/facet_clipper.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace realmodel::strata {
@@ -50,9 +51,16 @@ void FacetClipper::begin(PolygonView facet) {
 }
 
 PolygonView FacetClipper::intersect(PolygonView window) {
-    if (!fits(window)) return clipper_.intersect(facet_, window);
-    if (!compare(window)) return {};
-    return on_line_ ? cut_by_lines(window) : follow(window);
+    if (fits(window)) {
+        if (!compare(window)) return {};
+        if (!on_line_) return follow(window);
+        cut_by_lines(window);
+    } else {
+        const PolygonView common = clipper_.intersect(facet_, window);
+        result_.assign(common.begin(), common.end());
+    }
+    rotate_result(window);
+    return result_;
 }
 
 bool FacetClipper::meets(PolygonView window) {
@@ -140,7 +148,8 @@ PolygonView FacetClipper::follow(PolygonView window) {
 
 /// Clips the facet by the lines of the window in turn, as `clip` does, where a corner of one may
 /// lie on a line of the other; only about new corners more is asked.
-PolygonView FacetClipper::cut_by_lines(PolygonView window) {
+void FacetClipper::cut_by_lines(PolygonView window) {
+    result_.clear();
     left_.clear();
     for (std::size_t i = 0; i < facet_.size(); ++i)
         left_.push_back({facet_[i], static_cast<std::int32_t>(i)});
@@ -161,14 +170,35 @@ PolygonView FacetClipper::cut_by_lines(PolygonView window) {
             any_right |= side < 0;
             sides_.push_back(side);
         }
-        if (!any_left) return {};
+        if (!any_left) return;
         if (!any_right) continue;
         next_left_.clear();
         keep_left(scope_, left_, line, sides_, next_left_);
         std::swap(left_, next_left_);
     }
     result_.assign(left_.begin(), left_.end());
-    return result_;
+}
+
+/// Has the result begin where `follow` and TilingWalk begin: with the first of the facet's edges
+/// that it has a part of, or with the window's first corner where it has none.
+void FacetClipper::rotate_result(PolygonView window) {
+    const auto begin_at = [this](const auto& is_first) {
+        for (std::size_t k = 0; k < result_.size(); ++k) {
+            if (!is_first(result_[k], result_[(k > 0 ? k : result_.size()) - 1])) continue;
+            std::rotate(result_.begin(), result_.begin() + static_cast<std::ptrdiff_t>(k),
+                        result_.end());
+            return true;
+        }
+        return false;
+    };
+    for (const Corner& edge : facet_) {
+        if (begin_at([&](const Corner& corner, const Corner& before) {
+                return corner.line == edge.line &&
+                       (corner.point == edge.point || before.line != edge.line);
+            }))
+            return;
+    }
+    begin_at([&](const Corner& corner, const Corner&) { return corner.point == window[0].point; });
 }
 
 }  // namespace realmodel::strata

@@ -53,7 +53,8 @@ private:
     exact::Sides sides_of_point(PointId point);
     KnownLine& known_line(PolygonView window, std::size_t edge);
     PolygonView follow(PolygonView window);
-    PolygonView cut_by_lines(PolygonView window);
+    void cut_by_lines(PolygonView window);
+    void rotate_result(PolygonView window);
     PointId crossing(std::size_t facet_edge, std::size_t window_edge, PolygonView window);
 
     LocalArrangement& scope_;
