@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hull_corners, hull_border, outside_hull, tin, natural_neighbour, and both of parts of points;
-// surface_heights, dsi, ties, tied_heights, raised_heights, nodes_around, crowded_data.
+// surface_heights, surface_places, dsi, ties, tied_heights, raised_heights, nodes_around,
+// crowded_data.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -99,6 +100,21 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
         z = interpolation::heights_on_surface(corners, faces, to, run(execution));
     }
     return to_array(std::move(z));
+}
+
+std::pair<Array<std::int32_t>, Array<double>> surface_places(const Array<double>& vertices,
+                                                             const Array<std::int32_t>& triangles,
+                                                             const Array<double>& nodes,
+                                                             WatchedExecution* execution) {
+    const auto corners = rows<3>(vertices, "vertices");
+    const auto faces = rows<3>(triangles, "triangles");
+    const auto to = rows<2>(nodes, "nodes");
+    interpolation::PlacesOnSurface found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = interpolation::places_on_surface(corners, faces, to, run(execution));
+    }
+    return {to_array(std::move(found.triangle)), to_array(std::move(found.weights))};
 }
 
 /// Of each node, or empty: the height that it has, the least and the most.
@@ -336,6 +352,12 @@ Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)
         R"(Heights of a triangulated surface, vertices (V, 3), triangles (T, 3), at nodes (N, 2).
 
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
+    module.def("surface_places", &surface_places, arg("vertices"), arg("triangles"), arg("nodes"),
+               py::arg("execution") = py::none(),
+               R"(Where surface_heights finds the heights; arguments as it has them.
+
+Returns of each node the triangle (N,), -1 where there is none, and weights (N, 2) of its second and third
+corner, of what these differ in height from the first one.)");
     module.def(
         "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("bounds"),
         arg("weight") = 0.0, arg("dips") = py::none(), arg("point_bounds") = py::none(),

@@ -16,6 +16,8 @@ using spatial::Box;
 
 namespace {
 
+constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
+
 /// The point of a triangle that is nearest to p (C. Ericson, "Real-time collision detection", 2005,
 /// section 5.1.5).
 Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
@@ -116,7 +118,6 @@ bool NearestSide::is_on_border(std::int32_t triangle, const Position& q) const {
 }
 
 std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
-    constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
     struct Near {
         double distance;
         std::int32_t triangle;
@@ -160,6 +161,48 @@ std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     compare(*first);
     std::ranges::for_each(others, compare);
     return side_of(corners(best), p);
+}
+
+std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double radius) const {
+    constexpr double kRounding = 0x1p-40;  // of lengths and of products of these
+    constexpr double kOnEdge = 0x1p-19;    // of its length: farther than is_on_border has it
+    double least = HUGE_VAL;
+    const auto square_to = [&](const std::array<Position, 3>& own) {
+        const Position away = minus(center, nearest_in_triangle(center, own[0], own[1], own[2]));
+        return dot(away, away);
+    };
+    tree_.approach(
+        center, [&least] { return least; },
+        [&](std::int32_t t) { least = std::min(least, square_to(corners(t))); });
+    if (!(radius * radius < least)) return std::nullopt;
+    // what is nearest to a position in the ball is no farther from its center than this
+    const double reach = (std::sqrt(least) + 2 * radius) * (1 + kAlike);
+    std::optional<std::int8_t> side;
+    bool is_certain = true;
+    tree_.approach(
+        center, [&] { return is_certain ? reach * reach : -1.0; },
+        [&](std::int32_t t) {
+            const auto own = corners(t);
+            if (square_to(own) > reach * reach) return;
+            const Position ab = minus(own[1], own[0]), ac = minus(own[2], own[0]);
+            const Position normal = cross(ab, ac), off = minus(center, own[0]);
+            const double distance = dot(normal, off);
+            const double least_distance = radius * length(normal) + kRounding * length(ab) *
+                                                                        length(ac) *
+                                                                        (length(off) + radius);
+            const std::int8_t own_side = distance < 0 ? kBelow : kAbove;
+            is_certain &=
+                std::abs(distance) > least_distance && side.value_or(own_side) == own_side;
+            side = own_side;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if ((border_[index(t)] & (1U << i)) == 0) continue;
+                const Position line = minus(own[(i + 1) % 3], own[i]);
+                const double size = length(line);
+                is_certain &= length(cross(line, minus(center, own[i]))) >
+                              (reach + kOnEdge * size) * size * (1 + kRounding);
+            }
+        });
+    return is_certain ? side : std::nullopt;
 }
 
 bool NearestSide::is_near(const Box& box, double margin) const {

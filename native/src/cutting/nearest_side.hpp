@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "cutting/cutter_surface.hpp"
 #include "exact/space_points.hpp"
 #include "spatial/box_tree.hpp"
@@ -16,6 +18,9 @@ public:
     /// seen most squarely. Exact with regard to that triangle; on its plane is above.
     /// @param at_border  set to whether a border edge is nearest, of triangles that share vertices
     std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
+    /// The same of all positions in a ball, where that needs no look at each and no border edge is
+    /// nearest to any.
+    std::optional<std::int8_t> of_ball(const Position& center, double radius) const;
     /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
     /// The same of one of some points, which get the surface's: by a ray along an axis.

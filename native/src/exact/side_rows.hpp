@@ -95,6 +95,16 @@ inline LineRowFilter line_row_filter(const LocalArrangement& scope, const Direct
     return line_row_filter(scope, edge.line);
 }
 
+/// The same as LocalArrangement::side, with the line's filter; of a point that is known to be
+/// within reach, as input vertices are.
+[[gnu::always_inline]] inline int side_of(LocalArrangement& scope, const LineRowFilter& f,
+                                          DirectedLine line, PointId id, const Point& p) {
+    const double value = f.a * (p.x - f.x0) + f.b * (p.y - f.y0) + f.c;
+    if (!(std::abs(value) > f.bound)) return scope.side(line, id);
+    scope.count_decisions(1);
+    return value > 0 ? 1 : -1;
+}
+
 /// Directed lines with their filters.
 struct LineRow {
     std::size_t size = 0;

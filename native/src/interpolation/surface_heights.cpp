@@ -9,10 +9,10 @@
 
 namespace realmodel::interpolation {
 
-std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
-                                       std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const std::array<double, 2>> nodes,
-                                       const Execution& execution) {
+PlacesOnSurface places_on_surface(std::span<const std::array<double, 3>> vertices,
+                                  std::span<const std::array<std::int32_t, 3>> triangles,
+                                  std::span<const std::array<double, 2>> nodes,
+                                  const Execution& execution) {
     require_finite_nodes(nodes);
     std::vector<Position> positions;
     positions.reserve(vertices.size());
@@ -20,24 +20,36 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
         positions.push_back({x, y});
     // On the border of a fault, which is asked of each surface, most places lie beside it.
     const spatial::MeshLocator locator(positions, triangles, spatial::box_around(nodes));
-    std::vector<double> z(nodes.size());
+    PlacesOnSurface places{std::vector<std::int32_t>(nodes.size(), -1),
+                           std::vector<std::array<double, 2>>(nodes.size())};
     const NodeLoop loop{nodes.size(), 1024, execution};
     loop.over_nodes([] { return 0; },
                     [&](int, std::size_t i) {
                         const auto found = locator.find(nodes[i]);
-                        if (!found) {
-                            z[i] = std::numeric_limits<double>::quiet_NaN();
-                            return;
-                        }
-                        const auto& corners = triangles[static_cast<std::size_t>(found->triangle)];
-                        // From the first corner: heights far from 0 lose no digits, a flat triangle
-                        // is flat.
-                        const double base = vertices[static_cast<std::size_t>(corners[0])][2];
-                        z[i] = base;
-                        for (std::size_t k = 1; k < 3; ++k)
-                            z[i] += found->weights[k] *
-                                    (vertices[static_cast<std::size_t>(corners[k])][2] - base);
+                        if (!found) return;
+                        places.triangle[i] = found->triangle;
+                        places.weights[i] = {found->weights[1], found->weights[2]};
                     });
+    return places;
+}
+
+std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
+                                       std::span<const std::array<std::int32_t, 3>> triangles,
+                                       std::span<const std::array<double, 2>> nodes,
+                                       const Execution& execution) {
+    const PlacesOnSurface places = places_on_surface(vertices, triangles, nodes, execution);
+    std::vector<double> z(nodes.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        if (places.triangle[i] < 0) continue;
+        const auto& corners = triangles[static_cast<std::size_t>(places.triangle[i])];
+        // From the first corner: heights far from 0 lose no digits, a flat triangle is flat.
+        const double base = vertices[static_cast<std::size_t>(corners[0])][2];
+        z[i] = base;
+        for (std::size_t k = 1; k < 3; ++k) {
+            z[i] += places.weights[i][k - 1] *
+                    (vertices[static_cast<std::size_t>(corners[k])][2] - base);
+        }
+    }
     return z;
 }
 

@@ -56,10 +56,10 @@ public:
 private:
     SurfaceTiling surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        SurfaceTiling tiling = make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles,
-                                                   rock_.plans[k], similar_, number, execution_);
+        SurfaceTiling tiling =
+            make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles,
+                                std::move(rock_.plans[k]), similar_, number, execution_);
         rock_.surfaces[k] = {};
-        rock_.plans[k] = {};
         site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
         return tiling;
     }

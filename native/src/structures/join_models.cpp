@@ -366,6 +366,24 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
         // what is beside the fault itself is on its side, wherever its continuation goes
         const cutting::CutterSurface own = checked_surface(structures[0], 0);
         const cutting::NearestSide beside(own, execution);
+        constexpr std::size_t kTogether = 16;  // that mostly lie together, as nodes of a mesh do
+        parallel_ranges(sides.size(), kTogether << 4, execution,
+                        [&](std::size_t i, std::size_t end) {
+                            for (std::size_t next = i; i < end; i = next) {
+                                next = std::min(end, i + kTogether);
+                                Box box;
+                                for (std::size_t k = i; k < next; ++k)
+                                    box.include(at(k));
+                                const Position center = times(0.5, plus(box.low, box.high));
+                                Box around;
+                                around.include(minus(box.low, center));
+                                around.include(minus(box.high, center));
+                                around.include(minus(center, box.low));
+                                const double radius = length(around.high) * (1 + 0x1p-40);
+                                std::fill(&sides[i], &sides[i] + (next - i),
+                                          beside.of_ball(center, radius).value_or(kOpen));
+                            }
+                        });
         decide([&beside](const Position& p) {
             bool at_border = false;
             const std::int8_t side = beside(p, &at_border);

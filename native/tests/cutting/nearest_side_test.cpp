@@ -35,6 +35,17 @@ TEST(NearestSide, OneUnitInTheLastPlaceOffTheTriangleIsTold) {
     EXPECT_EQ(side({0.75, 0.75, 0.5}), kAbove);  // on it
 }
 
+TEST(NearestSide, OfABallWhereAllOfItIsOnOneSideAndNoBorderIsNear) {
+    const NearestSide ridge(kRidge);
+    EXPECT_EQ(ridge.of_ball({0, 0, 1}, 0.25), kAbove);
+    EXPECT_EQ(ridge.of_ball({0.1, 0, -2.5}, 0.1), kBelow);
+    EXPECT_EQ(ridge.of_ball({0, 0, 1}, 1.25), std::nullopt);     // it meets the surface
+    EXPECT_EQ(ridge.of_ball({2, 0, -5.5}, 0.25), std::nullopt);  // some is below one slope alone
+    EXPECT_EQ(ridge.of_ball({-4, 0, -3}, 0.25), kAbove);
+    EXPECT_EQ(ridge.of_ball({0, 8.5, 1}, 0.25), std::nullopt);  // a border edge is as near
+    EXPECT_EQ(ridge.of_ball({0, 20, 1}, 0.25), std::nullopt);
+}
+
 TEST(NearestSide, WithinATetrahedron) {
     const CutterSurface body{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}},
                              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},

@@ -35,8 +35,8 @@ class Reach:
         step = self.size[:2].max() / _CELLS[0]
         self.count = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
         self.step = self.size / self.count
-        # of the triangles of sheets, which may differ in heights: first and last cells
-        self.ranges: list[tuple[Sheet, np.ndarray, np.ndarray]] = []
+        # of the triangles of sheets, which may differ in heights: the corners of the columns that they meet
+        self.ranges: list[tuple[Sheet, np.ndarray]] = []
         self.masks = [self._sides(work, shape) for shape in structures.fault_shapes()]
         self.asked = np.ones(self.count, bool)
 
@@ -82,22 +82,25 @@ class Reach:
 
     def over(self, columns: np.ndarray, sheet: Sheet) -> np.ndarray:
         """(T,) bool: the triangles of a sheet whose boxes in plan meet what `around` gives."""
-        first, last = self._ranges_of(sheet)
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
         total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
-        (x0, y0), (x1, y1) = first.T, last.T + 1
-        return total[x1, y1] - total[x0, y1] - total[x1, y0] + total[x0, y0] > 0
+        low, high_y, high_x, high = total.ravel()[self._corners_of(sheet)]
+        return high - high_y - high_x + low > 0
 
-    def _ranges_of(self, sheet: Sheet) -> tuple[np.ndarray, np.ndarray]:
-        """The first and the last cells of the triangles of a sheet; those of a surface differ in heights."""
-        for other, first, last in self.ranges:
+    def _corners_of(self, sheet: Sheet) -> np.ndarray:
+        """(4, T) the corners of the columns that the triangles of a sheet meet, in a row through all corners
+        of columns; sheets of a surface differ in heights."""
+        for other, found in self.ranges:
             if sheet.triangles is other.triangles and sheet.has_plan_of(other):
-                return first, last
+                return found
         low, high = extents(sheet.corners[..., :2])
         margin = _MARGIN * self.step[:2]
         first, last = self._range(low - margin, high + margin)
-        self.ranges.append((sheet, first, last))
-        return first, last
+        (x0, y0), (x1, y1) = first.T, last.T + 1
+        lines = self.count[1] + 1
+        found = np.array([x0 * lines + y0, x0 * lines + y1, x1 * lines + y0, x1 * lines + y1])
+        self.ranges.append((sheet, found))
+        return found
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The first and the last cells of boxes; a box beside a cell counts as in it."""

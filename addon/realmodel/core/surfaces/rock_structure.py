@@ -69,10 +69,8 @@ def joined(sheets: list[Sheet]) -> Sheet:
     """Sheets as one triangulation: their vertices one after another, and their triangles."""
     if len(sheets) == 1:
         return sheets[0]
-    begin = np.cumsum([0, *(len(vertices) for vertices, _ in sheets)])
+    first = np.cumsum([0, *(len(vertices) for vertices, _ in sheets[:-1])], dtype=np.int32)
     return Sheet(
         np.concatenate([vertices for vertices, _ in sheets]),
-        np.concatenate(
-            [triangles + first for (_, triangles), first in zip(sheets, begin, strict=False)]
-        ).astype(np.int32),
+        np.concatenate([triangles + begin for (_, triangles), begin in zip(sheets, first, strict=True)]),
     )

@@ -28,6 +28,31 @@ def heights_at(work: Work, shape: Sheet, plan: np.ndarray) -> np.ndarray:
     return work.native(surface_heights, *shape.arrays, np.ascontiguousarray(plan))
 
 
+@dataclass(frozen=True)
+class PlacesOnSheet:
+    """Where places (N, 2) lie on a sheet, and on all that have its plan. corners: (N, 3) vertices; weights:
+    (N, 2), of what the second and the third differ in height from the first; is_beside: (N,) bool."""
+
+    sheet: Sheet
+    plan: np.ndarray
+    corners: np.ndarray
+    weights: np.ndarray
+    is_beside: np.ndarray
+
+    @classmethod
+    def of(cls, work: Work, sheet: Sheet, plan: np.ndarray) -> PlacesOnSheet:
+        triangle, weights = work.native(native_module().surface_places, *sheet.arrays, plan)
+        return cls(sheet, plan, sheet.triangles[triangle], weights, triangle < 0)
+
+    def heights(self, sheet: Sheet) -> np.ndarray:
+        """(N,) as heights_at has them, of a sheet with the same plan."""
+        a, b, c = sheet.vertices[:, 2][self.corners.T]
+        z = a + self.weights[:, 0] * (b - a)
+        z += self.weights[:, 1] * (c - a)
+        z[self.is_beside] = np.nan
+        return z
+
+
 def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
     where heights of all older ones are known. Each older surface is asked once for the points of all.

@@ -23,4 +23,19 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
                                        std::span<const std::array<double, 2>> nodes,
                                        const Execution& execution = {});
 
+/// Where positions in plan lie on a triangulated surface. triangle: of each, -1 where there is
+/// none; weights: of its second and third corner, of what these differ in height from the first
+/// one.
+struct PlacesOnSurface {
+    std::vector<std::int32_t> triangle;
+    std::vector<std::array<double, 2>> weights;
+};
+
+/// Where heights_on_surface finds the heights: surfaces that differ in these alone are looked at
+/// once.
+PlacesOnSurface places_on_surface(std::span<const std::array<double, 3>> vertices,
+                                  std::span<const std::array<std::int32_t, 3>> triangles,
+                                  std::span<const std::array<double, 2>> nodes,
+                                  const Execution& execution = {});
+
 }  // namespace realmodel::interpolation

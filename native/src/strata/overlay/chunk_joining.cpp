@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <type_traits>
 
 #include "base/parallel_counts.hpp"
 #include "strata/overlay/shared_polygons.hpp"
@@ -88,16 +87,8 @@ void put(Array<Element>& to, std::size_t at, const From& from) {
 }
 
 /// Puts polygons of a scope that was committed.
-template <class Pool>
-void put(Pool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
-    if constexpr (std::is_same_v<Pool, PolygonPool>) {
-        share(scope, from, to.corners.begin() + at.corner);
-    } else {
-        for (std::size_t c = 0; c < from.corners.size(); ++c) {
-            to.points[at.corner + c] = scope.shared_point(from.corners[c].point);
-            to.lines[at.corner + c] = scope.shared_directed(from.corners[c].line);
-        }
-    }
+void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
+    share(scope, from, to.corners.begin() + at.corner);
     for (std::size_t i = 1; i < from.offsets.size(); ++i)
         to.offsets[at.polygon + i] = static_cast<std::uint32_t>(at.corner) + from.offsets[i];
 }
@@ -120,19 +111,24 @@ ChunkResult::ChunkResult(const exact::PlanArrangement& geometry, std::size_t fac
 void ChunkStart::pass(const ChunkResult& chunk) {
     node += static_cast<std::int64_t>(chunk.node_block.size());
     strata::pass(face, chunk.faces.polygons);
+    face.polygon += chunk.closed_faces;
+    face.corner += chunk.closed_corners;
     strata::pass(below, chunk.below_outlines);
     strata::pass(facet, chunk.kept.outlines);
     strata::pass(facet_face, chunk.kept.face_polygons);
 }
 
-ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
-                           Construction& construction, Envelope& next, PiecesBelow& below)
+ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks,
+                           const Envelope& envelope, Construction& construction, Envelope& next,
+                           PiecesBelow& below)
     : chunks_(chunks),
+      envelope_(envelope),
       construction_(construction),
       next_(next),
       below_(below),
       start_(chunks.size()),
       fits_(chunks.size()) {
+    const std::size_t facets = envelope.size();
     end_.node = static_cast<std::int64_t>(construction.node_block.size());
     strata::pass(end_.face, construction.faces.polygons);
     make_room_in_pool(construction.faces.polygons, facets);
@@ -187,6 +183,38 @@ void ChunkJoining::finish(const Execution& execution) {
     });
 }
 
+/// Puts the faces of a chunk, and those of the envelope that go between them.
+void ChunkJoining::put_faces(const ChunkResult& chunk, const ChunkStart& at) {
+    FaceList& to = construction_.faces;
+    PoolStart next = at.face;
+    const auto put_face = [&](PolygonView polygon, PlaneId plane, std::int32_t surface,
+                              std::int32_t above, std::int32_t below) {
+        for (const Corner& corner : polygon) {
+            to.polygons.points[next.corner] = chunk.scope->shared_point(corner.point);
+            to.polygons.lines[next.corner++] = chunk.scope->shared_directed(corner.line);
+        }
+        to.plane[next.polygon] = plane;
+        to.surface[next.polygon] = surface;
+        to.above[next.polygon] = above;
+        to.below[next.polygon] = below < 0 ? below : below + static_cast<std::int32_t>(at.node);
+        to.polygons.offsets[++next.polygon] = static_cast<std::uint32_t>(next.corner);
+    };
+    std::size_t face = 0;
+    const auto put_own_up_to = [&](std::size_t end) {
+        for (const auto& own = chunk.faces; face < end; ++face)
+            put_face(own.polygons[face], own.plane[face], own.surface[face], own.above[face],
+                     own.below[face]);
+    };
+    for (const ClosedFacet& closed : chunk.closed) {
+        put_own_up_to(closed.before);
+        const auto [begin, end] = envelope_.faces_of(closed.facet);
+        for (std::size_t f = begin; f < end; ++f)
+            put_face(envelope_.face_polygons[f], envelope_.plane[closed.facet],
+                     envelope_.surface[closed.facet], envelope_.face_above[f], closed.node);
+    }
+    put_own_up_to(chunk.faces.size());
+}
+
 void ChunkJoining::put(std::size_t c) {
     const ChunkResult& chunk = *chunks_[c];
     const ChunkStart& at = start_[c];
@@ -194,16 +222,10 @@ void ChunkJoining::put(std::size_t c) {
     const auto shared_node = [&](std::int32_t node) {
         return node < 0 ? node : node + static_cast<std::int32_t>(at.node);
     };
-    FaceList& faces = construction_.faces;
     strata::put(construction_.node_block, static_cast<std::size_t>(at.node), chunk.node_block);
     strata::put(construction_.node_is_thick, static_cast<std::size_t>(at.node),
                 chunk.node_is_thick);
-    strata::put(faces.polygons, at.face, chunk.faces.polygons, scope);
-    strata::put(faces.plane, at.face.polygon, chunk.faces.plane);
-    strata::put(faces.surface, at.face.polygon, chunk.faces.surface);
-    strata::put(faces.above, at.face.polygon, chunk.faces.above);
-    std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
-                   faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon), shared_node);
+    put_faces(chunk, at);
     strata::put(below_.outlines, at.below, chunk.below_outlines, scope);
     for (std::size_t i = 0; i < chunk.below.size(); ++i) {
         below_.polygon[at.below.polygon + i] = chunk.below[i].polygon;

@@ -18,6 +18,13 @@ struct PieceBelow {
     std::int32_t node_above;  ///< counted within the chunk, kOutsideCell or kLeftOut
 };
 
+/// A facet all of whose faces are finished, as they are: one node is beneath it.
+struct ClosedFacet {
+    std::uint32_t facet;
+    std::int32_t node;   ///< counted within the chunk
+    std::size_t before;  ///< how many of the chunk's own faces come first
+};
+
 /// What one chunk of facets became. Lines and points are the scope's for as long as there is one;
 /// nodes are counted from 0.
 struct ChunkResult {
@@ -28,6 +35,8 @@ struct ChunkResult {
     Array<std::int32_t> node_block;
     Array<std::uint8_t> node_is_thick;
     FacesOf<PolygonPool> faces;  ///< finished; above is a shared node, below one of the chunk's
+    Array<ClosedFacet> closed;   ///< whose faces come between these
+    std::size_t closed_faces = 0, closed_corners = 0;
     PolygonPool below_outlines;
     Array<PieceBelow> below;
     Envelope kept;
@@ -55,8 +64,8 @@ struct ChunkStart {
 /// is no room for waits until all are done.
 class ChunkJoining {
 public:
-    /// Makes room for what becomes of most envelopes of so many facets.
-    ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
+    /// Makes room for what becomes of the facets of most envelopes.
+    ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, const Envelope& envelope,
                  Construction& construction, Envelope& next, PiecesBelow& below);
 
     /// Finds where a chunk goes; to be called once for each, in order, by one thread at a time.
@@ -70,8 +79,10 @@ public:
 private:
     bool has_room();
     void put(std::size_t chunk);
+    void put_faces(const ChunkResult& chunk, const ChunkStart& at);
 
     std::vector<std::unique_ptr<ChunkResult>>& chunks_;
+    const Envelope& envelope_;
     Construction& construction_;
     Envelope& next_;
     PiecesBelow& below_;

@@ -9,11 +9,6 @@ using exact::Sides;
 
 namespace {
 
-/// An edge of a polygon.
-exact::DirectedEdge edge_of(PolygonView polygon, std::size_t i) {
-    return {polygon[i].line, polygon[i].point, polygon[i + 1 < polygon.size() ? i + 1 : 0].point};
-}
-
 bool bit(std::uint32_t bits, std::size_t i) {
     return (bits >> i & 1U) != 0;
 }

@@ -153,8 +153,16 @@ private:
         std::int32_t node = is_thick ? kOutsideCell : kLeftOut;
         if (is_wanted(facet, pieces)) node = add_nodes(facet, 1, is_thick);
         const auto [begin, end] = envelope_.faces_of(facet);
-        for (std::size_t f = begin; f < end; ++f)
-            seal(facet, f, envelope_.face_polygons[f], node);
+        if (node >= 0) {
+            const auto& offsets = envelope_.face_polygons.offsets;
+            result_.closed.push_back(
+                {static_cast<std::uint32_t>(facet), node, result_.faces.size()});
+            result_.closed_faces += end - begin;
+            result_.closed_corners += offsets[end] - offsets[begin];
+        } else {
+            for (std::size_t f = begin; f < end; ++f)
+                seal(facet, f, envelope_.face_polygons[f], node);
+        }
         for (const Piece& piece : pieces.list)
             add_below(pieces, piece, node);
     }
@@ -225,7 +233,7 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     const std::size_t size = blocks == nullptr ? kColumnFacets : kBlockFacets;
     const std::size_t chunks = (envelope.size() + size - 1) / size;
     std::vector<std::unique_ptr<ChunkResult>> results(chunks);
-    ChunkJoining joining(results, envelope.size(), construction, overlaid.kept, overlaid.below);
+    ChunkJoining joining(results, envelope, construction, overlaid.kept, overlaid.below);
     OrderedCommit commit(geometry, chunks, envelope.size());
     const auto find_offset = [&](std::size_t c) { joining.find_offset(c); };
     parallel_chunks(chunks, execution, [&](std::size_t c) {

@@ -58,18 +58,23 @@ bool same_corners(PolygonView a, PolygonView b) {
 
 }  // namespace
 
+/// Whether the outline is that of the polygon after the last that was one.
+bool PieceFinder::is_expected(PolygonView outline) const {
+    return expected_ < tiling_.polygons.size() &&
+           same_corners(outline, tiling_.polygons[expected_]);
+}
+
 /// Finds polygons that may share an area with the outline. Where one is the outline, as on meshes
 /// that surfaces have in common and where the frame is filled around equal borders, it is the only
 /// one; whether so is the result.
 bool PieceFinder::find_candidates(PolygonView outline) {
-    const auto polygon = [&](std::size_t i) { return tiling_.polygons[i]; };
-    if (expected_ < tiling_.polygons.size() && same_corners(outline, polygon(expected_))) {
+    if (is_expected(outline)) {
         candidates_.assign(1, static_cast<std::int32_t>(expected_++));
         return true;
     }
     tiling_.grid.candidates(scope_, outline, candidates_);
     for (const std::int32_t c : candidates_) {
-        if (!same_corners(outline, polygon(static_cast<std::size_t>(c)))) continue;
+        if (!same_corners(outline, outline_of(c))) continue;
         candidates_.assign(1, c);
         expected_ = static_cast<std::size_t>(c) + 1;
         return true;
@@ -114,6 +119,10 @@ const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
 const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     if (!plane.has_value()) return find(outline, plane);
     const Facet facet = facet_of(outline, plane);
+    if (!is_expected(outline) && walk_.begin(outline)) {
+        add_walked(facet);
+        return pieces_;
+    }
     if (begin(facet)) return pieces_;
     // for as long as all is higher, it is only looked which polygons meet the facet
     higher_.clear();
@@ -131,7 +140,24 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     add_all({higher_.begin(), higher_.end()}, facet);
     add_all({c, candidates_.end()}, facet);
     assert(tile(scope_, pieces_, outline));
+    walk_.set_start(pieces_.list.back().polygon);
     return pieces_;
+}
+
+void PieceFinder::add_walked(const Facet& facet) {
+    pieces_.clear();
+    std::size_t higher = 0;
+    while (higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
+        ++higher;
+    const bool is_all = higher == walk_.size();
+    for (std::size_t i = 0; i < walk_.size(); ++i) {
+        if (is_all) {
+            add(walk_.polygon(i), Side::kNotBelow, {});
+        } else {
+            add_common(walk_.polygon(i), walk_.common(i), facet);
+        }
+    }
+    assert(is_all || tile(scope_, pieces_, facet.outline));
 }
 
 /// Whether a polygon of the tiling is nowhere below the facet where they meet, as far as heights

@@ -8,6 +8,7 @@
 
 #include "strata/overlay/envelope.hpp"
 #include "strata/overlay/facet_clipper.hpp"
+#include "strata/overlay/tiling_walk.hpp"
 
 namespace realmodel::strata {
 
@@ -48,7 +49,11 @@ struct Pieces {
 class PieceFinder {
 public:
     PieceFinder(LocalArrangement& scope, const SurfaceTiling& tiling)
-        : scope_(scope), clipper_(scope), facet_clipper_(scope), tiling_(tiling) {}
+        : scope_(scope),
+          clipper_(scope),
+          facet_clipper_(scope),
+          walk_(scope, tiling),
+          tiling_(tiling) {}
 
     /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
     /// none of it below a void.
@@ -76,8 +81,10 @@ private:
     bool is_higher(std::int32_t polygon, const Facet& facet) const;
     void note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
                    PolygonView common);
+    bool is_expected(PolygonView outline) const;
     bool find_candidates(PolygonView outline);
     bool begin(const Facet& facet);
+    void add_walked(const Facet& facet);
     void add_all(std::span<const std::int32_t> polygons, const Facet& facet);
     void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
     void add(std::int32_t polygon, Side side, PolygonView outline);
@@ -87,6 +94,7 @@ private:
     LocalArrangement& scope_;
     Clipper clipper_;
     FacetClipper facet_clipper_;
+    TilingWalk walk_;
     const SurfaceTiling& tiling_;
     Pieces pieces_;
     std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece

@@ -43,6 +43,18 @@ bool may_cross(const PlanBox& box, const Window& window) {
     return !is_inside && wide.meets({window.low_x, window.low_y, window.high_x, window.high_y});
 }
 
+/// Says that a triangle of a tiling is none any more.
+void unlink(SurfaceTiling& tiling, std::size_t p) {
+    tiling.runs_on[p] = 0;
+    if (p >= tiling.neighbor.size()) return;
+    for (std::int32_t& beyond : tiling.neighbor[p]) {
+        if (beyond < 0) continue;
+        std::ranges::replace(tiling.neighbor[static_cast<std::size_t>(beyond)],
+                             static_cast<std::int32_t>(p), -1);
+        beyond = -1;
+    }
+}
+
 }  // namespace
 
 Envelope region_envelope(Site& site, EnteredRock& rock, const Execution& execution) {
@@ -92,7 +104,7 @@ void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
         for (Corner& corner : outline)
             corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
         polygons.add(outline);
-        tiling.runs_on[p] = 0;
+        unlink(tiling, p);
         ++next;
     }
     tiling.polygons = std::move(polygons);

@@ -28,6 +28,11 @@ struct Corner {
 using Polygon = std::vector<Corner>;
 using PolygonView = std::span<const Corner>;
 
+/// An edge of a polygon.
+inline exact::DirectedEdge edge_of(PolygonView polygon, std::size_t i) {
+    return {polygon[i].line, polygon[i].point, polygon[i + 1 < polygon.size() ? i + 1 : 0].point};
+}
+
 /// Copies the corners of a polygon to other memory, those of triangles and of most pieces by a few
 /// instructions: a call for each costs more than its corners.
 inline void copy_corners(PolygonView from, Corner* to) {

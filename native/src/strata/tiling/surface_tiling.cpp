@@ -158,8 +158,8 @@ PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& 
 }
 
 SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
-                                  const std::vector<UsedTriangle>& triangles,
-                                  const SurfacePlan& plan, const PolygonPool& similar, int index,
+                                  const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
+                                  const PolygonPool& similar, int index,
                                   const Execution& execution) {
     SurfaceTiling tiling;
     const PlaneId first = make_planes(geometry, triangles, execution);
@@ -190,6 +190,7 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
             tiling.runs_on[t] = runs_on ? 1 : 0;
         }
     });
+    tiling.neighbor = std::move(plan.links.neighbor);
     return tiling;
 }
 

@@ -34,6 +34,9 @@ struct SurfaceTiling {
     /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
     /// edges, with one polygon beyond each.
     std::vector<std::uint8_t> runs_on;
+    /// Of the first polygons, where they are known: across each edge of a triangle the triangle
+    /// there, or -1.
+    std::vector<std::array<std::int32_t, 3>> neighbor;
     Array<HeightRange> heights;  ///< of each polygon's plane, where it has one
     PlanGrid grid;
 
@@ -84,12 +87,12 @@ std::vector<SurfacePlan> plan_surfaces(const exact::PlanArrangement& geometry,
 PlaneId make_planes(exact::PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     const Execution& execution);
 
-/// The tiling of a checked surface. `similar`: outlines that some of the triangles may have at the
-/// same numbers, whose lines are then known.
+/// The tiling of a checked surface, whose plan is taken. `similar`: outlines that some of the
+/// triangles may have at the same numbers, whose lines are then known.
 /// @throws InputError kind double_valued, with the two triangles and a position in both
 SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
-                                  const std::vector<UsedTriangle>& triangles,
-                                  const SurfacePlan& plan, const PolygonPool& similar, int index,
+                                  const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
+                                  const PolygonPool& similar, int index,
                                   const Execution& execution);
 
 /// The region as a tiling: plane kSky inside and kOutside outside.

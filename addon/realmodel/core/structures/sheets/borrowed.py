@@ -11,7 +11,7 @@ import numpy as np
 from ...base.algebra import dot, principal_axes
 from ...base.work import Work, native_module
 from ...surfaces.sides import FaultShape, fault_sides
-from ...surfaces.wrong_sides import Sheet, heights_at
+from ...surfaces.wrong_sides import Sheet
 from .tips import trace_of
 
 _FAR = 2.0  # ranges of its heights: a sheet that goes so far beyond them in another compartment is no guide
@@ -70,17 +70,15 @@ def sheet_runs_away(sheet: Sheet, known: np.ndarray, within: Callable[[np.ndarra
 
 def between_faults(
     work: Work,
-    sheets: list[Sheet],
+    first: Sheet,
+    heights: list[np.ndarray],
     faults: list[tuple[np.ndarray, FaultShape, int]],
 ) -> Sheet:
     """Several sheets as one, each with a weight of one over its distance from the fault across which it
-    comes: so the throw of each fault is that of its own sheet. faults: of each sheet, places (M, 2) along its
-    fault in plan, the fault, and on which side of it the sheet comes from. There no sheet counts from
-    elsewhere."""
-    vertices, triangles = sheets[0]
-    plan = np.ascontiguousarray(vertices[:, :2])
-    own = [vertices[:, 2], *(heights_at(work, sheet, plan) for sheet in sheets[1:])]
-    heights = np.where(np.isfinite(own), own, np.nan)
+    comes: so the throw of each fault is that of its own sheet. heights: (V,) of each sheet, at the vertices
+    of the first. faults: of each sheet, places (M, 2) along its fault in plan, the fault, and on which side
+    of it the sheet comes from. There no sheet counts from elsewhere."""
+    plan, known = np.ascontiguousarray(first.vertices[:, :2]), np.isfinite(heights)
     nearest = native_module().nearest_points
     away = np.array([work.native(nearest, places, plan)[1][:, 0] for places, _, _ in faults])
     from_there = np.array(
@@ -89,10 +87,11 @@ def between_faults(
             for z, (_, fault, side) in zip(heights, faults, strict=True)
         ]
     )
-    counts = np.isfinite(heights) & (from_there | ~from_there.any(axis=0))
+    counts = known & (from_there | ~from_there.any(axis=0))
     counts[0] |= ~counts.any(axis=0)
     away = np.where(counts, away, np.inf)
     least = away.min(axis=0)
     share = np.where(away == least, 1.0, least / np.where(away > 0, away, 1.0))
     total = np.where(counts, share * heights, 0.0).sum(axis=0)
-    return Sheet(np.column_stack([plan, total / np.where(counts, share, 0.0).sum(axis=0)]), triangles)
+    z = total / np.where(counts, share, 0.0).sum(axis=0)
+    return Sheet(np.column_stack([plan, z]), first.triangles)

@@ -101,10 +101,13 @@ class CompartmentSheets:
                 assert source.shift is not None and source.fault is not None
                 side = source.family.key[source.fault]
                 faults.append((source.shift.places, shapes[source.fault], side))
-            trends = {
-                sides: between_faults(throws.work, [each[sides] for each in taken], faults)
-                for sides in trends
-            }
+            trends = {}
+            for sides, first in taken[0].items():
+                plan = np.ascontiguousarray(first.vertices[:, :2])
+                others = [each[sides] for each in taken[1:]]
+                heights = [throws.heights_at(self.number, plan, self.number, sheet) for sheet in others]
+                heights.insert(0, first.vertices[:, 2])
+                trends[sides] = between_faults(throws.work, first, heights, faults)
             self.surface.adopt(trends, taken[0])
         with named(self.entry.rock, self.number):
             trends = _drawn_together(self.surface, family, trends)

@@ -53,9 +53,10 @@ class ReadyMesh:
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
         self.reach, away, width, self.on_lips = self._distances(faults.shapes)
         is_lip = self._lips(away < self.reach)
+        corners = np.ascontiguousarray(self.triangles.T)
         for fault in np.flatnonzero(self.active):
-            may_meet = away[self.triangles, fault].min(axis=1) <= width
-            self._divide(int(fault), faults.shapes[fault], is_lip[:, fault], may_meet)
+            may_meet = away[:, fault][corners].min(axis=0) <= width
+            self._divide(int(fault), faults.shapes[fault], is_lip[:, fault], corners, may_meet)
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
@@ -83,14 +84,17 @@ class ReadyMesh:
         found[rows] = near[rows] & is_border[welded(vertices), None]
         return found
 
-    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray, may_meet: np.ndarray) -> None:
+    def _divide(
+        self, fault: int, shape: FaultShape, is_lip: np.ndarray, corners: np.ndarray, may_meet: np.ndarray
+    ) -> None:
         """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
-        cutoff line, wherever it lies up to rounding. may_meet: (T,) bool, the triangles that may meet it."""
+        cutoff line, wherever it lies up to rounding. corners: (3, T) of the triangles; may_meet: (T,) bool,
+        those that may meet it."""
         side = fault_sides(self.work, self.vertices, shape)
         side[on_fault(self.vertices, shape) | is_lip] = 0
-        corners = side[self.triangles.T]
-        mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
-        clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)) & may_meet)
+        sides = side[corners]
+        mask = np.where((sides < 0).any(axis=0), LEFT, 0) | np.where((sides > 0).any(axis=0), RIGHT, 0)
+        clear = np.flatnonzero((sides != 0).all(axis=0) & (mask != (LEFT | RIGHT)) & may_meet)
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
         mask[clear[crossed]] = LEFT | RIGHT
         along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault

@@ -13,7 +13,7 @@ from ...base.algebra import dot, principal_axes
 from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.rock_structure import RockStructure
-from ...surfaces.wrong_sides import heights_at
+from ...surfaces.wrong_sides import PlacesOnSheet, heights_at
 from .displacement import Measured
 from .families import Family
 from .tips import shared
@@ -95,6 +95,7 @@ class Throws:
         self.rank[:, few] = FEW
         self._measures: dict[tuple[int, int], Measured] = {}  # by surface and fault
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
+        self._places: dict[tuple[int, int], PlacesOnSheet] = {}  # of vertices of one surface on another one
 
     def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
         """The sheets of a surface in a family."""
@@ -152,23 +153,38 @@ class Throws:
                 z = vertices[:, 2] + shift.at(vertices[:, :2])
                 if pairs:
                     here, there = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
-                    laid_on = self._laid(vertices, within(vertices), shift.surfaces, here, there)
+                    laid_on = self._laid(number, vertices, within(vertices), shift.surfaces, here, there)
                     z = np.where(np.isfinite(laid_on), laid_on, z)
                 laid[sides] = Sheet(np.column_stack([vertices[:, :2], z]), triangles)
         return shared(laid)
+
+    def heights_at(self, number: int, plan: np.ndarray, other: int, sheet: Sheet) -> np.ndarray:
+        """(V,) heights of a sheet of any surface at the vertices of one of surface `number`, whose sheets
+        mostly have one plan."""
+        places = self._places.get((number, other))
+        if places is None or not (sheet.has_plan_of(places.sheet) and np.array_equal(plan, places.plan)):
+            places = self._places[number, other] = PlacesOnSheet.of(self.work, sheet, plan)
+        return places.heights(sheet)
 
     def _has(self, pair: tuple[int, int], number: int) -> bool:
         """Whether a surface has sheets in two compartments."""
         return all(self.structure.sheets[each][number] is not None for each in pair)
 
     def _laid(
-        self, vertices: np.ndarray, known: np.ndarray, surfaces: tuple[int, ...], here: int, there: int
+        self,
+        number: int,
+        vertices: np.ndarray,
+        known: np.ndarray,
+        surfaces: tuple[int, ...],
+        here: int,
+        there: int,
     ) -> np.ndarray:
-        """(V,) the heights of a sheet of compartment `there`, with vertices (V, 3) that are known, (V,) bool,
-        in compartment `here`, where it lies likewise on or between others; NaN where these have none."""
+        """(V,) the heights of a sheet of a surface in compartment `there`, with vertices (V, 3) that are
+        known, (V,) bool, in compartment `here`, where it lies likewise on or between others; NaN where these
+        have none."""
         plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
         from_there, own = (
-            [heights_at(self.work, self.structure.sheet(each, n), plan) for n in surfaces]
+            [self.heights_at(number, plan, n, self.structure.sheet(each, n)) for n in surfaces]
             for each in (there, here)
         )
         if len(own) == 1:
