@@ -160,12 +160,12 @@ void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result,
 class LineChunk {
 public:
     LineChunk(const PlanArrangement& geometry, const FaceList& faces,
-              const PlanVertices& plan_vertices, PassedVertices& passed)
-        : faces_(faces),
-          plan_vertices_(plan_vertices),
+              const PlanVertices& plan_vertices, const Array<std::uint8_t>* cell_is_thick,
+              PassedVertices& passed)
+        : plan_vertices_(plan_vertices),
           passed_(passed),
           on_line_(geometry, plan_vertices),
-          matching_(geometry, faces) {}
+          matching_(geometry, faces, cell_is_thick) {}
 
     /// Begins with a line.
     /// @param edges  its edges, whose ends are plan vertices
@@ -187,7 +187,7 @@ public:
     /// Where the cells on both sides of a pair are thick, no other face is as high as the pair
     /// where it passes a plan vertex: around it all columns have one of its two faces.
     /// @return whether all edges of the line match; if not, nothing was passed
-    bool pass_matched(const Array<std::uint8_t>& cell_is_thick, MatchedEdges& matched) {
+    bool pass_matched(MatchedEdges& matched) {
         // Plan vertices have numbers in order of x, and hardly ever the same x. Each end of a pair
         // is where an edge begins.
         bool same_x = false;
@@ -196,11 +196,8 @@ public:
         if (same_x) put_in_order({});
         if (!matching_.match_all(edges_, line_)) return false;
         matching_.add_walls(matched);
-        bool all_known = is_ranked_;
-        for (const auto& [left, right] : matching_.matches()) {
-            if (is_between(*left, cell_is_thick) && is_between(*right, cell_is_thick)) continue;
-            if (!all_known) sort_ends_of_matches();
-            all_known = true;
+        if (!matching_.thin().empty() && !is_ranked_) sort_ends_of_matches();
+        for (const auto& [left, right] : matching_.thin()) {
             const std::int32_t from = is_ranked_ ? left->from : on_line_.number_of(left->from);
             const std::int32_t to = is_ranked_ ? left->to : on_line_.number_of(left->to);
             if (to - from == 1) continue;
@@ -245,17 +242,6 @@ private:
             passed_.vertices.push_back(*(vertex += step));
     }
 
-    /// Whether a face lies between thick cells, or those and the outside.
-    bool is_between(const LineEdge& edge, const Array<std::uint8_t>& cell_is_thick) const {
-        const auto face = static_cast<std::size_t>(edge.face);
-        const auto is_thick = [&](std::int32_t cell) {
-            return cell < 0 ? cell == kOutsideCell
-                            : cell_is_thick[static_cast<std::size_t>(cell)] != 0;
-        };
-        return is_thick(faces_.above[face]) && is_thick(faces_.below[face]);
-    }
-
-    const FaceList& faces_;
     const PlanVertices& plan_vertices_;
     PassedVertices& passed_;
     VerticesOnLine on_line_;
@@ -296,7 +282,7 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
         [&](std::size_t bucket) {
             BucketEdges edges;
             buckets.collect(bucket, plan_vertices, edges);
-            LineChunk chunk(geometry, faces, plan_vertices, result.passed[bucket]);
+            LineChunk chunk(geometry, faces, plan_vertices, cell_is_thick, result.passed[bucket]);
             MatchedEdges matched;
             const std::size_t begin = buckets.first_line(bucket);
             std::size_t next_extra = extra_from(begin);
@@ -308,7 +294,7 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
                 const std::span<LineEdge> of_line = edges[t - begin];
                 chunk.begin(of_line, lines.representative[t]);
                 if (cell_is_thick != nullptr && first_extra == next_extra &&
-                    chunk.pass_matched(*cell_is_thick, matched))
+                    chunk.pass_matched(matched))
                     continue;
                 chunk.pass_all(
                     {extra_vertices.begin() + first_extra, extra_vertices.begin() + next_extra});

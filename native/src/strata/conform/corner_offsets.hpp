@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,14 +31,21 @@ public:
                   const Execution& execution);
 
     /// The first entry of a corner. Of the number of corners: how many entries there are.
-    std::uint32_t first(std::size_t corner) const {
+    std::uint32_t first(std::size_t corner) const { return entries(corner)[0]; }
+    /// The first entry of a corner, and the first of the next one.
+    std::array<std::uint32_t, 2> entries(std::size_t corner) const {
+        std::uint32_t entry = near(corner);
         const std::size_t block = corner / kBlock;
-        std::uint32_t entry = entry_of_block_[block] + static_cast<std::uint32_t>(corner % kBlock);
+        std::uint32_t i = passing_of_block_[block];
         const std::uint32_t end = passing_of_block_[block + 1];
-        for (std::uint32_t i = passing_of_block_[block]; i < end && passing_[i].corner < corner;
-             ++i)
+        for (; i < end && passing_[i].corner < corner; ++i)
             entry += passing_[i].vertices;
-        return entry;
+        const bool passes = i < end && passing_[i].corner == corner;
+        return {entry, entry + 1 + (passes ? passing_[i].vertices : 0)};
+    }
+    /// An entry somewhat before those of a corner, of which memory may be asked for.
+    std::uint32_t near(std::size_t corner) const {
+        return entry_of_block_[corner / kBlock] + static_cast<std::uint32_t>(corner % kBlock);
     }
     /// Calls visit(corner, first entry) for a range of corners.
     template <class Visit>

@@ -86,43 +86,42 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
 void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
                           BucketEdges& into) const {
     const std::size_t first = first_line(bucket), count_of_lines = first_line(bucket + 1) - first;
-    const PlanVertexId* const of_point = plan_vertices.of_point.begin();
-    const auto vertex_of = [&](std::size_t corner) {
-        return of_point[index(faces_.polygons.points[corner])];
+    const std::uint32_t* const offsets = faces_.polygons.offsets.begin();
+    const DirectedLine* const line_of_corner = faces_.polygons.lines.begin();
+    const std::int32_t* const joined = lines_.of_line.begin();
+    const auto line_of = [&](std::size_t corner) {
+        const std::size_t line = index(joined[index(line_of_corner[corner].id())]);
+        return std::min(line - first, count_of_lines);  // huge, where before
     };
     // Counted two further on, these become the ends, and filled up to their ends the beginnings.
-    // About every other edge is on a line of another bucket: it is put down, too, and the next one
-    // in its stead.
+    // About every other edge is on a line of another bucket: it is put down, too, behind all
+    // others.
     into.offsets_.assign(count_of_lines + 3, 0);
     std::uint32_t* const next = into.offsets_.data();
-    std::size_t count = 0;
     for (std::size_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
         prefetch_faces(i, first_[bucket + 1]);
+        const std::size_t face = index(faces_of_bucket_[i]);
+        for (std::size_t c = offsets[face], end = offsets[face + 1]; c < end; ++c)
+            ++next[line_of(c) + 2];
+    }
+    for (std::size_t t = 2; t < count_of_lines + 3; ++t)
+        next[t] += next[t - 1];
+    into.edges_.resize(next[count_of_lines + 2]);
+    LineEdge* const edges = into.edges_.begin();
+    const PointId* const points = faces_.polygons.points.begin();
+    const PlanVertexId* const of_point = plan_vertices.of_point.begin();
+    for (std::size_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
         const std::int32_t face = faces_of_bucket_[i];
-        const std::uint32_t* const offsets = &faces_.polygons.offsets[index(face)];
-        const std::size_t begin = offsets[0], end = offsets[1];
-        if (count + (end - begin) > into.found_.size())
-            into.found_.resize(2 * into.found_.size() + (end - begin) + kEdges);
-        Found* const found = into.found_.data();
-        PlanVertexId from = vertex_of(end - 1);
+        const std::size_t end = offsets[index(face) + 1];
         std::size_t leaving = end - 1;
-        for (std::size_t c = begin; c < end; ++c) {
-            const PlanVertexId to = vertex_of(c);
-            const std::size_t line = joined_line(leaving) - first;  // huge, where before
-            const std::size_t known = std::min(line, count_of_lines);
-            ++next[known + 2];
-            found[count] = {{from, to, static_cast<std::uint32_t>(leaving), face},
-                            static_cast<std::uint32_t>(known)};
-            count += known < count_of_lines ? 1 : 0;
+        PlanVertexId from = of_point[index(points[leaving])];
+        for (std::size_t c = offsets[index(face)]; c < end; leaving = c++) {
+            const PlanVertexId to = of_point[index(points[c])];
+            edges[next[line_of(leaving) + 1]++] = {from, to, static_cast<std::uint32_t>(leaving),
+                                                   face};
             from = to;
-            leaving = c;
         }
     }
-    for (std::size_t t = 2; t < count_of_lines + 2; ++t)
-        next[t] += next[t - 1];
-    into.edges_.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-        into.edges_[next[into.found_[i].line + 1]++] = into.found_[i].edge;
 }
 
 }  // namespace realmodel::strata

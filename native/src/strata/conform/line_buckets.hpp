@@ -19,14 +19,8 @@ public:
 
 private:
     friend class LineBuckets;
-    /// An edge as it is found, and its line.
-    struct Found {
-        LineEdge edge;
-        std::uint32_t line;
-    };
     std::vector<std::uint32_t> offsets_;
-    Array<LineEdge> edges_;
-    Array<Found> found_;
+    Array<LineEdge> edges_;  ///< and behind them what is on lines of other buckets
 };
 
 /// All lines in buckets of about as many edges each. Of a bucket only the faces are kept that have
@@ -45,7 +39,6 @@ public:
     void collect(std::size_t bucket, const PlanVertices& plan_vertices, BucketEdges& into) const;
 
 private:
-    using Found = BucketEdges::Found;
     /// Of the edge that leaves a corner.
     std::size_t joined_line(std::size_t corner) const {
         const LineId line = faces_.polygons.lines[corner].id();

@@ -46,61 +46,70 @@ bool EdgeMatching::match(std::span<Segment> left, std::span<Segment> right,
         const Name& known = left_names_[i].first;
         if (known != right_names_[i].first) return false;
         if (i > 0 && known == left_names_[i - 1].first) return false;  // which is whose?
-        matches_.push_back({left_names_[i].second, right_names_[i].second});
+        add({left_names_[i].second, right_names_[i].second});
     }
     return true;
 }
 
 bool EdgeMatching::find_matches(std::span<const LineEdge> edges, LineId line_id) {
-    if (edges.size() % 2 != 0) return false;
-    segments_.clear();
+    segments_.resize(edges.size());
+    Segment* next = segments_.begin();
     for (const LineEdge& edge : edges) {
         const bool is_right = edge.from > edge.to;
-        const auto [low, high] = std::minmax(edge.from, edge.to);
-        segments_.push_back({packed_pair(low, high) << 1 | (is_right ? 1 : 0), &edge});
+        const auto [low, high] =
+            is_right ? std::pair(edge.to, edge.from) : std::pair(edge.from, edge.to);
+        *next++ = {packed_pair(low, high) << 1 | (is_right ? 1 : 0), &edge};
     }
     std::sort(segments_.begin(), segments_.end(),
               [](const Segment& a, const Segment& b) { return a.ends_and_side < b.ends_and_side; });
     const exact::Line& line = geometry_.line(line_id);
-    matches_.clear();
-    same_ = {kNone, kNone};
-    for (std::size_t begin = 0, end = 0; begin < segments_.size(); begin = end) {
-        std::size_t right = begin;
-        for (end = begin;
-             end < segments_.size() && segments_[end].ends() == segments_[begin].ends(); ++end)
-            right += segments_[end].is_right() ? 0 : 1;
-        if (end - right != right - begin) return false;
-        if (end - right > 1) {
-            if (!match({&segments_[begin], end - right}, {&segments_[right], end - right}, line))
-                return false;
+    for (Segment *begin = segments_.begin(), *const last = segments_.end(); begin != last;) {
+        if (begin->is_right() || begin + 1 == last) return false;
+        if (begin[1].ends_and_side == begin->ends_and_side + 1) {  // one edge on each side
+            if (!are_one_line(*begin->edge, *begin[1].edge, line)) return false;
+            add({begin->edge, begin[1].edge});
+            begin += 2;
             continue;
         }
-        matches_.push_back({segments_[begin].edge, segments_[right].edge});
-        if (!are_one_line(*matches_.back().left, *matches_.back().right, line)) return false;
+        const auto right = std::find_if(begin, last, [](const Segment& s) { return s.is_right(); });
+        const auto count = static_cast<std::size_t>(right - begin);
+        if (static_cast<std::size_t>(last - right) < count ||
+            right[count - 1].ends_and_side != begin->ends_and_side + 1 ||
+            begin[count - 1].ends() != begin->ends() ||
+            !match({begin, count}, {right, count}, line))
+            return false;
+        begin = right + count;
     }
     return true;
 }
 
-void EdgeMatching::find_bounds() {
-    bounds_.clear();
-    beneath_.clear();
-    bool one_wall = true;
-    for (const Pair& pair : matches_) {
-        const auto left = static_cast<std::size_t>(pair.left->face);
-        const auto right = static_cast<std::size_t>(pair.right->face);
-        const auto add = [&](std::int32_t l, std::int32_t r, std::int32_t is_beneath, auto& to) {
-            l = cell_of(l);
-            r = cell_of(r);
-            if (l == r) return;
-            to.push_back({packed_pair(l, r), packed_pair(is_beneath, pair.left->from), pair.left});
-            const Bound& first = bounds_.empty() ? beneath_[0] : bounds_[0];
-            one_wall = one_wall && to.back().cells == first.cells;
-        };
-        add(faces_.above[left], faces_.above[right], 1, beneath_);
-        add(faces_.below[left], faces_.below[right], 0, bounds_);
-    }
-    bounds_.insert(bounds_.end(), beneath_.begin(), beneath_.end());
-    if (one_wall) return;  // matches are in order along the line
+/// Adds a match, and what walls it bounds. A face is known to be as high as no other where it lies
+/// between thick cells, or those and the outside.
+void EdgeMatching::add(const Pair& pair) {
+    const std::size_t left = index(pair.left->face), right = index(pair.right->face);
+    const std::array above{faces_.above[left], faces_.above[right]};
+    const std::array below{faces_.below[left], faces_.below[right]};
+    const auto is_thick = [&](std::int32_t cell) {
+        return cell < 0 ? cell == kOutsideCell : (*cell_is_thick_)[index(cell)] != 0;
+    };
+    if (!is_thick(above[0]) || !is_thick(above[1]) || !is_thick(below[0]) || !is_thick(below[1]))
+        thin_.push_back(pair);
+    if (above[0] != above[1]) add_bound(above, 1, *pair.left);
+    if (below[0] != below[1]) add_bound(below, 0, *pair.left);
+}
+
+void EdgeMatching::add_bound(const std::array<std::int32_t, 2>& nodes, std::int32_t is_beneath,
+                             const LineEdge& left) {
+    const std::array cells{cell_of(nodes[0]), cell_of(nodes[1])};
+    if (cells[0] == cells[1]) return;
+    (is_beneath != 0 ? beneath_ : bounds_)
+        .push_back({packed_pair(cells[0], cells[1]), packed_pair(is_beneath, left.from), &left});
+}
+
+void EdgeMatching::sort_bounds() {
+    bounds_.append(beneath_.begin(), beneath_.end());
+    const auto differs = [&](const Bound& bound) { return bound.cells != bounds_[0].cells; };
+    if (std::none_of(bounds_.begin(), bounds_.end(), differs)) return;  // found along the line
     std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) {
         return a.cells != b.cells ? a.cells < b.cells : a.plan_vertex < b.plan_vertex;
     });
@@ -136,8 +145,12 @@ bool EdgeMatching::find_walls() {
 }
 
 bool EdgeMatching::match_all(std::span<const LineEdge> edges, LineId line) {
+    same_ = {kNone, kNone};
+    thin_.clear();
+    bounds_.clear();
+    beneath_.clear();
     if (!find_matches(edges, line)) return false;
-    find_bounds();
+    sort_bounds();
     return find_walls();
 }
 

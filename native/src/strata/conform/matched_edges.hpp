@@ -44,21 +44,23 @@ struct MatchedEdges {
 /// Finds the matches of one line after another.
 class EdgeMatching {
 public:
-    EdgeMatching(const exact::PlanArrangement& geometry, const FaceList& faces)
-        : geometry_(geometry), faces_(faces) {}
+    EdgeMatching(const exact::PlanArrangement& geometry, const FaceList& faces,
+                 const Array<std::uint8_t>* cell_is_thick)
+        : geometry_(geometry), faces_(faces), cell_is_thick_(cell_is_thick) {}
 
     /// Matches the edges of a line.
     /// @param edges  with their ends counted along the line, or plan vertices whose numbers rise
     /// along it
     /// @param line  the line of the line
-    /// @return whether all match and the walls between them follow from that; then matches() and
+    /// @return whether all match and the walls between them follow from that; then thin() and
     ///     add_walls() are of this line
     bool match_all(std::span<const LineEdge> edges, LineId line);
 
     struct Pair {
         const LineEdge *left, *right;
     };
-    const std::vector<Pair>& matches() const { return matches_; }
+    /// The matches beside which a cell, or what was left out, is not thick.
+    const std::vector<Pair>& thin() const { return thin_; }
     /// Adds the walls of the line matched last.
     void add_walls(MatchedEdges& to) const;
 
@@ -94,18 +96,22 @@ private:
     bool find_matches(std::span<const LineEdge> edges, LineId line);
     bool are_one_line(const LineEdge& left, const LineEdge& right, const exact::Line& line);
     bool match(std::span<Segment> left, std::span<Segment> right, const exact::Line& line);
-    void find_bounds();
+    void add(const Pair& pair);
+    void add_bound(const std::array<std::int32_t, 2>& nodes, std::int32_t is_beneath,
+                   const LineEdge& left);
+    void sort_bounds();
     bool find_walls();
     std::uint32_t end_corner(const LineEdge& edge) const;
 
     const exact::PlanArrangement& geometry_;
     const FaceList& faces_;
-    std::vector<Segment> segments_;
+    const Array<std::uint8_t>* cell_is_thick_;
+    Array<Segment> segments_;
     std::array<PlaneId, 2> same_{kNone,
                                  kNone};  ///< planes that have the line of the line in common
     std::vector<std::pair<Name, const LineEdge*>> left_names_, right_names_;
-    std::vector<Pair> matches_;
-    std::vector<Bound> bounds_, beneath_;
+    std::vector<Pair> thin_;
+    Array<Bound> bounds_, beneath_;
     std::vector<Wall> walls_;
 };
 

@@ -146,20 +146,14 @@ public:
         : conformed_(conformed), walls_(walls) {}
 
     void add(const MatchedEdges& matched) {
-        const std::uint32_t *next = matched.corners.begin(), *const end = matched.corners.end();
+        const std::uint32_t* next = matched.corners.begin();
+        last_ = matched.corners.end() - 1;
         for (const MatchedEdges::Wall& wall : matched.walls) {
-            for (std::ptrdiff_t ahead = 0; ahead < 6; ++ahead) {
-                const auto corner = [&](std::ptrdiff_t further) {
-                    return next[std::min(further + ahead, end - 1 - next)];
-                };
-                conformed_.entries.prefetch(corner(64));
-                prefetch(&conformed_.vertices[conformed_.entries.first(corner(32))]);
-            }
             next = collect(next, wall.above, upper_);
             next = collect(next, wall.beneath, lower_);
             add_parts(wall.cells);
         }
-        assert(next == end);
+        assert(next == last_ + 1);
     }
 
 private:
@@ -168,14 +162,24 @@ private:
     const std::uint32_t* collect(const std::uint32_t* corner, std::uint32_t count,
                                  std::vector<std::int32_t>& vertices) const {
         vertices.clear();
-        for (std::uint32_t i = 0; i < count; ++i, ++corner) {
-            const std::uint32_t end = conformed_.entries.first(*corner + 1);
-            for (std::uint32_t e = conformed_.entries.first(*corner); e < end; ++e) {
+        for (const std::uint32_t* const end = corner + count; corner != end; ++corner) {
+            prefetch_corner(corner);
+            const auto [first, next] = conformed_.entries.entries(*corner);
+            vertices.push_back(conformed_.vertices[first]);
+            for (std::uint32_t e = first + 1; e < next; ++e) {
                 if (conformed_.vertices[e] >= 0) vertices.push_back(conformed_.vertices[e]);
             }
         }
         vertices.push_back(conformed_.vertices[conformed_.entries.first(*corner)]);
         return corner + 1;
+    }
+
+    [[gnu::always_inline]] void prefetch_corner(const std::uint32_t* corner) const {
+        const std::ptrdiff_t left = last_ - corner;
+        conformed_.entries.prefetch(corner[std::min<std::ptrdiff_t>(64, left)]);
+        prefetch(
+            &conformed_
+                 .vertices[conformed_.entries.near(corner[std::min<std::ptrdiff_t>(32, left)])]);
     }
 
     /// Adds the wall between upper_ and lower_, divided where these touch on the way.
@@ -211,6 +215,7 @@ private:
 
     const ConformedFaces& conformed_;
     WallBatch& walls_;
+    const std::uint32_t* last_ = nullptr;  ///< of the corners
     std::vector<std::int32_t> upper_, lower_;
 };
 

@@ -93,9 +93,14 @@ std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
     return {overlapping_.begin(), overlapping_.end()};
 }
 
-/// Begins with a facet; true where one polygon of the tiling is all that it meets, which is added.
-bool PieceFinder::begin(const Facet& facet) {
+/// Begins with a facet; true where that was all: where it was walked around, or one polygon of the
+/// tiling is all that it meets.
+bool PieceFinder::begin(const Facet& facet, bool for_split) {
     pieces_.clear();
+    if (!is_expected(facet.outline) && walk_.begin(facet.outline)) {
+        add_walked(facet, for_split);
+        return true;
+    }
     if (find_candidates(facet.outline)) {
         add_common(candidates_.front(), facet.outline, facet);
         return true;
@@ -107,11 +112,12 @@ bool PieceFinder::begin(const Facet& facet) {
 void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
     for (const std::int32_t polygon : polygons)
         add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
+    if (!pieces_.list.empty()) walk_.set_start(pieces_.list.back().polygon);
 }
 
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     const Facet facet = facet_of(outline, plane);
-    if (!begin(facet)) add_all({candidates_.begin(), candidates_.end()}, facet);
+    if (!begin(facet, false)) add_all({candidates_.begin(), candidates_.end()}, facet);
     assert(!plane.has_value() || tile(scope_, pieces_, outline));
     return pieces_;
 }
@@ -119,11 +125,7 @@ const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
 const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     if (!plane.has_value()) return find(outline, plane);
     const Facet facet = facet_of(outline, plane);
-    if (!is_expected(outline) && walk_.begin(outline)) {
-        add_walked(facet);
-        return pieces_;
-    }
-    if (begin(facet)) return pieces_;
+    if (begin(facet, true)) return pieces_;
     // for as long as all is higher, it is only looked which polygons meet the facet
     higher_.clear();
     auto c = candidates_.begin();
@@ -140,14 +142,12 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     add_all({higher_.begin(), higher_.end()}, facet);
     add_all({c, candidates_.end()}, facet);
     assert(tile(scope_, pieces_, outline));
-    walk_.set_start(pieces_.list.back().polygon);
     return pieces_;
 }
 
-void PieceFinder::add_walked(const Facet& facet) {
-    pieces_.clear();
+void PieceFinder::add_walked(const Facet& facet, bool for_split) {
     std::size_t higher = 0;
-    while (higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
+    while (for_split && higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
         ++higher;
     const bool is_all = higher == walk_.size();
     for (std::size_t i = 0; i < walk_.size(); ++i) {
@@ -157,7 +157,6 @@ void PieceFinder::add_walked(const Facet& facet) {
             add_common(walk_.polygon(i), walk_.common(i), facet);
         }
     }
-    assert(is_all || tile(scope_, pieces_, facet.outline));
 }
 
 /// Whether a polygon of the tiling is nowhere below the facet where they meet, as far as heights

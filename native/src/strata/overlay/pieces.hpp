@@ -83,8 +83,8 @@ private:
                    PolygonView common);
     bool is_expected(PolygonView outline) const;
     bool find_candidates(PolygonView outline);
-    bool begin(const Facet& facet);
-    void add_walked(const Facet& facet);
+    bool begin(const Facet& facet, bool for_split);
+    void add_walked(const Facet& facet, bool for_split);
     void add_all(std::span<const std::int32_t> polygons, const Facet& facet);
     void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
     void add(std::int32_t polygon, Side side, PolygonView outline);
