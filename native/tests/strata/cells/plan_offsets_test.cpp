@@ -35,10 +35,10 @@ TEST(PlanOffsets, VolumesDoNotDependOnWhereAModelIs) {
     }
 }
 
-/// A model of a hundredth of a meter there is as its cells are: they are what is written.
+/// A model of a millimeter there is as its cells are: they are what is written.
 TEST(PlanOffsets, VolumesAreThoseOfTheCellsWhereRoundingShows) {
     for (const CellKind cells : {CellKind::kColumns, CellKind::kBlocks}) {
-        const CellComplex small = model_at(0x1p22, 3 * 0x1p20, 0x1p-10, cells);
+        const CellComplex small = model_at(0x1p22, 3 * 0x1p20, 0x1p-14, cells);
         EXPECT_EQ(small.volumes, block_volumes(small, small.volumes.size(), {2, nullptr}));
     }
 }
