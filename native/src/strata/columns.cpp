@@ -119,7 +119,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
                                          construction, wanted, execution);
         tilings.give_back(std::move(tiling));
         // What input and chunks leave unused is scattered; giving it back takes time.
-        if (k % 4 == 2 && site.geometry.point_count() > kManyPoints) give_back_memory();
+        if (k % 4 == 0 && site.geometry.point_count() > kManyPoints) give_back_memory();
     }
     finish_rock(site, rock, envelope, construction);
     construction.count_blocks_from(first_node, rock.first_surface);

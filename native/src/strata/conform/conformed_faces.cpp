@@ -114,6 +114,9 @@ private:
         std::int32_t value;         ///< code of its plane; then its vertex of theirs, or -1
     };
 
+    std::uint32_t first_entry(std::size_t face) const {
+        return conformed_.entries.first(faces_.polygons.offsets[face]);
+    }
     static std::size_t plan_vertex(std::int32_t value) {
         return static_cast<std::size_t>(value < 0 ? ~value : value);
     }
@@ -122,8 +125,8 @@ private:
         parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
             Run run;
             const std::int32_t* const values = conformed_.vertices.begin();
-            std::for_each(values + conformed_.face_offsets[begin],
-                          values + conformed_.face_offsets[end], [&](std::int32_t value) {
+            std::for_each(values + first_entry(begin), values + first_entry(end),
+                          [&](std::int32_t value) {
                               run.lowest = std::min(run.lowest, plan_vertex(value));
                               run.highest = std::max(run.highest, plan_vertex(value));
                           });
@@ -146,13 +149,12 @@ private:
     }
     template <class Put>
     void put_entries(std::size_t run, std::size_t first, std::size_t size, const Put& put) const {
-        const std::uint32_t* const offsets = conformed_.face_offsets.begin();
         const std::int32_t* const values = conformed_.vertices.begin();
         const PlaneId* const planes = faces_.plane.begin();
         const std::size_t last = std::min((run + 1) * kFaces, faces_.size());
-        std::uint32_t e = offsets[run * kFaces];
+        std::uint32_t e = first_entry(run * kFaces);
         for (std::size_t f = run * kFaces; f < last; ++f) {
-            for (const std::uint32_t end = offsets[f + 1]; e < end; ++e) {
+            for (const std::uint32_t end = first_entry(f + 1); e < end; ++e) {
                 const std::size_t p = plan_vertex(values[e]) - first;  // huge, where before
                 if (p >= size) continue;
                 put(p / kTogether, Entry{e, static_cast<std::uint32_t>(p % kTogether),
@@ -298,8 +300,8 @@ ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& fa
     collinear.passed = {};
     if (points != nullptr) *points = {};
     name_entries(collinear, conformed, execution);
-    number_faces(faces, conformed, execution);
     VertexNumbering(geometry, faces, plan_vertices, conformed, execution).run();
+    number_faces(faces, conformed, execution);
     add_inserted_vertices(collinear, conformed, execution);
     return conformed;
 }
