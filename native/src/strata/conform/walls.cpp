@@ -146,6 +146,7 @@ public:
         : conformed_(conformed), walls_(walls) {}
 
     void add(const MatchedEdges& matched) {
+        if (matched.corners.empty()) return;
         const std::uint32_t* next = matched.corners.begin();
         last_ = matched.corners.end() - 1;
         for (const MatchedEdges::Wall& wall : matched.walls) {
