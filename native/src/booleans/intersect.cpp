@@ -57,8 +57,9 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Execution& exec
 }
 
 /// The parts of each surface that hang together across edges that are in no loop.
-void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
-                       const FacetCells& cells, Refinement& result, const Execution& execution) {
+void find_sub_surfaces(const RefinedTriangles& parts, const FacetMesh& mesh,
+                       const IntersectionLoops& loops, const FacetCells& cells, Refinement& result,
+                       const Execution& execution) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
@@ -81,9 +82,9 @@ void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
         }
     };
     parallel_each(mesh.edges.size(), execution, join_along);
-    std::vector<std::int32_t> root(result.source.size()), number(2 * count, -1);
+    std::vector<std::int32_t> root(parts.triangles.size()), number(2 * count, -1);
     parallel_each(root.size(), execution, [&](std::size_t t) {
-        root[t] = joined.find(side_of(mesh.of_part[t], result.source[t]));
+        root[t] = joined.find(side_of(mesh.of_part[t], parts.triangles[t].source));
     });
     for (std::size_t t = 0; t < root.size(); ++t) {
         poll(execution.progress, t);
@@ -93,7 +94,7 @@ void find_sub_surfaces(const FacetMesh& mesh, const IntersectionLoops& loops,
             const auto& [below, above] = cells.of_facet[index(mesh.of_part[t])];
             const bool is_between =
                 below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
-            result.sub_surfaces.push_back({result.source[t], {}, {}, is_between});
+            result.sub_surfaces.push_back({parts.triangles[t].source, {}, {}, is_between});
         }
         result.sub_surfaces[index(own)].triangles.push_back(static_cast<std::int32_t>(t));
     }
@@ -148,10 +149,12 @@ void write_triangles(const RefinedTriangles& parts, const FacetMesh& mesh, const
     std::memcpy(result.vertices.data(), parts.vertices.data(),
                 sizeof(double) * result.vertices.size());
     result.triangles.resize(count);
+    result.source.resize(count);
     result.source_triangle.resize(count);
     result.is_in.resize(count);
     parallel_each(count, execution, [&](std::size_t t) {
         result.triangles[t] = parts.triangles[t].corners;
+        result.source[t] = parts.triangles[t].source;
         result.source_triangle[t] = parts.triangles[t].origin;
         // the first part of a facet is turned as that is, the others are not asked
         const auto& sides = cells.of_facet[index(mesh.of_part[t])];
@@ -188,15 +191,11 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
     IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution);
     Refinement result;
-    const std::size_t count = parts.triangles.size();
     result.is_closed = closed_surfaces(mesh, execution);
     assert(are_wound(mesh, cells, result.is_closed));
-    result.source.resize(count);
-    parallel_each(count, execution,
-                  [&](std::size_t t) { result.source[t] = parts.triangles[t].source; });
     parallel_tasks(3, execution, 0.01, [&](std::size_t task, const Execution& own) {
         if (task == 0) {
-            find_sub_surfaces(mesh, loops, cells, result, own);
+            find_sub_surfaces(parts, mesh, loops, cells, result, own);
         } else if (task == 1) {
             find_sub_blocks(mesh, cells, result, own.progress);
         } else {

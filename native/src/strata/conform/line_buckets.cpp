@@ -87,11 +87,8 @@ void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
                           BucketEdges& into) const {
     const std::size_t first = first_line(bucket), count_of_lines = first_line(bucket + 1) - first;
     const std::uint32_t* const offsets = faces_.polygons.offsets.begin();
-    const DirectedLine* const line_of_corner = faces_.polygons.lines.begin();
-    const std::int32_t* const joined = lines_.of_line.begin();
     const auto line_of = [&](std::size_t corner) {
-        const std::size_t line = index(joined[index(line_of_corner[corner].id())]);
-        return std::min(line - first, count_of_lines);  // huge, where before
+        return std::min(joined_line(corner) - first, count_of_lines);  // huge, where before
     };
     // Counted two further on, these become the ends, and filled up to their ends the beginnings.
     // About every other edge is on a line of another bucket: it is put down, too, behind all
