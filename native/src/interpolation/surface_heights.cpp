@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "base/parallel.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
 #include "spatial/mesh_locator.hpp"
@@ -39,8 +40,8 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
                                        const Execution& execution) {
     const PlacesOnSurface places = places_on_surface(vertices, triangles, nodes, execution);
     std::vector<double> z(nodes.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < z.size(); ++i) {
-        if (places.triangle[i] < 0) continue;
+    parallel_each(z.size(), execution, [&](std::size_t i) {
+        if (places.triangle[i] < 0) return;
         const auto& corners = triangles[static_cast<std::size_t>(places.triangle[i])];
         // From the first corner: heights far from 0 lose no digits, a flat triangle is flat.
         const double base = vertices[static_cast<std::size_t>(corners[0])][2];
@@ -49,7 +50,7 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
             z[i] += places.weights[i][k - 1] *
                     (vertices[static_cast<std::size_t>(corners[k])][2] - base);
         }
-    }
+    });
     return z;
 }
 
