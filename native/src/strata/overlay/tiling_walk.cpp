@@ -96,13 +96,16 @@ bool TilingWalk::locate(PolygonView facet, std::span<const std::int32_t> polygon
     const auto is_known = [this](const Corner& c) { return known_place(c.point) != kUnknown; };
     if (std::ranges::any_of(facet, is_known)) return false;
     const PointId point = facet[0].point;
-    const auto has_point = [&](std::int32_t t) {
-        return index(t) < tiling_.neighbor.size() && side({t, 0}, point) > 0 &&
-               side({t, 1}, point) > 0 && side({t, 2}, point) > 0;
-    };
-    const auto found = std::ranges::find_if(polygons, has_point);
-    place(point) = {point, found == polygons.end() ? kNowhere : *found};
-    return found != polygons.end();
+    Place& of_point = place(point) = {point, kNowhere};
+    for (const std::int32_t t : polygons) {
+        if (std::ranges::max(tiling_.neighbor[index(t)]) < 0) continue;
+        int least = 1;
+        for (std::uint32_t i = 0; i < 3 && least >= 0; ++i)
+            least = std::min(least, side({t, i}, point));
+        if (least > 0) of_point.triangle = t;
+        if (least >= 0) return least > 0;
+    }
+    return false;
 }
 
 bool TilingWalk::begin(PolygonView facet) {
