@@ -296,13 +296,12 @@ Winding CutterWinding::cast(std::size_t region, Progress* progress) {
     for (const std::int32_t f :
          face_boxes_->find(arrangement::ray_box(points, p, axis), progress)) {
         const auto face = index(f);
+        const auto cells = overlay_.cells_of(face);
         for (const auto& t : overlay_.triangles_of(face)) {
-            const std::array corners{overlay_.exact(t[0]), overlay_.exact(t[1]),
-                                     overlay_.exact(t[2])};
-            const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
+            const int side = exact::ray_crosses(points, axis, p, t, faces_ray);
             if (side == 0) continue;
-            add(winding, overlay_.model().cell(face, 0), side);
-            add(winding, overlay_.model().cell(face, 1), -side);
+            add(winding, cells[0], side);
+            add(winding, cells[1], -side);
         }
     }
     return winding;

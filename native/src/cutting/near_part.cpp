@@ -16,11 +16,6 @@ namespace realmodel::cutting {
 
 namespace {
 
-/// How far from a surface a cell may be that is taken to be near.
-double margin_of(const CellBoxes& cells, const NearestSide& surface) {
-    return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
-}
-
 /// Widens a box around another one while other threads do so, too.
 void include_at_once(spatial::Box& box, const spatial::Box& other) {
     const auto widen = [](double& own, double to, const auto& is_beyond) {
@@ -57,6 +52,10 @@ std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_a
 }
 
 }  // namespace
+
+double margin_of(const CellBoxes& cells, const NearestSide& surface) {
+    return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+}
 
 CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces,
                      const Execution& execution)
@@ -178,7 +177,7 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
 }
 
 NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near,
-                   const Execution& execution)
+                   const Execution& execution, const NearestSide* surface, double margin)
     : model_(model), number_(model.cell_count(), -1) {
     for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
         if (is_near[index(c)] == 0) continue;
@@ -188,6 +187,8 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
     }
     faces_ = faces_of(
         model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, execution);
+    if (surface != nullptr && model.cell_kind == CellKind::kBlocks)
+        far_ = FarFaces(model, is_near, faces_, *surface, margin, execution);
     // in the model's order: what is decided by numbers does not depend on which faces come first
     std::vector<NodeId> own_vertex(model.vertex_count(), -1);
     for (const std::int32_t face : faces_) {
@@ -200,6 +201,7 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         vertices_.push_back(model.vertex(static_cast<NodeId>(v)));
         vertices_of_.push_back(static_cast<NodeId>(v));
     }
+    far_.renumber(own_vertex);
     for (const std::int32_t face : faces_) {
         const auto f = index(face);
         std::array<std::int32_t, 2> own{-1, -1};
@@ -264,6 +266,9 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
                                               std::span<const std::int8_t> sides) const {
     WholePieces whole;
     whole.model_ = model_;
+    whole.far_ = &far_;
+    whole.of_groups_.resize(far_.groups());
+    std::size_t first_faces = 0;
     whole.sides_ = sides;
     const std::vector<std::int32_t> number = number_parts(half_cells, whole);
     // pieces in the order of the model's faces, then caps
@@ -293,6 +298,11 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
         }
         if (piece.face >= 0) {
             const auto face = index(piece.face);
+            const bool is_first = far_.is_first(face);
+            if (is_first && (!std::ranges::equal(polygon, view().face(face)) ||
+                             (piece.cells[0] >= 0) != (piece.parts[0] >= 0) ||
+                             (piece.cells[1] >= 0) != (piece.parts[1] >= 0)))
+                return std::nullopt;
             piece.face = faces_[face];
             if (const std::int32_t beyond = beyond_[face]; beyond >= 0) {
                 piece.cells[1] = beyond;
@@ -304,6 +314,10 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
                     --beside;
                 }
             }
+            if (is_first) {
+                whole.of_groups_[index(far_.group(face))] = piece;
+                ++first_faces;
+            }
         }
         for (const NodeId node : polygon) {
             whole.near_.polygons.nodes.push_back(node < own ? vertices_of_[index(node)]
@@ -312,7 +326,7 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
         whole.near_.polygons.close();
         whole.near_.origins.push_back(piece);
     }
-    if (beside != 0) return std::nullopt;
+    if (beside != 0 || first_faces != far_.groups()) return std::nullopt;
     whole.first_cap_ = index(std::ranges::count_if(
         whole.near_.origins, [](const CutPiece& piece) { return piece.face >= 0; }));
     return whole;

@@ -5,14 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "cutting/far_faces.hpp"
 #include "cutting/nearest_side.hpp"
 #include "cutting/pieces.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
 
-/// The pieces of a whole model of which a part was cut up: those of that part, and the faces of the
-/// other cells, which stay as they are.
+/// The pieces of a whole model of which a part was cut up: those of that part, and the other faces,
+/// which stay as they are.
 class WholePieces {
 public:
     /// In chunks, of which several threads may visit some each: calls visit(polygon, piece) in the
@@ -40,27 +41,36 @@ private:
     }
 
     ComplexView model_;
+    const FarFaces* far_ = nullptr;
     CutPieces near_;
+    std::vector<CutPiece> of_groups_;     ///< of far faces: as their first faces are
     std::size_t first_cap_ = 0;           ///< in `near_`
     std::vector<std::int32_t> far_part_;  ///< of cells: -1 left out, kNear of the part
     std::span<const std::int8_t> sides_;
 };
 
 /// The cells of a model that a surface may touch, as a model of their own: what is done to them
-/// costs what they are, and the cells beside them stay as they are.
+/// costs what they are, and the cells beside them stay as they are. Of cells that are large beside
+/// the surface so do the faces away from it.
 class NearPart {
 public:
     /// @param is_near  of the model's cells: not 0 if it is one of them
+    /// @param surface  whose far faces are left out of blocks, which is asked for here alone;
+    ///                 nullptr: all faces are there
+    /// @param margin   how far from it they are at least
     NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near,
-             const Execution& execution);
+             const Execution& execution, const NearestSide* surface = nullptr, double margin = 0);
 
     ComplexView view() const;
+    /// What was left out of near cells.
+    const FarFaces& far() const { return far_; }
     /// The model's cell that one of the part is.
     std::int32_t cell(std::int32_t own) const { return cells_[index(own)]; }
     /// Makes pieces of the part's faces, and parts of its cells, those of the whole model, in the
     /// order of its faces and cells: the other cells are added, and their faces follow from them.
     /// @param sides  of the model's cells that are none of the part's: kOn leaves them out
-    /// @return nothing where rounding did not leave a face alone that lies beside another cell
+    /// @return nothing where rounding did not leave a face alone that lies beside another cell; to
+    ///         be used as long as the part is there
     std::optional<WholePieces> put_back(CutPieces&& pieces, std::vector<HalfCell>& half_cells,
                                         std::span<const std::int8_t> sides) const;
 
@@ -69,6 +79,7 @@ private:
                                            WholePieces& whole) const;
 
     ComplexView model_;
+    FarFaces far_;
     std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
     std::vector<Position> vertices_;
     std::vector<std::int64_t> face_offsets_{0};
@@ -87,7 +98,11 @@ struct CellBoxes {
     double rounding = 0;              ///< what vertices may be off by
 };
 
-/// Of cells: 1 where they come near a surface, farther than SurfaceOverlay takes to be near.
+/// How far from a surface a cell may be that is taken to be near: farther than SurfaceOverlay takes
+/// to be near.
+double margin_of(const CellBoxes& cells, const NearestSide& surface);
+
+/// Of cells: 1 where they come near a surface.
 /// @param surface  one of those that the boxes were made for
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
                                      const Execution& execution);
@@ -110,9 +125,25 @@ void WholePieces::each_of(std::size_t chunk, const Visit& visit) const {
     }
     const std::size_t begin = chunk * kChunk, end = std::min(model_.face_count(), begin + kChunk);
     std::size_t next = first_from(begin);
+    const auto far = far_->faces();
+    auto beyond = std::ranges::lower_bound(far, static_cast<std::int32_t>(begin));
+    std::vector<NodeId> reversed;
     for (std::size_t f = begin; f < end; ++f) {
         while (next < first_cap_ && index(near_[next].face) <= f)
             visit_near(next++);
+        if (beyond != far.end() && index(*beyond) == f) {
+            const auto place = static_cast<std::size_t>(beyond++ - far.begin());
+            CutPiece piece = of_groups_[index(far_->groups_of_faces()[place])];
+            piece.face = static_cast<std::int32_t>(f);
+            const auto polygon = model_.face(f);
+            if (far_->is_reversed(piece.face)) {
+                reversed.assign(polygon.rbegin(), polygon.rend());
+                visit(std::span<const NodeId>(reversed), piece);
+            } else {
+                visit(polygon, piece);
+            }
+            continue;
+        }
         CutPiece piece{static_cast<std::int32_t>(f),
                        {model_.cell(f, 0), model_.cell(f, 1)},
                        {kOn, kOn},

@@ -87,6 +87,12 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
             cells_.join(known, static_cast<std::int32_t>(i));
         }
     }
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        const std::int32_t group = overlay.far().group(f);
+        if (group >= 0)
+            cells_.join(regions + overlay.far().first(group),
+                        regions + static_cast<std::int32_t>(f));
+    }
     constexpr std::size_t kChunk = 1 << 12;
     const auto uses = sorted_in_buckets<EdgeUse>(
         overlay.node_count(), (items_ + kChunk - 1) / kChunk,

@@ -15,13 +15,12 @@ namespace realmodel::cutting {
 
 namespace {
 
-/// The cut where only the cells that are near take part; nothing where rounding went beyond them.
-std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
-                       std::span<const std::uint8_t> is_near,
+/// The cut where only a part of the model is near; nothing where rounding went beyond it.
+std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface, const NearPart& part,
                        std::span<const std::int8_t> sides_beside, const Execution& execution) {
-    const NearPart part(model, is_near, execution);
     const ComplexView near = part.view();
-    SurfaceOverlay overlay(near, surface, execution);
+    SurfaceOverlay overlay(near, surface, execution, 0, {}, part.far());
+    if (overlay.reaches_far_faces()) return std::nullopt;
     if (execution.progress != nullptr)
         execution.progress->begin(0.3, 0.5, "finding what the surface goes through");
     const CutterWinding winding(overlay, execution.progress);
@@ -31,8 +30,9 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
     SurfaceParts made(overlay, winding, sides, execution.progress);
     if (execution.progress != nullptr)
         execution.progress->begin(0.85, 0.92, "rounding what was cut");
-    round_parts({near, overlay.new_positions(), made.pieces, made.half_cells, false, execution},
-                made.touches);
+    round_parts(
+        {near, overlay.new_positions(), made.pieces, made.half_cells, false, execution, part.far()},
+        made.touches);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     if (execution.progress != nullptr)
@@ -47,16 +47,18 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
 Cut cut(const ComplexView& model, const CutterSurface& surface, const Execution& execution) {
     std::vector<std::uint8_t> is_near;
     std::vector<std::int8_t> sides;
+    std::optional<NearPart> part;
     {
-        const NearestSide nearest(surface);
+        const NearestSide nearest(surface, execution);
         const CellBoxes cells(model, {&nearest, 1}, execution);
         is_near = cells_near(cells, nearest, execution);
         sides = sides_of_far_cells(model, nearest, is_near, execution);
+        part.emplace(model, is_near, execution, &nearest, margin_of(cells, nearest));
     }
-    if (auto halves = cut(model, surface, is_near, sides, execution)) return *std::move(halves);
+    if (auto halves = cut(model, surface, *part, sides, execution)) return *std::move(halves);
     is_near.assign(is_near.size(), 1);
     sides.assign(sides.size(), kOn);
-    return *cut(model, surface, is_near, sides, execution);
+    return *cut(model, surface, NearPart(model, is_near, execution), sides, execution);
 }
 
 bool is_same(const ComplexView& one, const ComplexView& other) {

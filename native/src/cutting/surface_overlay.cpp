@@ -28,9 +28,10 @@ double computed_ulps(double x) {
 
 SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
                                const Execution& execution, double least_rounding,
-                               std::span<const std::int32_t> groups)
+                               std::span<const std::int32_t> groups, const FarFaces& far)
     : model_(model),
       surface_(surface),
+      far_(far),
       execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {

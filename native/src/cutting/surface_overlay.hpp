@@ -9,6 +9,7 @@
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/cutter_surface.hpp"
+#include "cutting/far_faces.hpp"
 #include "cutting/undivided_triangles.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -29,11 +30,18 @@ public:
     /// @param groups  of triangles of the surface: of one group those that meet nothing are left
     ///                undivided, and are no regions; none at all: there are no such triangles, and
     ///                no two faces of the model are the same
+    /// @param far     faces that were left out of the model
     SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
                    const Execution& execution, double least_rounding = 0,
-                   std::span<const std::int32_t> groups = {});
+                   std::span<const std::int32_t> groups = {}, const FarFaces& far = kNoFarFaces);
 
     const ComplexView& model() const { return model_; }
+    const FarFaces& far() const { return far_; }
+    /// Whether a face is divided that stands for some that were left out: these had to be there.
+    bool reaches_far_faces() const {
+        return std::ranges::any_of(active_faces_,
+                                   [this](std::int32_t f) { return far_.group(index(f)) >= 0; });
+    }
     const CutterSurface& surface() const { return surface_; }
     int threads() const { return execution_.threads; }
     std::size_t size() const { return loops_.size(); }
@@ -106,10 +114,11 @@ public:
     SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const;
-    /// Around all faces, and what vertices may have moved by.
+    /// Around all faces, and what vertices may have moved by; then around those left out.
     std::vector<spatial::Box> face_boxes() const;
-    /// The triangles of a face, in nodes.
-    std::vector<std::array<NodeId, 3>> triangles_of(std::size_t face) const;
+    /// The triangles of one of these, and the cells on its sides.
+    std::vector<std::array<SpacePointId, 3>> triangles_of(std::size_t face);
+    std::array<std::int32_t, 2> cells_of(std::size_t face) const;
     /// Around the whole model, and a little wider.
     const spatial::Box& model_box() const { return model_box_; }
 
@@ -196,6 +205,7 @@ private:
 
     const ComplexView& model_;
     const CutterSurface& surface_;
+    const FarFaces& far_;
     Execution execution_;
 
     exact::SpacePoints points_;

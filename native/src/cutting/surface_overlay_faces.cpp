@@ -82,6 +82,13 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
             margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
+    for (std::int32_t group = 0; index(group) < far_.groups(); ++group) {
+        for (const Position& p : {far_.box(group).low, far_.box(group).high}) {
+            for (const double x : p)
+                margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
+            model_box_.include(p);
+        }
+    }
     model_box_.widen(margin_);
     std::vector<Box> boxes;
     for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
@@ -312,18 +319,38 @@ void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) con
 }
 
 std::vector<Box> SurfaceOverlay::face_boxes() const {
-    std::vector<Box> boxes(model_.face_count());
-    parallel_ranges(boxes.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            for (const NodeId v : model_.face(f))
-                boxes[f].include(model_.vertex(v));
-            boxes[f].widen(margin_);
-        }
+    const std::size_t own = model_.face_count();
+    std::vector<Box> boxes(own + far_.faces().size());
+    parallel_each(boxes.size(), execution_, [&](std::size_t f) {
+        const ComplexView& of = f < own ? model_ : far_.model();
+        for (const NodeId v : of.face(f < own ? f : index(far_.faces()[f - own])))
+            boxes[f].include(of.vertex(v));
+        boxes[f].widen(margin_);
     });
     return boxes;
 }
 
-std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face) const {
+std::array<std::int32_t, 2> SurfaceOverlay::cells_of(std::size_t face) const {
+    const std::size_t own = model_.face_count();
+    if (face < own) return {model_.cell(face, 0), model_.cell(face, 1)};
+    const auto first = index(far_.first(far_.groups_of_faces()[face - own]));
+    std::array cells{model_.cell(first, 0), model_.cell(first, 1)};
+    if (far_.is_reversed(far_.faces()[face - own])) std::swap(cells[0], cells[1]);
+    return cells;
+}
+
+std::vector<std::array<SpacePointId, 3>> SurfaceOverlay::triangles_of(std::size_t face) {
+    std::vector<std::array<SpacePointId, 3>> triangles;
+    if (face >= model_.face_count()) {
+        std::vector<std::array<NodeId, 3>> corners;
+        triangulate_face(far_.model(), index(far_.faces()[face - model_.face_count()]), corners);
+        for (const auto& t : corners) {
+            auto& own = triangles.emplace_back();
+            for (std::size_t i = 0; i < 3; ++i)
+                own[i] = points_.add(far_.model().vertex(t[i]));
+        }
+        return triangles;
+    }
     FaceParts parts;
     const std::int32_t own = first_same_[face];
     const auto crossed = std::ranges::lower_bound(parts_.crossed, own, {}, &CrossedFace::face);
@@ -341,7 +368,9 @@ std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face
         parts.add_beside(own, model_.face(face));
     }
     triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
-    return std::move(parts.triangles);
+    for (const auto& t : parts.triangles)
+        triangles.push_back({exact(t[0]), exact(t[1]), exact(t[2])});
+    return triangles;
 }
 
 /// Divides more faces, on all threads.

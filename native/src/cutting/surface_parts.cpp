@@ -180,9 +180,11 @@ void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
         const Slot& own = slots_[index(slot)];
         if (patch.divided == nullptr) {
             const auto face = index(patch.face);
+            const FarFaces& far = overlay_.far();
             each_edge(std::array{overlay_.model().face(face)},
                       static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
-                          visit(SlotUse{own.cell, own.half, use, slot});
+                          if (far.group(face) < 0 || !far.is_beyond(use.key()))
+                              visit(SlotUse{own.cell, own.half, use, slot});
                       });
             continue;
         }
@@ -351,6 +353,17 @@ void SurfaceParts::join_parts(Progress* progress) {
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
+    // a group of far faces is of one part of either cell
+    std::vector<const Patch*> first_of_group(overlay_.far().groups(), nullptr);
+    for (const Patch& patch : patches_) {
+        const std::int32_t group = overlay_.far().group(index(patch.face));
+        if (group < 0) continue;
+        const Patch*& leader = first_of_group[index(group)];
+        if (leader == nullptr) leader = &patch;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (patch.slots[k] >= 0) joined_->join(leader->slots[k], patch.slots[k]);
+        }
+    }
     collect_uses(progress);
     const auto each_edge_of_cells = [&](std::size_t node, const auto& visit) {
         const auto uses = uses_[node];
@@ -458,6 +471,17 @@ void SurfaceParts::attach_hollows(Progress* progress) {
             visit(patch.loops());
         }
     };
+    // what is left out is with the first face of its group
+    const auto add_far = [&](const Item& item, const Position& origin, PartShell& shell) {
+        const std::int32_t first = item.patch < 0 ? -1 : patches_[index(item.patch)].face;
+        if (first < 0 || !overlay_.far().is_first(index(first))) return;
+        const FarFaces& far = overlay_.far();
+        const int sign = slots_[index(item.slot)].sign;
+        for (const std::int32_t face : far.of_group(far.group(index(first)))) {
+            shell.add(far.model().face(index(face)), far.is_reversed(face) ? -sign : sign, origin,
+                      [&far](NodeId node) { return far.model().vertex(node); });
+        }
+    };
     const auto attach = [&](std::span<const Item> of_cell, std::int8_t half) {
         const auto is_of_half = [&](const Item& item) {
             return slots_[index(item.slot)].half == half;
@@ -476,6 +500,7 @@ void SurfaceParts::attach_hollows(Progress* progress) {
                 for (const auto& loop : loops)
                     shell.add(loop, slots_[index(item.slot)].sign, origin, at);
             });
+            add_far(item, origin, shell);
         }
         join_hollows(shells, *joined_);
     };

@@ -24,7 +24,7 @@ CellComplex row() {
 
 /// Upright, at one x; its upper side is where x is less.
 CutterSurface upright(double x) {
-    return {{{x, -1, -1}, {x, 2, -1}, {x, 2, 2}, {x, -1, 2}}, {{0, 2, 1}, {0, 3, 2}}};
+    return {{{x, -1, -1}, {x, 5, -1}, {x, 5, 5}, {x, -1, 5}}, {{0, 2, 1}, {0, 3, 2}}};
 }
 
 double middle_of(const CellComplex& model, std::int32_t cell) {
@@ -86,13 +86,9 @@ TEST(NearPart, TheOthersAreOnOneSideEach) {
     }
 }
 
-TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
-    const CellComplex model = row();
-    const ComplexView all = model;
-    const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near, {2, nullptr});
+/// Puts all faces of a part back as they are.
+void expect_put_back(const ComplexView& all, const NearPart& part) {
     const ComplexView near = part.view();
-    ASSERT_EQ(near.cell_count(), 2U);
     CutPieces pieces;
     std::vector<HalfCell> cells;
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
@@ -127,6 +123,53 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
     for (std::size_t chunk = 0; chunk < whole->chunks(); ++chunk)
         whole->each_of(chunk, visit);
     EXPECT_EQ(f, all.face_count());
+}
+
+TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
+    const CellComplex model = row();
+    const NearPart part(model, near_cells(model, 1.5, 1), {2, nullptr});
+    EXPECT_EQ(part.view().cell_count(), 2U);
+    expect_put_back(model, part);
+}
+
+/// Two layers of 9 x 4 squares from x = 0 to 9 as blocks.
+CellComplex blocks() {
+    strata::StackInput input;
+    std::vector<OwnedSurface> surfaces;
+    for (const double z : {0.0, 1.0, 2.0})
+        surfaces.push_back(
+            grid(9, 4, 0, 0, 9, 4, [z](double x, double y) { return z + 0.001 * x * x * y; }));
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    return strata::build_stack(input, {1, nullptr}, CellKind::kBlocks);
+}
+
+TEST(NearPart, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
+    const CellComplex model = blocks();
+    const ComplexView all = model;
+    ASSERT_EQ(all.cell_count(), 2U);
+    const CutterSurface surface = upright(4.5);  // through the lower block
+    const NearestSide nearest(surface);
+    const CellBoxes cells(model, {&nearest, 1}, {1, nullptr});
+    for (const std::uint8_t upper : {0, 1}) {  // whether it is of the part, too
+        std::vector<std::uint8_t> is_near(2, upper);
+        for (std::size_t f = 0; f < all.face_count(); ++f) {
+            if (all.vertex(all.face(f)[0])[2] == 0) is_near[index(all.cell(f, 0))] = 1;
+        }
+        const NearPart part(model, is_near, {2, nullptr}, &nearest, margin_of(cells, nearest));
+        const FarFaces& far = part.far();
+        EXPECT_EQ(part.view().cell_count(), 1U + upper);
+        EXPECT_GE(far.groups(), 4U);  // outer faces and those between, on either side
+        EXPECT_GT(far.faces().size(), 10U);
+        std::size_t left_out = 0;
+        for (std::int32_t group = 0; index(group) < far.groups(); ++group) {
+            left_out += far.of_group(group).size();
+            EXPECT_TRUE(far.is_first(index(far.first(group))));
+            EXPECT_TRUE(far.box(group).high[0] <= 3 || far.box(group).low[0] >= 6);
+        }
+        EXPECT_EQ(left_out, far.faces().size());
+        expect_put_back(model, part);
+    }
 }
 
 TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {

@@ -58,7 +58,7 @@ void give_extents(RoundedParts& parts) {
     const auto flat_axes = [&](std::size_t part) {
         std::vector<std::size_t> axes;
         if (!parts.is_changed(static_cast<std::int32_t>(part))) return axes;
-        spatial::Box box;
+        spatial::Box box = parts.far_boxes[part];
         for (const std::int32_t piece : parts.pieces_of[part]) {
             for (const NodeId node : parts.pieces.polygons[index(piece)])
                 box.include(parts.at(node));

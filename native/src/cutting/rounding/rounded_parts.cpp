@@ -9,13 +9,14 @@ namespace realmodel::cutting {
 
 RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positions,
                            CutPieces& polygons, std::vector<HalfCell>& cells, bool of_several,
-                           const Execution& executed)
+                           const Execution& executed, const FarFaces& far)
     : model(of),
       new_positions(positions),
       pieces(polygons),
       half_cells(cells),
       are_joined(of_several),
-      execution(executed) {
+      execution(executed),
+      far_boxes(cells.size()) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
@@ -24,6 +25,12 @@ RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positio
     for (const HalfCell& part : half_cells) {
         auto& count = parts_of_[index(part.cell)];
         count = static_cast<std::uint8_t>(std::min(count + 1, 2));
+    }
+    for (const CutPiece& piece : pieces.origins) {
+        if (piece.face < 0 || !far.is_first(index(piece.face))) continue;
+        for (const std::int32_t part : piece.parts) {
+            if (part >= 0) far_boxes[index(part)].include(far.box(far.group(index(piece.face))));
+        }
     }
     update();
 }
@@ -60,6 +67,8 @@ bool RoundedParts::is_whole_face(std::size_t piece) const {
 }
 
 bool RoundedParts::are_closed() const {
+    if (std::ranges::any_of(far_boxes, [](const auto& box) { return box.low[0] < HUGE_VAL; }))
+        return true;  // not without what was left out
     std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> sums;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const auto nodes = pieces.polygons[p];

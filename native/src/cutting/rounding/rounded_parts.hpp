@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/counting_sort.hpp"
+#include "cutting/far_faces.hpp"
 #include "cutting/pieces.hpp"
 #include "cutting/positions.hpp"
 #include "realmodel/base/execution.hpp"
@@ -19,8 +20,10 @@ struct RoundedParts {
     /// @param positions   of nodes after the model's vertices; they may move
     /// @param of_several  whether the cells are of several models, of which each was rounded by
     ///                    itself
+    /// @param far         faces that were left out of the model
     RoundedParts(const ComplexView& of, std::vector<Position>& positions, CutPieces& polygons,
-                 std::vector<HalfCell>& cells, bool of_several, const Execution& executed);
+                 std::vector<HalfCell>& cells, bool of_several, const Execution& executed,
+                 const FarFaces& far = kNoFarFaces);
 
     bool is_new(NodeId node) const { return index(node) >= vertices.size(); }
     const Position& at(NodeId node) const {
@@ -51,6 +54,8 @@ struct RoundedParts {
     }
     /// Whether such a piece has no extent in plan.
     bool is_upright(std::size_t piece) const;
+    /// Whether faces of a part were left out.
+    bool has_far_faces(std::size_t part) const { return far_boxes[part].low[0] < HUGE_VAL; }
     /// Whether a piece is a face of the model as it was.
     bool is_whole_face(std::size_t piece) const;
 
@@ -74,6 +79,7 @@ struct RoundedParts {
     bool are_joined;
     Execution execution;
 
+    std::vector<spatial::Box> far_boxes;         ///< of parts: around faces that were left out
     std::vector<Position> vertices;              ///< of the model, as `at` gives them
     std::vector<std::uint8_t> on_base, on_wall;  ///< of nodes
     std::vector<std::uint8_t> is_near;           ///< of nodes: of a part that is less than its cell

@@ -15,7 +15,7 @@ using exact::SpaceId;
 
 namespace {
 
-constexpr std::size_t kFacesAtOnce = 1 << 13, kVertices = 1 << 14;
+constexpr std::size_t kFacesAtOnce = 1 << 13;
 
 std::int32_t cell(const std::vector<std::int32_t>& cell_of_node, std::int32_t node) {
     return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
@@ -119,60 +119,45 @@ void UntouchedTriangles::number_vertices(CellComplex& complex) {
                                 mark(is_new[index(s)]);
                         }
                     });
-    std::vector<std::size_t> first((of_space_.size() + kVertices - 1) / kVertices);
-    const auto for_new = [&](const auto& visit) {
-        parallel_ranges(of_space_.size(), kVertices, execution_,
-                        [&](std::size_t begin, std::size_t end) {
-                            std::size_t count = 0;
-                            for (std::size_t s = begin; s < end; ++s) {
-                                if (is_new[s] != 0 && of_space_[s] < 0)
-                                    visit(s, begin / kVertices, count++);
-                            }
-                        });
-    };
-    for_new([&](std::size_t, std::size_t range, std::size_t) { ++first[range]; });
-    const std::size_t before = complex.vertices.size(), more = count_before(first);
-    check_total(before + more, INT32_MAX);
-    complex.vertices.resize(before + more);
-    for_new([&](std::size_t s, std::size_t range, std::size_t count) {
-        const std::size_t v = before + first[range] + count;
-        const auto& space = geometry_.space(static_cast<SpaceId>(s));
-        const auto& at = geometry_.point(space.plan);
-        complex.vertices[v] = {at.x, at.y, space.z};
-        of_space_[s] = static_cast<std::int32_t>(v);
-    });
+    const std::size_t before = complex.vertices.size();
+    number_in_order(
+        of_space_.size(), execution_,
+        [&](std::size_t s) { return is_new[s] != 0 && of_space_[s] < 0; },
+        [&](std::size_t more) {
+            check_total(before + more, INT32_MAX);
+            complex.vertices.resize(before + more);
+        },
+        [&](std::size_t s, std::size_t number) {
+            const auto& space = geometry_.space(static_cast<SpaceId>(s));
+            const auto& at = geometry_.point(space.plan);
+            complex.vertices[before + number] = {at.x, at.y, space.z};
+            of_space_[s] = static_cast<std::int32_t>(before + number);
+        });
 }
 
 void UntouchedTriangles::add_triangles(CellComplex& complex,
                                        const std::vector<std::int32_t>& cell_of_node) const {
-    const std::size_t planes = wholes_.face.size();
-    std::vector<std::size_t> first((planes + kFacesAtOnce - 1) / kFacesAtOnce);
-    parallel_ranges(planes, kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-            first[begin / kFacesAtOnce] += is_face(p) ? 1 : 0;
-    });
-    const std::size_t count = count_before(first), faces = complex.face_cells.size(),
-                      corners = complex.face_vertices.size();
-    complex.face_vertices.resize(corners + 3 * count);
-    complex.face_offsets.resize(faces + count + 1);
-    complex.face_cells.resize(faces + count);
-    complex.face_surface.resize(faces + count);
-    parallel_ranges(planes, kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-        std::size_t next = first[begin / kFacesAtOnce];
-        for (std::size_t p = begin; p < end; ++p) {
-            if (!is_face(p)) continue;
+    const std::size_t faces = complex.face_cells.size(), corners = complex.face_vertices.size();
+    number_in_order(
+        wholes_.face.size(), execution_, [&](std::size_t p) { return is_face(p); },
+        [&](std::size_t count) {
+            complex.face_vertices.resize(corners + 3 * count);
+            complex.face_offsets.resize(faces + count + 1);
+            complex.face_cells.resize(faces + count);
+            complex.face_surface.resize(faces + count);
+        },
+        [&](std::size_t p, std::size_t number) {
             const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
-            std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * next;
+            std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * number;
             std::transform(corner.begin(), corner.end(), loop,
                            [&](SpaceId s) { return of_space_[index(s)]; });
-            complex.face_cells[faces + next] =
+            complex.face_cells[faces + number] =
                 turn_outwards(loop, loop + 3, cell(cell_of_node, wholes_.face[p].above),
                               cell(cell_of_node, wholes_.face[p].below));
-            complex.face_surface[faces + next] = surface_of_plane_[p];
-            ++next;
-            complex.face_offsets[faces + next] = static_cast<std::int64_t>(corners + 3 * next);
-        }
-    });
+            complex.face_surface[faces + number] = surface_of_plane_[p];
+            complex.face_offsets[faces + number + 1] =
+                static_cast<std::int64_t>(corners + 3 * (number + 1));
+        });
 }
 
 void UntouchedTriangles::add_bases(CellComplex& complex,

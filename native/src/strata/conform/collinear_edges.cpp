@@ -273,15 +273,16 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
             extra_vertices.begin());
     };
     CollinearEdges result;
-    const LineBuckets buckets(faces, lines, execution);
+    LineBuckets buckets(faces, lines);
     result.passed.resize(buckets.size());
     result.matched.resize(buckets.size());
     std::vector<UnmatchedLines> kept(buckets.size());
-    parallel_chunks(
-        buckets.size(), execution,
-        [&](std::size_t bucket) {
-            BucketEdges edges;
-            buckets.collect(bucket, plan_vertices, edges);
+    for (const std::size_t half : {0, 1}) {
+        const std::size_t first = buckets.size() * half / 2, end = buckets.size() * (half + 1) / 2;
+        buckets.fill(first, end, execution);
+        const auto match = [&](std::size_t i) {
+            const std::size_t bucket = first + i;
+            auto edges = buckets.by_lines(bucket, plan_vertices);
             LineChunk chunk(geometry, faces, plan_vertices, cell_is_thick, result.passed[bucket]);
             MatchedEdges matched;
             const std::size_t begin = buckets.first_line(bucket);
@@ -301,8 +302,9 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
                 kept[bucket].add(lines.representative[t], of_line);
             }
             result.matched[bucket] = matched;  // without room for more
-        },
-        0.5);
+        };
+        parallel_chunks(end - first, execution, match, 0.4);
+    }
     join_unmatched(std::move(kept), result, execution);
     return result;
 }

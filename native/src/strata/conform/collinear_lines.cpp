@@ -45,20 +45,15 @@ Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces
                         for (std::size_t c = begin; c < end; ++c)
                             mark(used[index(of_edges[c].id())]);
                     });
-    std::vector<std::size_t> before((used.size() + kLinesAtOnce - 1) / kLinesAtOnce);
-    parallel_ranges(used.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
-        before[begin / kLinesAtOnce] =
-            static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
-    });
-    Array<Keyed> lines(count_before(before));
-    parallel_ranges(used.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
+    Array<Keyed> lines;
+    number_in_order(
+        used.size(), execution, [&](std::size_t l) { return used[l] != 0; },
+        [&](std::size_t count) { lines = Array<Keyed>(count); },
+        [&](std::size_t l, std::size_t number) { lines[number].line = static_cast<LineId>(l); });
+    parallel_ranges(lines.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
         LocalArrangement scope(geometry);
-        std::size_t next = before[begin / kLinesAtOnce];
-        for (std::size_t l = begin; l < end; ++l) {
-            if (used[l] == 0) continue;
-            const auto line = static_cast<LineId>(l);
-            lines[next++] = {mixed(scope.line_key(line)), line};
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            lines[i].key = mixed(scope.line_key(lines[i].line));
     });
     return lines;
 }
@@ -123,22 +118,13 @@ CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces
     for (const Follower& follower : followers)
         joined.of_line[index(follower.line)] = -1;
 
-    std::vector<std::size_t> before((joined.of_line.size() + kLinesAtOnce - 1) / kLinesAtOnce);
-    parallel_ranges(
-        joined.of_line.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
-            before[begin / kLinesAtOnce] = static_cast<std::size_t>(
-                std::count(joined.of_line.begin() + begin, joined.of_line.begin() + end, 0));
+    number_in_order(
+        joined.of_line.size(), execution, [&](std::size_t l) { return joined.of_line[l] >= 0; },
+        [&](std::size_t count) { joined.representative = Array<LineId>(count); },
+        [&](std::size_t l, std::size_t number) {
+            joined.of_line[l] = static_cast<std::int32_t>(number);
+            joined.representative[number] = static_cast<LineId>(l);
         });
-    joined.representative = Array<LineId>(count_before(before));
-    parallel_ranges(joined.of_line.size(), kLinesAtOnce, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        std::size_t next = before[begin / kLinesAtOnce];
-                        for (std::size_t l = begin; l < end; ++l) {
-                            if (joined.of_line[l] < 0) continue;
-                            joined.of_line[l] = static_cast<std::int32_t>(next);
-                            joined.representative[next++] = static_cast<LineId>(l);
-                        }
-                    });
     for (const Follower& follower : followers) {
         joined.of_line[index(follower.line)] = joined.of_line[index(follower.leader)];
     }
