@@ -111,7 +111,7 @@ def as_model(case, cells):
     return Model(
         CellComplex.of(arrays, cells),
         [],
-        SurfaceArrays.of([]),
+        SurfaceArrays([]),
         [],
         None,
     )

@@ -13,6 +13,7 @@ from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.cells.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
 from realmodel.core.proof.validation import ValidationReport
+from realmodel.core.surfaces.surface_arrays import SurfaceArrays
 from stacks import places
 from stacks.generate import FAMILIES, random_stack
 from stacks.rock_masses import random_rock_masses
@@ -49,13 +50,14 @@ def model(request):
 def damaged(model, **given):
     """A copy of a model with some arrays, or other fields, replaced."""
     of_cells = {name: given.pop(name) for name in ARRAYS if name in given}
+    names = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
     of_surfaces = {
-        name: given.pop(f"surface_{name}") for name in ("vertices", "triangles") if f"surface_{name}" in given
+        f"surface_{name}": given.pop(f"surface_{name}", getattr(model.surfaces, name)) for name in names
     }
     return dataclasses.replace(
         model,
         complex=dataclasses.replace(model.complex, **of_cells),
-        surfaces=dataclasses.replace(model.surfaces, **of_surfaces),
+        surfaces=SurfaceArrays.of_arrays(of_surfaces),
         **given,
     )
 

@@ -113,8 +113,9 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
                                            : build_columns(site, execution);
     }
     result.cell_kind = cells;
-    result.volumes = volumes_of(built, static_cast<std::size_t>(site.surfaces),
-                                site.window.has_value(), execution);
+    const auto blocks = static_cast<std::size_t>(site.surfaces);
+    result.volumes = site.wanted ? std::vector<double>(blocks)
+                                 : volumes_of(built, blocks, site.window.has_value(), execution);
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();

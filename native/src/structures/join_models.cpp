@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "base/parallel.hpp"
@@ -36,7 +37,7 @@ Box box_of(const ComplexView& model) {
     return box;
 }
 
-/// Cells of several models with the vertices that they share once.
+/// Cells of several models, with the vertices that they share once.
 struct Together {
     std::vector<Position> vertices;
     std::vector<std::int64_t> face_offsets;
@@ -121,7 +122,8 @@ Together::Together(std::span<const PartModel> models,
             is_near[cell++] = places[m][c] == CellPlace::kNear ? 1 : 0;
         }
         for (std::size_t v = 0; v < model.vertex_count(); ++v)
-            vertices[positions[m] + v] = model.vertex(static_cast<std::int32_t>(v));
+            vertices[positions[m] + v] =  // both zeros alike
+                plus(model.vertex(static_cast<std::int32_t>(v)), Position{});
         each_face(m, [&](std::size_t f, const std::array<bool, 2>& wanted) {
             const auto own = model.face(f);
             face_offsets[face] = static_cast<std::int64_t>(corner);
@@ -140,30 +142,36 @@ Together::Together(std::span<const PartModel> models,
     });
 }
 
-/// Equal positions get one vertex, those that no face has none.
+/// Equal positions of near cells get one vertex, and are numbered in their order. Vertices of other
+/// cells alone are of one model each, for between two parts there is a structure.
 void Together::share_vertices(const Execution& execution) {
-    std::vector<std::uint8_t> is_used(vertices.size(), 0);
-    for (const std::int32_t v : face_vertices)
-        is_used[index(v)] = 1;
+    std::vector<std::uint8_t> is_shared(vertices.size(), 0);
+    for (std::size_t f = 0; f < face_surface.size(); ++f) {
+        const auto is_beside = [&](std::size_t k) {
+            const std::int32_t cell = face_cells[2 * f + k];
+            return cell >= 0 && is_near[index(cell)] != 0;
+        };
+        if (!is_beside(0) && !is_beside(1)) continue;
+        for (auto i = index(face_offsets[f]); i < index(face_offsets[f + 1]); ++i)
+            is_shared[index(face_vertices[i])] = 1;
+    }
     std::vector<std::pair<Position, std::int32_t>> order;
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        Position p = vertices[v];
-        for (double& x : p)
-            x += 0.0;  // both zeros alike
-        if (is_used[v] != 0) order.push_back({p, static_cast<std::int32_t>(v)});
+    std::vector<std::int32_t> number(vertices.size()), places;
+    std::iota(number.begin(), number.end(), 0);
+    for (const std::int32_t v : number) {
+        if (is_shared[index(v)] == 0) continue;
+        order.push_back({vertices[index(v)], v});
+        places.push_back(v);
     }
     parallel_sort(order, std::less<>(), execution);
-    std::vector<std::int32_t> number(vertices.size(), -1);
-    std::vector<Position> distinct;
+    auto place = places.begin();
     for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i == 0 || order[i].first != order[i - 1].first) distinct.push_back(order[i].first);
-        number[index(order[i].second)] = static_cast<std::int32_t>(distinct.size() - 1);
+        if (i > 0 && order[i].first != order[i - 1].first) ++place;
+        vertices[index(*place)] = order[i].first;
+        number[index(order[i].second)] = *place;
     }
-    for (std::int32_t& v : face_vertices) {
-        assert(number[index(v)] >= 0);
+    for (std::int32_t& v : face_vertices)
         v = number[index(v)];
-    }
-    vertices = std::move(distinct);
 }
 
 void begin(Progress* progress, double from, double to, const char* what) {
@@ -344,6 +352,7 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     const StructuresHere given{surface, structures, nearest};
     if (auto joined = join(together, given, acts, least, execution)) return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
+    together.share_vertices(execution);
     return *join(together, given, acts, least, execution);
 }
 

@@ -122,7 +122,7 @@ def _complex(inputs: list[RockInput], built: BuiltCells, structures: Structures)
 def _surfaces(inputs: list[RockInput], structures: Structures) -> SurfaceArrays:
     """The surfaces, then the structures."""
     surfaces = [entry.surface(number) for entry in inputs for number in range(len(entry.surfaces))]
-    return SurfaceArrays.of([*surfaces, *structures.shapes])
+    return SurfaceArrays([*surfaces, *structures.shapes])
 
 
 def _first_block(entry: RockInput) -> int:

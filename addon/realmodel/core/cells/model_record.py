@@ -73,8 +73,8 @@ def read_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays) -> di
 def _shapes(surfaces: SurfaceArrays) -> dict[str, np.ndarray]:
     """The parts of `surface_vertices` and `surface_triangles`, which most sheets of a record are."""
     found = {}
-    for number in range(len(surfaces.vertex_offsets) - 1):
-        for name, array in zip(("vertices", "triangles"), surfaces.surface(number), strict=True):
+    for number, shape in enumerate(surfaces.shapes):
+        for name, array in zip(("vertices", "triangles"), shape, strict=True):
             found[f"surface_{name}[{number}]"] = array
     return found
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.build_warning import BuildWarning
+from ..base.sheet import Sheet
 from ..base.triangles import welded
 from ..base.work import Cancel, Progress, Work, run
 from ..model.build import build
@@ -17,6 +18,7 @@ from ..model.cutting import cut_by_surface
 from ..model.model import Model
 from ..project.project import Project, Rock
 from ..settings.method_options import check_threads
+from ..surfaces.surface_arrays import SurfaceArrays
 from .beds import Beds, check_gap, lay_beds
 from .palettes import rocks_of_beds
 from .pegs import place_pegs
@@ -55,7 +57,7 @@ def fill_with_strata(
     mesh = closed_mesh(vertices, triangles, strata.base)
     beds = lay_beds(strata, mesh[0])
     model, places = run(lambda work: fill_within(work, mesh, beds, strata), progress, cancel, threads=threads)
-    surfaces = replace(model.surfaces, vertices=beds.leaned(model.surface_vertices))
+    surfaces = SurfaceArrays([Sheet(beds.leaned(own), of) for own, of in model.surfaces.shapes])
     return replace(model, complex=replace(model.complex, vertices=places), surfaces=surfaces)
 
 

@@ -3,48 +3,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..base.sheet import Sheet
 from .rock_input import RockInput
 
+_ARRAYS = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceArrays:
-    """The arrays `surface_...` of docs/dev/geometry.md, under the same names: vertices (Vs, 3) float64,
-    triangles (Ts, 3) int32, which index within their own surface, vertex_offsets and triangle_offsets
-    (S + 1,) int64."""
+    """The arrays `surface_...` of docs/dev/geometry.md, under the same names, put together when they are
+    asked for: vertices (Vs, 3) float64, triangles (Ts, 3) int32, which index within their own surface,
+    vertex_offsets and triangle_offsets (S + 1,) int64. shapes: of each surface."""
 
-    vertices: np.ndarray
-    triangles: np.ndarray
-    vertex_offsets: np.ndarray
-    triangle_offsets: np.ndarray
+    shapes: list[Sheet]
 
-    @classmethod
-    def of(cls, shapes: Iterable[Sheet]) -> SurfaceArrays:
-        """Of vertices and triangles of each surface."""
-        shapes = list(shapes)
-        vertices, triangles = [each.vertices for each in shapes], [each.triangles for each in shapes]
-        return cls(
-            np.concatenate([np.empty((0, 3)), *vertices]),
-            np.concatenate([np.empty((0, 3), np.int32), *triangles]),
-            np.cumsum([0, *map(len, vertices)], dtype=np.int64),
-            np.cumsum([0, *map(len, triangles)], dtype=np.int64),
-        )
+    @cached_property
+    def vertices(self) -> np.ndarray:
+        return np.concatenate([np.empty((0, 3)), *(vertices for vertices, _ in self.shapes)])
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        return np.concatenate([np.empty((0, 3), np.int32), *(triangles for _, triangles in self.shapes)])
+
+    @cached_property
+    def vertex_offsets(self) -> np.ndarray:
+        return np.cumsum([0, *(len(vertices) for vertices, _ in self.shapes)], dtype=np.int64)
+
+    @cached_property
+    def triangle_offsets(self) -> np.ndarray:
+        return np.cumsum([0, *(len(triangles) for _, triangles in self.shapes)], dtype=np.int64)
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> SurfaceArrays:
-        """Of the arrays of a file."""
-        names = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
-        return cls(*(arrays[f"surface_{name}"] for name in names))
+        """Of the arrays of a file, which are not put together again."""
+        given = {name: arrays[f"surface_{name}"] for name in _ARRAYS}
+        vertices, triangles = (
+            [given[name][begin:end] for begin, end in itertools.pairwise(given[f"{one}_offsets"].tolist())]
+            for name, one in (("vertices", "vertex"), ("triangles", "triangle"))
+        )
+        found = cls([Sheet(*each) for each in zip(vertices, triangles, strict=True)])
+        vars(found).update(given)
+        return found
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) and triangles (T, 3) of one surface."""
-        v, t = self.vertex_offsets, self.triangle_offsets
-        return self.vertices[v[number] : v[number + 1]], self.triangles[t[number] : t[number + 1]]
+        return self.shapes[number].arrays
 
 
 def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:

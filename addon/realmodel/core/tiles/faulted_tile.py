@@ -163,7 +163,7 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels:
     return Model(
         own,
         blocks,
-        SurfaceArrays.of(shapes + ends),
+        SurfaceArrays(shapes + ends),
         surface_names=whole.surface_names,
         project=frame.project,
         rock_inputs=[replace(entry, structure=None) for entry in window.inputs],

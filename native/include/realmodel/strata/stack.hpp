@@ -86,7 +86,7 @@ using realmodel::Warning;
 /// youngest surface of each (docs/dev/architecture.md). Where rock masses share a stretch of border
 /// the wall between them is overlaid from both sides. Every decision is exact on the input;
 /// coordinates are rounded once. The same input gives the same result for any number of threads.
-/// @param wanted  of columns: those that lie nowhere in it may be left out
+/// @param wanted  of columns: those that lie nowhere in it may be left out, and volumes are 0
 /// @param is_local  of columns: edges have all vertices that lie on them, whether any face needs
 ///                  them there or not, so that what is somewhere follows from what is near
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle, double_valued,

@@ -105,6 +105,11 @@ bool PieceFinder::begin(const Facet& facet, bool for_split) {
         add_common(candidates_.front(), facet.outline, facet);
         return true;
     }
+    if (walk_.locate(facet.outline, {candidates_.begin(), candidates_.end()}) &&
+        walk_.begin(facet.outline)) {
+        add_walked(facet, for_split);
+        return true;
+    }
     facet_clipper_.begin(facet.outline);
     return false;
 }
@@ -112,7 +117,6 @@ bool PieceFinder::begin(const Facet& facet, bool for_split) {
 void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
     for (const std::int32_t polygon : polygons)
         add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
-    if (!pieces_.list.empty()) walk_.set_start(pieces_.list.back().polygon);
 }
 
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {

@@ -195,6 +195,7 @@ SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
     SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, execution_);
     raised.index(geometry_, execution_);
+    raised.link(geometry_, execution_.progress);
     return raised;
 }
 

@@ -35,22 +35,6 @@ inline int TilingWalk::side(HalfEdge edge, PointId id) {
         from.line, id, p);
 }
 
-/// The triangle that has a point in its interior: from the start towards the point.
-std::int32_t TilingWalk::locate(PointId point) {
-    std::int32_t t = start_;
-    bool is_inside = false;
-    for (std::size_t step = 0; step < kMostSteps && t >= 0 && !is_inside; ++step) {
-        const std::array sides{side({t, 0}, point), side({t, 1}, point), side({t, 2}, point)};
-        const auto least = std::min_element(sides.begin(), sides.end());
-        is_inside = *least > 0;
-        if (*least < 0) t = beyond({t, static_cast<std::uint32_t>(least - sides.begin())}).triangle;
-        if (*least == 0) break;
-    }
-    if (!is_inside) t = kNowhere;
-    place(point) = {point, t};
-    return t;
-}
-
 /// Walks along an edge from triangle t, which has its first point; false where something coincides
 /// or a neighbor is missing.
 bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
@@ -105,17 +89,27 @@ TilingWalk::Way TilingWalk::way_along(const exact::DirectedEdge& edge, std::int3
                   false};
 }
 
-void TilingWalk::set_start(std::int32_t polygon) {
-    if (index(polygon) >= tiling_.neighbor.size() ||
-        std::ranges::max(tiling_.neighbor[index(polygon)]) < 0)
-        return;
-    start_ = polygon;
+bool TilingWalk::locate(PolygonView facet, std::span<const std::int32_t> polygons) {
+    if (tiling_.neighbor.empty()) return false;
     ways_.resize(kKnown);
     places_.resize(kKnown);
+    const auto is_known = [this](const Corner& c) { return known_place(c.point) != kUnknown; };
+    if (std::ranges::any_of(facet, is_known)) return false;
+    const PointId point = facet[0].point;
+    Place& of_point = place(point) = {point, kNowhere};
+    for (const std::int32_t t : polygons) {
+        if (std::ranges::max(tiling_.neighbor[index(t)]) < 0) continue;
+        int least = 1;
+        for (std::uint32_t i = 0; i < 3 && least >= 0; ++i)
+            least = std::min(least, side({t, i}, point));
+        if (least > 0) of_point.triangle = t;
+        if (least >= 0) return least > 0;
+    }
+    return false;
 }
 
 bool TilingWalk::begin(PolygonView facet) {
-    if (start_ < 0) return false;
+    if (places_.empty()) return false;
     facet_ = facet;
     std::size_t begin = 0;
     std::int32_t t = kUnknown;
@@ -126,8 +120,7 @@ bool TilingWalk::begin(PolygonView facet) {
         begin = i;
         t = known;
     }
-    if (t == kUnknown) t = locate(facet[0].point);
-    if (t < 0) return false;
+    if (t == kUnknown) return false;
     border_.resize(facet.size());
     for (std::size_t n = 0, i = begin; n < facet.size(); ++n) {
         border_[i] = way_along(edge_of(facet, i), t);
@@ -135,7 +128,7 @@ bool TilingWalk::begin(PolygonView facet) {
         if (border_[i].size() > 0)
             t = seen_from(border_[i], border_[i].size() - 1).entered.triangle;
         i = i + 1 < facet.size() ? i + 1 : 0;
-        if (i == 0) start_ = t;  // that of corner 0
+        if (i == 0) start_ = t;
     }
     find_stretches();
     return find_met();

@@ -27,16 +27,17 @@ public:
     std::int32_t polygon(std::size_t i) const { return met_[i].polygon; }
     /// What the facet has in common with one of them, valid until the next call.
     PolygonView common(std::size_t i);
-    /// Says where to begin if nothing is known of a facet, near to it. To be called before, too.
-    void set_start(std::int32_t polygon);
+    /// Finds where to begin among polygons that may meet a facet of which nothing is known; false
+    /// where something is, or this is not for the walk.
+    bool locate(PolygonView facet, std::span<const std::int32_t> polygons);
 
 private:
     /// Instead of a triangle: not known yet, in the interior of none with neighbors.
     static constexpr std::int32_t kUnknown = -1, kNowhere = -2;
     /// Known things are looked up in the slot that their number gives; who comes last stays.
     static constexpr std::size_t kKnown = 2048;
-    /// So many triangles that no edge of the facet meets at most; and on the way to a facet.
-    static constexpr std::size_t kMostInside = 64, kMostSteps = 64;
+    /// So many triangles that no edge of the facet meets at most.
+    static constexpr std::size_t kMostInside = 64;
 
     /// An edge of a triangle by its first corner.
     struct HalfEdge {
@@ -88,7 +89,6 @@ private:
     std::int32_t known_place(PointId point) {
         return place(point).point == point ? place(point).triangle : kUnknown;
     }
-    std::int32_t locate(PointId point);
     HalfEdge beyond(HalfEdge edge) const;
     int side(HalfEdge edge, PointId point);
     bool walk(const exact::DirectedEdge& edge, std::int32_t t);
@@ -107,7 +107,7 @@ private:
     LocalArrangement& scope_;
     const SurfaceTiling& tiling_;
     PolygonView facet_;
-    std::vector<Way> ways_;
+    std::vector<Way> ways_;  ///< none until a place is known
     std::vector<Place> places_;
     Array<Crossing> crossings_;
     Array<Way> border_;  ///< the facet's edges
@@ -116,7 +116,7 @@ private:
     Array<Met> met_;
     Array<std::int32_t> inside_;
     Polygon result_;
-    std::int32_t start_ = kUnknown;
+    std::int32_t start_ = kUnknown;  ///< has corner 0
 };
 
 }  // namespace realmodel::strata

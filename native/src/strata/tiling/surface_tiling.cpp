@@ -128,6 +128,30 @@ void SurfaceTiling::index(const PlanArrangement& geometry, const Execution& exec
     });
 }
 
+void SurfaceTiling::link(const PlanArrangement& geometry, Progress* progress) {
+    std::vector<PlanTriangle> open;
+    std::vector<std::int32_t> number;
+    neighbor.resize(plane.size(), {-1, -1, -1});
+    for (std::size_t p = 0; p < plane.size(); ++p) {
+        const PolygonView at = polygons[p];
+        if (at.size() != 3 || std::ranges::min(neighbor[p]) >= 0 ||
+            !std::ranges::all_of(at, [&](const Corner& c) { return geometry.is_vertex(c.point); }))
+            continue;
+        open.push_back({geometry.vertex(at[0].point), geometry.vertex(at[1].point),
+                        geometry.vertex(at[2].point)});
+        number.push_back(static_cast<std::int32_t>(p));
+    }
+    const PlanLinks links = link_triangles(open, progress);
+    for (std::size_t t = 0; t < open.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t n = links.neighbor[t][i];
+            if (n >= 0)
+                neighbor[static_cast<std::size_t>(number[t])][i] =
+                    number[static_cast<std::size_t>(n)];
+        }
+    }
+}
+
 bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t i, PlaneId other) {
     const auto& corner = geometry.plane(plane).corner;
     for (const exact::SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
@@ -178,19 +202,21 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
         refuse_overlap(geometry, tiling, triangles, index, execution);
     }
     add_empty(geometry, tiling, *plan.filling, kVoid);
+    tiling.neighbor = std::move(plan.links.neighbor);
     tiling.index(geometry, execution);
+    tiling.link(geometry, execution.progress);
     parallel_ranges(triangles.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             bool runs_on = true;
             for (std::size_t i = 0; i < 3 && runs_on; ++i) {
-                const std::int32_t n = plan.links.neighbor[t][i];
-                runs_on = n >= 0 && meet_in_height(geometry, tiling.plane[t], i,
-                                                   tiling.plane[static_cast<std::size_t>(n)]);
+                const std::int32_t n = tiling.neighbor[t][i];
+                runs_on = n >= 0 && static_cast<std::size_t>(n) < triangles.size() &&
+                          meet_in_height(geometry, tiling.plane[t], i,
+                                         tiling.plane[static_cast<std::size_t>(n)]);
             }
             tiling.runs_on[t] = runs_on ? 1 : 0;
         }
     });
-    tiling.neighbor = std::move(plan.links.neighbor);
     return tiling;
 }
 

@@ -34,8 +34,8 @@ struct SurfaceTiling {
     /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
     /// edges, with one polygon beyond each.
     std::vector<std::uint8_t> runs_on;
-    /// Of the first polygons, where they are known: across each edge of a triangle the triangle
-    /// there, or -1.
+    /// Of each polygon, where they are known: across each edge of a triangle between vertices the
+    /// one there, or -1.
     std::vector<std::array<std::int32_t, 3>> neighbor;
     Array<HeightRange> heights;  ///< of each polygon's plane, where it has one
     PlanGrid grid;
@@ -44,6 +44,8 @@ struct SurfaceTiling {
     /// known of how they run on.
     void index(const exact::PlanArrangement& geometry, const Execution& execution,
                std::size_t cells = 0);
+    /// Links triangles that are not linked yet.
+    void link(const exact::PlanArrangement& geometry, Progress* progress);
 };
 
 /// The tiling of a surface, and the surface's number.

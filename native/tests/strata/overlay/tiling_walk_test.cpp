@@ -39,12 +39,14 @@ int walked(const OwnedSurface& facets, const OwnedSurface& surface) {
     LocalArrangement scope(scene.geometry());
     TilingWalk walk(scope, tiling);
     FacetClipper reference(scope);
-    for (std::size_t t = 0; t < tiling.plane.size(); ++t)
-        walk.set_start(static_cast<std::int32_t>(t));  // the last one that runs on
+    Array<std::int32_t> near;
     int count = 0;
     for (std::size_t f = 0; f < facets.triangles.size() / 3; ++f) {
         const PolygonView facet = upper.polygons[f];
-        if (!walk.begin(facet)) continue;
+        tiling.grid.candidates(scope, facet, near);
+        const bool is_known = walk.begin(facet);
+        if (!is_known && !(walk.locate(facet, {near.begin(), near.end()}) && walk.begin(facet)))
+            continue;
         ++count;
         reference.begin(facet);
         std::size_t next = 0;

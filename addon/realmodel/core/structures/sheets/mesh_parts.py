@@ -21,13 +21,15 @@ _AREA = 1e-9  # relative: parts that overlap by less do not
 @dataclass(frozen=True)
 class PlanTiling:
     """vertices (V, 3), triangles (T, 3): the mesh. nodes (N, 2), tiles (K, 3): triangles in plan of all that
-    is to be covered. is_mesh: the first of them are the mesh itself, no two of which overlap."""
+    is to be covered; same (N,): as welded gives it of the nodes. is_mesh: the first of them are the mesh
+    itself, no two of which overlap."""
 
     work: Work
     vertices: np.ndarray
     triangles: np.ndarray
     nodes: np.ndarray
     tiles: np.ndarray
+    same: np.ndarray
     is_mesh: bool
 
     def heights(self, own: np.ndarray) -> np.ndarray:
@@ -64,19 +66,20 @@ class PlanTiling:
 def plan_tiling(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.ndarray) -> PlanTiling:
     """masks: (T, F) on which sides of each fault a triangle has a part: 1, 2, or 3 for both."""
     plan = np.ascontiguousarray(vertices[:, :2])
-    joined = welded(plan)[triangles]
+    same = welded(plan)
+    joined = same[triangles]
     loops = [plan[loop] for loop in border_loops(_one_way_up(plan, joined))]
     box = _around(plan)
     try:
         inside = _area(*triangulate_rings(loops)) if loops else 0.0
         if abs(inside - np.abs(_areas(plan, triangles)).sum()) <= _AREA * max(inside, 1e-300):
             gaps = _gaps(plan, joined, masks, triangulate_rings([box, *loops]))
-            tiles = np.concatenate([triangles, gaps])
-            return PlanTiling(work, vertices, triangles, plan, np.ascontiguousarray(tiles, np.int32), True)
+            tiles = np.ascontiguousarray(np.concatenate([triangles, gaps]), np.int32)
+            return PlanTiling(work, vertices, triangles, plan, tiles, same, True)
     except InputRefused:
         pass  # parts cross in plan
     nodes, tiles = _overlay(work, vertices, triangles, masks, box)
-    return PlanTiling(work, vertices, triangles, nodes, tiles, False)
+    return PlanTiling(work, vertices, triangles, nodes, tiles, welded(nodes), False)
 
 
 def _around(plan: np.ndarray) -> np.ndarray:

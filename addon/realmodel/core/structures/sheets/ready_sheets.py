@@ -58,7 +58,6 @@ class ReadyMesh:
             may_meet = away[:, fault][corners].min(axis=0) <= width
             self._divide(int(fault), faults.shapes[fault], is_lip[:, fault], corners, may_meet)
         self.tiling: PlanTiling | None = None
-        self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
     def _distances(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
         """How near to a fault a border of the mesh counts as its cutoff line; (V, F) at least how far each
@@ -248,12 +247,8 @@ class ReadyMesh:
     ) -> np.ndarray:
         """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
         the sheet off, its side, and where one dies out its trace."""
-        if self.tiling is None or self.tiling.nodes is not plan:
-            same = welded(plan)
-        elif self.same_places is None:
-            same = self.same_places = welded(plan)
-        else:
-            same = self.same_places
+        tiling = self.tiling
+        same = tiling.same if tiling is not None and tiling.nodes is plan else welded(plan)
         order = np.flatnonzero(~np.isnan(known))[::-1]
         of_place = np.full(len(plan), np.nan)
         of_place[same[order]] = known[order]  # the first of several at one position
@@ -263,7 +258,7 @@ class ReadyMesh:
             given = np.flatnonzero(~np.isnan(of_place))
             points = np.column_stack([plan[given], of_place[given]])
             vertex = None  # of the mesh, that each point is
-            if self.tiling is not None and self.tiling.is_mesh:
+            if tiling is not None and tiling.is_mesh:
                 of_places = np.empty(len(plan), np.intp)
                 of_places[same[order]] = order
                 vertex = of_places[given]
