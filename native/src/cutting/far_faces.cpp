@@ -97,7 +97,8 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
     };
     const auto uses_of = [&uses](NodeId a, NodeId b) {
         const Uses own = uses[index(std::min(a, b))];
-        return Uses(std::ranges::equal_range(own, std::max(a, b), {}, greater_of));
+        const auto first = std::ranges::lower_bound(own, std::max(a, b), {}, greater_of);
+        return Uses(first, std::ranges::upper_bound(own, std::max(a, b), {}, greater_of));
     };
     parallel_each(count, execution, [&](std::size_t i) {
         if (!has(i, 1)) return;
