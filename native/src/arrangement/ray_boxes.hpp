@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exact/space_points.hpp"
+#include "realmodel/base/array.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::arrangement {
@@ -26,13 +27,14 @@ inline spatial::Box ray_box(const exact::SpacePoints& points, exact::SpacePointI
 /// Finds the boxes that rays meet. A tree is made of them once it is worth its while.
 class RayBoxes {
 public:
-    explicit RayBoxes(std::vector<spatial::Box> boxes) : boxes_(std::move(boxes)) {}
+    explicit RayBoxes(Array<spatial::Box> boxes) : boxes_(std::move(boxes)) {}
 
     /// The numbers of the boxes that a ray may meet, in order.
     /// @throws Cancelled
     std::vector<std::int32_t> find(const spatial::Box& ray, Progress* progress) {
         std::vector<std::int32_t> found;
-        if (!tree_ && ++rays_ > kFewRays) tree_.emplace(std::move(boxes_), Execution{1, progress});
+        if (!tree_ && ++rays_ > kFewRays)
+            tree_.emplace(std::vector(boxes_.begin(), boxes_.end()), Execution{1, progress});
         if (tree_) {
             tree_->find(ray, [&found](std::int32_t box) { found.push_back(box); });
             std::sort(found.begin(), found.end());
@@ -46,7 +48,7 @@ public:
 
 private:
     static constexpr int kFewRays = 16;
-    std::vector<spatial::Box> boxes_;  ///< until there is a tree
+    Array<spatial::Box> boxes_;
     std::optional<spatial::BoxTree> tree_;
     int rays_ = 0;
 };

@@ -103,8 +103,9 @@ arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
 /// touch one another are known to lie in one place. One ray for each such part.
 void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
-    std::vector<Box> boxes(count);
+    Array<Box> boxes(count);
     parallel_each(count, execution_, [&](std::size_t f) {
+        boxes[f] = {};
         for (const std::int32_t v : mesh_.facets[f].corners)
             boxes[f].include(vertices_[index(v)]);
     });

@@ -37,11 +37,12 @@ public:
     /// The model's faces that are left out, in order, and the group of each.
     std::span<const std::int32_t> faces() const { return faces_; }
     std::span<const std::int32_t> groups_of_faces() const { return groups_of_faces_; }
-    /// Those of a group, in order, and around them.
+    /// Those of a group, in order.
     std::span<const std::int32_t> of_group(std::int32_t group) const {
         return of_group_[index(group)];
     }
-    const spatial::Box& box(std::int32_t group) const { return boxes_[index(group)]; }
+    /// Around all faces of near cells.
+    const spatial::Box& box() const { return box_; }
     /// Whether the first cell of a face is not near, so that the part has it turned around.
     bool is_reversed(std::int32_t face) const {
         return is_near_[index(model_.cell(index(face), 0))] == 0;
@@ -58,7 +59,7 @@ private:
     std::span<const std::uint8_t> is_near_;
     std::vector<std::int32_t> group_, first_, faces_, groups_of_faces_;
     Buckets<std::int32_t> of_group_;
-    std::vector<spatial::Box> boxes_;
+    spatial::Box box_;
     std::vector<std::uint64_t> edges_;  ///< as packed pairs, in order
 };
 

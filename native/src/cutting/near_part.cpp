@@ -10,13 +10,32 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "base/ulp.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
-/// Widens a box around another one while other threads do so, too.
+/// The faces, in order, of which one of the cells is one that is asked for.
+/// @param is_asked  of cells; several threads may ask at once
+template <class IsAsked>
+std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked,
+                                   const Execution& execution) {
+    std::vector<std::int32_t> all;
+    number_in_order(
+        model.face_count(), execution,
+        [&](std::size_t f) {
+            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
+            return (one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other));
+        },
+        [&](std::size_t count) { all.resize(count); },
+        [&](std::size_t f, std::size_t i) { all[i] = static_cast<std::int32_t>(f); });
+    return all;
+}
+
+}  // namespace
+
 void include_at_once(spatial::Box& box, const spatial::Box& other) {
     const auto widen = [](double& own, double to, const auto& is_beyond) {
         const std::atomic_ref shared(own);
@@ -30,28 +49,6 @@ void include_at_once(spatial::Box& box, const spatial::Box& other) {
         widen(box.high[k], other.high[k], std::greater<>());
     }
 }
-
-/// The faces, in order, of which one of the cells is one that is asked for.
-/// @param is_asked  of cells; several threads may ask at once
-template <class IsAsked>
-std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked,
-                                   const Execution& execution) {
-    constexpr std::size_t kChunk = 1 << 15;
-    std::vector<std::vector<std::int32_t>> found((model.face_count() + kChunk - 1) / kChunk);
-    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
-            if ((one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other)))
-                found[begin / kChunk].push_back(static_cast<std::int32_t>(f));
-        }
-    });
-    std::vector<std::int32_t> all;
-    for (const auto& chunk : found)
-        all.insert(all.end(), chunk.begin(), chunk.end());
-    return all;
-}
-
-}  // namespace
 
 double margin_of(const CellBoxes& cells, const NearestSide& surface) {
     return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
@@ -190,17 +187,24 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
     if (surface != nullptr && model.cell_kind == CellKind::kBlocks)
         far_ = FarFaces(model, is_near, faces_, *surface, margin, execution);
     // in the model's order: what is decided by numbers does not depend on which faces come first
-    std::vector<NodeId> own_vertex(model.vertex_count(), -1);
-    for (const std::int32_t face : faces_) {
-        for (const NodeId v : model.face(index(face)))
-            own_vertex[index(v)] = 0;
-    }
-    for (std::size_t v = 0; v < own_vertex.size(); ++v) {
-        if (own_vertex[v] < 0) continue;
-        own_vertex[v] = static_cast<NodeId>(vertices_.size());
-        vertices_.push_back(model.vertex(static_cast<NodeId>(v)));
-        vertices_of_.push_back(static_cast<NodeId>(v));
-    }
+    auto is_here = zeros<std::uint8_t>(model.vertex_count(), execution);
+    parallel_each(faces_.size(), execution, [&](std::size_t i) {
+        for (const NodeId v : model.face(index(faces_[i])))
+            mark(is_here[index(v)]);
+    });
+    Array<NodeId> own_vertex(model.vertex_count());
+    number_in_order(
+        is_here.size(), execution, [&](std::size_t v) { return is_here[v] != 0; },
+        [this](std::size_t count) {
+            vertices_.resize(count);
+            vertices_of_.resize(count);
+        },
+        [&](std::size_t v, std::size_t number) {
+            const auto node = static_cast<NodeId>(v);
+            own_vertex[v] = static_cast<NodeId>(number);
+            vertices_[number] = model.vertex(node);
+            vertices_of_[number] = node;
+        });
     far_.renumber(own_vertex);
     for (const std::int32_t face : faces_) {
         const auto f = index(face);

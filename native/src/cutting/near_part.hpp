@@ -98,6 +98,9 @@ struct CellBoxes {
     double rounding = 0;              ///< what vertices may be off by
 };
 
+/// Widens a box around another one while other threads do so, too.
+void include_at_once(spatial::Box& box, const spatial::Box& other);
+
 /// How far from a surface a cell may be that is taken to be near: farther than SurfaceOverlay takes
 /// to be near.
 double margin_of(const CellBoxes& cells, const NearestSide& surface);

@@ -20,8 +20,8 @@
 // piece    a polygon between two parts, or around one (CutPiece): of a patch, a whole face or a cap
 // shell    what is connected of the boundary of a part; around a hollow its volume is negative
 // slit     an edge that a cell has the same cap on both sides of (CellCutter)
-// near     of cells: they may meet the cutter; the others are far, and are copied (NearPart), as are
-//          far faces of near cells (FarFaces)
+// near     of cells: they may meet the cutter; the others are far, and are copied (NearPart), as
+//          are faces of near cells that are far themselves (FarFaces)
 
 #include <algorithm>
 #include <array>

@@ -115,7 +115,7 @@ public:
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const;
     /// Around all faces, and what vertices may have moved by; then around those left out.
-    std::vector<spatial::Box> face_boxes() const;
+    Array<spatial::Box> face_boxes() const;
     /// The triangles of one of these, and the cells on its sides.
     std::vector<std::array<SpacePointId, 3>> triangles_of(std::size_t face);
     std::array<std::int32_t, 2> cells_of(std::size_t face) const;

@@ -82,11 +82,11 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
             margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
-    for (std::int32_t group = 0; index(group) < far_.groups(); ++group) {
-        for (const Position& p : {far_.box(group).low, far_.box(group).high}) {
-            for (const double x : p)
+    if (far_.groups() > 0) {
+        model_box_.include(far_.box());
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (const double x : {model_box_.low[k], model_box_.high[k]})
                 margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
-            model_box_.include(p);
         }
     }
     model_box_.widen(margin_);
@@ -318,10 +318,11 @@ void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) con
     }
 }
 
-std::vector<Box> SurfaceOverlay::face_boxes() const {
+Array<Box> SurfaceOverlay::face_boxes() const {
     const std::size_t own = model_.face_count();
-    std::vector<Box> boxes(own + far_.faces().size());
+    Array<Box> boxes(own + far_.faces().size());
     parallel_each(boxes.size(), execution_, [&](std::size_t f) {
+        boxes[f] = {};
         const ComplexView& of = f < own ? model_ : far_.model();
         for (const NodeId v : of.face(f < own ? f : index(far_.faces()[f - own])))
             boxes[f].include(of.vertex(v));

@@ -18,7 +18,7 @@ TEST(RayBoxes, ARayGoesFromItsPointToTheEnd) {
 }
 
 TEST(RayBoxes, AreFoundInOrderWithATreeAsWithout) {
-    std::vector<Box> boxes;
+    Array<Box> boxes;
     for (int i = 0; i < 100; ++i) {
         const double x = i % 10, z = 99 - i;
         boxes.push_back({{x, 0, z}, {x + 1, 1, z + 1}});
@@ -37,7 +37,7 @@ TEST(RayBoxes, OfAPointThatNoDoubleIsItMeetsWhatThePointIsIn) {
     const auto p = points.add(exact::RationalPoint{third, third, third});
     const double x = points.rounded(p)[0];
     ASSERT_LT(mpq_class(x), third);  // rounded down: the box begins there, the point is in it
-    RayBoxes rays({Box{{x, x, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {x, x, 1}}});
+    RayBoxes rays(Array<Box>{Box{{x, x, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {x, x, 1}}});
     EXPECT_EQ(rays.find(ray_box(points, p, 2), nullptr), (std::vector<std::int32_t>{0, 1}));
 }
 

@@ -165,7 +165,10 @@ TEST(NearPart, FacesOfBlocksAwayFromTheSurfaceAreLeftOut) {
         for (std::int32_t group = 0; index(group) < far.groups(); ++group) {
             left_out += far.of_group(group).size();
             EXPECT_TRUE(far.is_first(index(far.first(group))));
-            EXPECT_TRUE(far.box(group).high[0] <= 3 || far.box(group).low[0] >= 6);
+            for (const std::int32_t face : far.of_group(group)) {
+                for (const NodeId v : all.face(index(face)))
+                    EXPECT_GE(std::abs(all.vertex(v)[0] - 4.5), 1.5);
+            }
         }
         EXPECT_EQ(left_out, far.faces().size());
         expect_put_back(model, part);

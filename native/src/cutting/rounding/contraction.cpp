@@ -101,9 +101,9 @@ std::optional<Contraction::Shape> Contraction::shape(std::span<const std::int32_
 }
 
 std::optional<Contraction::Shape> Contraction::shape(std::int32_t part, Scratch& scratch) const {
-    auto found = shape(parts_.pieces_of[index(part)], part, scratch);
-    if (!found || (found->count < 4 && !parts_.has_far_faces(index(part)))) return std::nullopt;
-    found->box.include(parts_.far_boxes[index(part)]);
+    const auto found = shape(parts_.pieces_of[index(part)], part, scratch);
+    if (found && parts_.has_far_faces[index(part)] != 0) return found;
+    if (!found || found->count < 4) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
         if (found->box.low[k] == found->box.high[k]) return std::nullopt;
     }

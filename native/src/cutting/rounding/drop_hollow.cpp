@@ -11,7 +11,7 @@ void drop_hollow(RoundedParts& parts) {
     bool any = false;
     for (std::size_t part = 0; part < parts.half_cells.size(); ++part) {
         const auto around = parts.pieces_of[part];
-        if (around.size() != 2 || parts.has_far_faces(part)) continue;
+        if (around.size() != 2 || parts.has_far_faces[part] != 0) continue;
         const std::array both{index(around[0]), index(around[1])};
         const auto number = static_cast<std::int32_t>(part);
         const bool has_both = both[0] != both[1] && std::ranges::all_of(both, [&](std::size_t p) {

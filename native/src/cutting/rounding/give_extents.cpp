@@ -57,8 +57,9 @@ bool widen(RoundedParts& parts, std::span<const NodeId> nodes, std::size_t axis,
 void give_extents(RoundedParts& parts) {
     const auto flat_axes = [&](std::size_t part) {
         std::vector<std::size_t> axes;
-        if (!parts.is_changed(static_cast<std::int32_t>(part))) return axes;
-        spatial::Box box = parts.far_boxes[part];
+        if (!parts.is_changed(static_cast<std::int32_t>(part)) || parts.has_far_faces[part] != 0)
+            return axes;
+        spatial::Box box;
         for (const std::int32_t piece : parts.pieces_of[part]) {
             for (const NodeId node : parts.pieces.polygons[index(piece)])
                 box.include(parts.at(node));

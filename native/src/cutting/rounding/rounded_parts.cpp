@@ -16,7 +16,7 @@ RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positio
       half_cells(cells),
       are_joined(of_several),
       execution(executed),
-      far_boxes(cells.size()) {
+      has_far_faces(cells.size(), 0) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
@@ -29,7 +29,7 @@ RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positio
     for (const CutPiece& piece : pieces.origins) {
         if (piece.face < 0 || !far.is_first(index(piece.face))) continue;
         for (const std::int32_t part : piece.parts) {
-            if (part >= 0) far_boxes[index(part)].include(far.box(far.group(index(piece.face))));
+            if (part >= 0) has_far_faces[index(part)] = 1;
         }
     }
     update();
@@ -67,8 +67,7 @@ bool RoundedParts::is_whole_face(std::size_t piece) const {
 }
 
 bool RoundedParts::are_closed() const {
-    if (std::ranges::any_of(far_boxes, [](const auto& box) { return box.low[0] < HUGE_VAL; }))
-        return true;  // not without what was left out
+    if (std::ranges::count(has_far_faces, 1) > 0) return true;  // not without what was left out
     std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> sums;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const auto nodes = pieces.polygons[p];

@@ -54,8 +54,6 @@ struct RoundedParts {
     }
     /// Whether such a piece has no extent in plan.
     bool is_upright(std::size_t piece) const;
-    /// Whether faces of a part were left out.
-    bool has_far_faces(std::size_t part) const { return far_boxes[part].low[0] < HUGE_VAL; }
     /// Whether a piece is a face of the model as it was.
     bool is_whole_face(std::size_t piece) const;
 
@@ -79,7 +77,8 @@ struct RoundedParts {
     bool are_joined;
     Execution execution;
 
-    std::vector<spatial::Box> far_boxes;         ///< of parts: around faces that were left out
+    /// Of parts: whether faces were left out, so that they have an extent.
+    std::vector<std::uint8_t> has_far_faces;
     std::vector<Position> vertices;              ///< of the model, as `at` gives them
     std::vector<std::uint8_t> on_base, on_wall;  ///< of nodes
     std::vector<std::uint8_t> is_near;           ///< of nodes: of a part that is less than its cell
