@@ -45,7 +45,6 @@ void FacetClipper::begin(PolygonView facet) {
         known.line = line;
         known.facet = number_;
         known.sides = along.line.is_reversed() ? sides.turned() : sides;
-        known.crossings = 0;
     }
     return known;
 }
@@ -81,26 +80,18 @@ bool FacetClipper::compare(PolygonView window) {
     }
     if (reached != all) return false;
     for (std::size_t j = 0; j < window.size(); ++j) {
-        KnownLine& known = known_line(window, j);
-        const Sides corners = window[j].line.is_reversed() ? known.sides.turned() : known.sides;
+        const Sides known = known_line(window, j).sides;
+        const Sides corners = window[j].line.is_reversed() ? known.turned() : known;
         if (corners.left() == 0) return false;
         beside &= corners.either();
-        edges_[j] = {&known, corners};
+        edges_[j] = corners;
     }
     on_line_ = beside != all;
     return true;
 }
 
-PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
-    KnownLine& known = *edges_[j].known;
-    const LineId line = window[j].line.id();
-    // two lines of the window may have the same slot
-    if (known.line != line) return scope_.crossing_between_ends(facet_[i].line.id(), line);
-    if (!bit(known.crossings, i)) {
-        known.crossing[i] = scope_.crossing_between_ends(facet_[i].line.id(), line);
-        known.crossings |= 1U << i;
-    }
-    return known.crossing[i];
+PointId FacetClipper::crossing(std::size_t i, LineId line) {
+    return scope_.crossing_between_ends(facet_[i].line.id(), line);
 }
 
 /// Goes around the facet, and from each edge where it leaves the window around the window until
@@ -111,7 +102,7 @@ PolygonView FacetClipper::follow(PolygonView window) {
     // The facet's corners in the window, and its edges where it comes in and goes out.
     std::uint32_t inside = all, in = 0, out = 0;
     for (std::size_t j = 0; j < n; ++j) {
-        const std::uint32_t left = edges_[j].corners.left();
+        const std::uint32_t left = edges_[j].left();
         const std::uint32_t next_left = left >> 1 | (left & 1U) << (m - 1);
         const std::uint32_t crossed =
             (left ^ next_left) &
@@ -126,7 +117,7 @@ PolygonView FacetClipper::follow(PolygonView window) {
     const auto edge_crossed = [&](std::size_t i, bool outwards) {
         // a crossing is in a window's edge as in the facet's, for the predicates agree
         for (std::size_t j = 0; j < n; ++j) {
-            if (bit(crossed_[j], i) && bit(edges_[j].corners.left(), i) == outwards) return j;
+            if (bit(crossed_[j], i) && bit(edges_[j].left(), i) == outwards) return j;
         }
         assert(false);
         return n - 1;
@@ -134,10 +125,11 @@ PolygonView FacetClipper::follow(PolygonView window) {
     for (std::size_t i = 0; i < m; ++i) {
         if (bit(inside, i)) result_.push_back(facet_[i]);
         if (bit(in, i))
-            result_.push_back({crossing(i, edge_crossed(i, false), window), facet_[i].line});
+            result_.push_back(
+                {crossing(i, window[edge_crossed(i, false)].line.id()), facet_[i].line});
         if (!bit(out, i)) continue;
         const std::size_t left_at = edge_crossed(i, true);
-        result_.push_back({crossing(i, left_at, window), window[left_at].line});
+        result_.push_back({crossing(i, window[left_at].line.id()), window[left_at].line});
         for (std::size_t j = left_at + 1 < n ? left_at + 1 : 0;
              window_corners_[j].left() == all && j != left_at; j = j + 1 < n ? j + 1 : 0)
             result_.push_back(window[j]);
@@ -155,7 +147,7 @@ void FacetClipper::cut_by_lines(PolygonView window) {
         left_.push_back({facet_[i], static_cast<std::int32_t>(i)});
     for (std::size_t j = 0; j < window.size(); ++j) {
         const DirectedLine line = window[j].line;
-        const Sides& known = edges_[j].corners;
+        const Sides& known = edges_[j];
         bool any_left = false, any_right = false;
         sides_.clear();
         for (const Left& at : left_) {

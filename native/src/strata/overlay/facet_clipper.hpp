@@ -40,14 +40,7 @@ private:
     struct KnownLine {
         LineId line = kNone;
         std::uint32_t facet = 0;
-        exact::Sides sides;           ///< of the facet's corners, seen along the line
-        std::uint32_t crossings = 0;  ///< a bit for each edge whose crossing is known
-        std::array<PointId, exact::kRowLength> crossing;
-    };
-    /// A window's edge: what is known of its line, turned to its direction.
-    struct Edge {
-        KnownLine* known;
-        exact::Sides corners;
+        exact::Sides sides;  ///< of the facet's corners, seen along the line
     };
 
     exact::Sides sides_of_point(PointId point);
@@ -55,7 +48,7 @@ private:
     PolygonView follow(PolygonView window);
     void cut_by_lines(PolygonView window);
     void rotate_result(PolygonView window);
-    PointId crossing(std::size_t facet_edge, std::size_t window_edge, PolygonView window);
+    PointId crossing(std::size_t facet_edge, LineId line);
 
     LocalArrangement& scope_;
     Clipper clipper_;
@@ -65,7 +58,7 @@ private:
     exact::LineRow lines_;
     std::array<KnownPoint, kKnown> points_;
     std::array<KnownLine, kKnown> known_lines_;
-    std::array<Edge, exact::kRowLength> edges_;
+    std::array<exact::Sides, exact::kRowLength> edges_;
     std::array<exact::Sides, exact::kRowLength> window_corners_;
     std::array<std::uint32_t, exact::kRowLength> crossed_;  ///< the facet's edges, by a window's
     bool on_line_ = false;  ///< whether a corner of one lies on a line of the other
