@@ -74,6 +74,13 @@ TEST(TilingWalk, FindsTheTrianglesOfEachFacetAndWhatTheyHaveInCommon) {
     EXPECT_GT(walked(fine, coarse), 200);  // with triangles that have several facets inside
 }
 
+TEST(TilingWalk, GoesOnWhereTheSurfaceEnds) {
+    std::mt19937_64 random(3);
+    const OwnedSurface facets =
+        grid(5, 5, -0.33, -0.21, 1.27, 1.39, [](double, double) { return 1; });
+    EXPECT_GT(walked(facets, jittered(6, 0, 0.3, random)), 40);
+}
+
 TEST(TilingWalk, BeginsPolygonsAsTheClipperDoesWhereCornersLieOnLinesOfTheOther) {
     std::mt19937_64 random(3);
     int count = 0;
