@@ -6,14 +6,37 @@
 
 namespace realmodel::cutting {
 
+namespace {
+
+/// Whether all that is around a part is one other part, which has nothing else around itself.
+bool has_one_neighbor(const RoundedParts& parts, std::int32_t part) {
+    const auto around = parts.pieces_of[index(part)];
+    const auto beyond = [&](std::int32_t p) {
+        const CutPiece& piece = parts.pieces[index(p)];
+        return piece.sides[0] == piece.sides[1] ? piece.parts[piece.parts[0] == part ? 1 : 0] : -1;
+    };
+    if (around.empty()) return false;
+    const std::int32_t other = beyond(around[0]);
+    return other >= 0 && other != part && parts.pieces_of[index(other)].size() == around.size() &&
+           std::ranges::all_of(around, [&](std::int32_t p) { return beyond(p) == other; });
+}
+
+}  // namespace
+
 void drop_hollow(RoundedParts& parts) {
     CutPieces& pieces = parts.pieces;
     bool any = false;
     for (std::size_t part = 0; part < parts.half_cells.size(); ++part) {
         const auto around = parts.pieces_of[part];
-        if (around.size() != 2 || parts.has_far_faces[part] != 0) continue;
-        const std::array both{index(around[0]), index(around[1])};
         const auto number = static_cast<std::int32_t>(part);
+        if (parts.has_far_faces[part] != 0) continue;
+        if (has_one_neighbor(parts, number)) {
+            any = true;
+            for (const std::int32_t p : around)
+                pieces[index(p)].parts = {-1, -1};
+        }
+        if (around.size() != 2) continue;
+        const std::array both{index(around[0]), index(around[1])};
         const bool has_both = both[0] != both[1] && std::ranges::all_of(both, [&](std::size_t p) {
                                   return std::ranges::count(pieces[p].parts, number) == 1;
                               });

@@ -18,7 +18,7 @@ void round_parts(RoundedParts&& parts, const std::array<bool, 2>& touches);
 // The passes, which joined models share (structures/joined_rounding.hpp).
 
 /// Takes away parts of which two polygons are left that lie on each other: what is beyond the one
-/// meets what is beyond the other.
+/// meets what is beyond the other. So are two parts that have nothing around them but each other.
 void drop_hollow(RoundedParts& parts);
 
 /// A cutter that runs along the base but for rounding is taken to run along it: so do its nodes.

@@ -17,6 +17,20 @@ TEST_F(AHalvedBox, APartBetweenTwoPolygonsThatLieOnEachOtherVanishes) {
     EXPECT_TRUE(parts.pieces_of[2].empty());
 }
 
+TEST_F(AHalvedBox, PartsThatHaveOnlyEachOtherAroundThemVanish) {
+    cut_at(0.5);
+    parts_.insert(parts_.end(), 2, {0, kBelow});
+    const CutPiece between{-1, {0, 0}, {kBelow, kBelow}, false, {2, 3}};
+    for (const auto& triangle :
+         std::array<std::array<NodeId, 3>, 4>{{{8, 9, 10}, {8, 11, 9}, {9, 11, 10}, {8, 10, 11}}})
+        pieces_.add(triangle, between);
+    RoundedParts parts = rounded_parts();
+    drop_hollow(parts);
+    EXPECT_TRUE(parts.pieces_of[2].empty());
+    EXPECT_TRUE(parts.pieces_of[3].empty());
+    EXPECT_EQ(parts.pieces_of[0].size(), 6U);
+}
+
 TEST_F(AHalvedBox, PartsWithMorePolygonsStay) {
     cut_at(0.5);
     RoundedParts parts = rounded_parts();
