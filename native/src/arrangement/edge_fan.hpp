@@ -80,7 +80,8 @@ EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
         nodes, (items + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
             for (std::size_t i = chunk * kChunk; i < std::min(items, (chunk + 1) * kChunk); ++i) {
-                each_edge(std::span(&loop_of(i), 1), static_cast<std::int32_t>(i),
+                each_edge(std::array{std::span<const NodeId>(loop_of(i))},
+                          static_cast<std::int32_t>(i),
                           [&](const EdgeUse& use) { put(index(use.edge[0]), use); });
             }
         },

@@ -33,8 +33,10 @@ public:
     /// @throws Cancelled
     std::vector<std::int32_t> find(const spatial::Box& ray, Progress* progress) {
         std::vector<std::int32_t> found;
-        if (!tree_ && ++rays_ > kFewRays)
+        if (!tree_ && ++rays_ > kFewRays) {
             tree_.emplace(std::vector(boxes_.begin(), boxes_.end()), Execution{1, progress});
+            boxes_ = {};
+        }
         if (tree_) {
             tree_->find(ray, [&found](std::int32_t box) { found.push_back(box); });
             std::sort(found.begin(), found.end());
@@ -48,7 +50,7 @@ public:
 
 private:
     static constexpr int kFewRays = 16;
-    Array<spatial::Box> boxes_;
+    Array<spatial::Box> boxes_;  ///< until there is a tree
     std::optional<spatial::BoxTree> tree_;
     int rays_ = 0;
 };

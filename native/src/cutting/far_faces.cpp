@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/far_faces.hpp"
 
+#include <array>
 #include <atomic>
 
+#include "arrangement/edge_fan.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/packed_pair.hpp"
 #include "base/parallel.hpp"
@@ -11,32 +13,11 @@
 
 namespace realmodel::cutting {
 
+using arrangement::EdgeUse;
+
 namespace {
 
 constexpr std::size_t kEdgeChunk = 1 << 12;  // nodes or faces at a time
-
-/// Uses of the edges of one node: the greater node, then the face and whether it runs back, in a
-/// word.
-using Uses = std::span<const std::uint64_t>;
-std::uint64_t packed_use(NodeId to, std::size_t face, bool back) {
-    return std::uint64_t{static_cast<std::uint32_t>(to)} << 32 | face << 1 | (back ? 1 : 0);
-}
-NodeId greater_of(std::uint64_t use) {
-    return static_cast<NodeId>(use >> 32);
-}
-std::size_t face_of(std::uint64_t use) {
-    return (use & UINT32_MAX) >> 1;
-}
-
-/// Calls visit(uses) for runs of uses of the same edge, of those of one node.
-template <class Visit>
-void each_edge_of(Uses own, const Visit& visit) {
-    for (std::size_t begin = 0, end = 0; begin < own.size(); begin = end) {
-        while (end < own.size() && greater_of(own[end]) == greater_of(own[begin]))
-            ++end;
-        visit(own.subspan(begin, end - begin));
-    }
-}
 
 spatial::Box box_of(const ComplexView& model, std::int32_t face) {
     spatial::Box box;
@@ -60,18 +41,10 @@ public:
           faces_(faces),
           execution_(execution),
           stays_(zeros<std::uint8_t>(faces.size(), execution)),
-          joined_(faces.size()) {
-        const std::size_t chunks = (faces.size() + kEdgeChunk - 1) / kEdgeChunk;
-        const auto produce = [&](std::size_t chunk, const auto& put) {
-            const std::size_t end = std::min(faces.size(), (chunk + 1) * kEdgeChunk);
-            for (std::size_t i = chunk * kEdgeChunk; i < end; ++i) {
-                each_edge_of_face(i, [&](NodeId a, NodeId b) {
-                    put(index(std::min(a, b)), packed_use(std::max(a, b), i, b < a));
-                });
-            }
-        };
-        uses_ = sorted_in_buckets<std::uint64_t>(model.vertex_count(), chunks, produce, execution);
-    }
+          joined_(faces.size()),
+          edges_(arrangement::edges_of(
+              faces.size(), model.vertex_count(),
+              [&](std::size_t i) { return model.face(index(faces[i])); }, execution)) {}
 
     /// Keeps what is near the surface, and says of what is beside it.
     /// @return around all faces
@@ -90,9 +63,9 @@ public:
             });
         parallel_each(faces_.size(), execution_, [&](std::size_t i) {
             if (!has(i, kNear)) return;
-            each_edge_of_face(i, [&](NodeId a, NodeId b) {
-                for (const std::uint64_t use : uses_of(a, b))
-                    note(face_of(use), kBesideNear);
+            each_edge_of(i, [&](const EdgeUse& own) {
+                for (const EdgeUse& use : edges_.between(own.edge))
+                    note(index(use.item), kBesideNear);
             });
         });
         return all;
@@ -101,16 +74,14 @@ public:
     /// Joins the others across edges that no other faces have, and keeps those with other edges and
     /// the first of each group.
     void join() {
-        parallel_each(uses_.size(), execution_, [&](std::size_t node) {
-            each_edge_of(uses_[node], [&](Uses own) {
-                if (is_within(own)) {
-                    joined_.join(static_cast<std::int32_t>(face_of(own[0])),
-                                 static_cast<std::int32_t>(face_of(own[1])));
-                } else {
-                    for (const std::uint64_t use : own)
-                        note(face_of(use), kOfGroup);
-                }
-            });
+        parallel_each(edges_.size(), execution_, [&](std::size_t e) {
+            const auto own = edges_[e];
+            if (is_within(own)) {
+                joined_.join(own[0].item, own[1].item);
+            } else {
+                for (const EdgeUse& use : own)
+                    note(index(use.item), kOfGroup);
+            }
         });
         parallel_each(faces_.size(), execution_, [&](std::size_t i) {
             if (first_of_group(i) == i) note(i, kOfGroup);
@@ -121,12 +92,13 @@ public:
     std::size_t first_of_group(std::size_t i) {
         return index(joined_.find(static_cast<std::int32_t>(i)));
     }
-    /// Calls visit(a, b) for the edges of a face beyond which one of its group does not stay.
+    /// Calls visit(use) for the edges of a face beyond which one of its group does not stay.
     template <class Visit>
     void each_edge_to_left_out(std::size_t i, const Visit& visit) {
-        each_edge_of_face(i, [&](NodeId a, NodeId b) {
-            const Uses own = uses_of(a, b);
-            if (is_within(own) && !(stays(face_of(own[0])) && stays(face_of(own[1])))) visit(a, b);
+        each_edge_of(i, [&](const EdgeUse& use) {
+            const auto own = edges_.between(use.edge);
+            if (is_within(own) && !(stays(index(own[0].item)) && stays(index(own[1].item))))
+                visit(use);
         });
     }
 
@@ -135,20 +107,14 @@ private:
     static constexpr std::uint8_t kNear = 1, kBesideNear = 2, kOfGroup = 4;
 
     template <class Visit>
-    void each_edge_of_face(std::size_t i, const Visit& visit) const {
-        const auto loop = model_.face(index(faces_[i]));
-        for (std::size_t k = 0; k < loop.size(); ++k)
-            visit(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]);
-    }
-    Uses uses_of(NodeId a, NodeId b) const {
-        const Uses own = uses_[index(std::min(a, b))];
-        const auto first = std::ranges::lower_bound(own, std::max(a, b), {}, greater_of);
-        return {first, std::ranges::upper_bound(own, std::max(a, b), {}, greater_of)};
+    void each_edge_of(std::size_t i, const Visit& visit) const {
+        arrangement::each_edge(std::array{model_.face(index(faces_[i]))},
+                               static_cast<std::int32_t>(i), visit);
     }
     /// Of the uses of an edge: whether faces of one group may be on its two sides.
-    bool is_within(Uses own) {
-        if (own.size() != 2 || ((own[0] ^ own[1]) & 1) == 0) return false;
-        const std::size_t one = face_of(own[0]), other = face_of(own[1]);
+    bool is_within(std::span<const EdgeUse> own) {
+        if (own.size() != 2 || own[0].direction == own[1].direction) return false;
+        const std::size_t one = index(own[0].item), other = index(own[1].item);
         return !has(one, kNear | kBesideNear) && !has(other, kNear | kBesideNear) &&
                model_.cell(index(faces_[one]), 0) == model_.cell(index(faces_[other]), 0) &&
                model_.cell(index(faces_[one]), 1) == model_.cell(index(faces_[other]), 1);
@@ -165,7 +131,7 @@ private:
     Execution execution_;
     Array<std::uint8_t> stays_;
     DisjointSets joined_;
-    Buckets<std::uint64_t> uses_;
+    arrangement::EdgeUses edges_;
 };
 
 }  // namespace
@@ -222,9 +188,8 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
     std::size_t place = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (!connection.stays(i) || group_[place++] < 0) continue;
-        connection.each_edge_to_left_out(i, [this](NodeId a, NodeId b) {
-            edges_.push_back(packed_pair(std::min(a, b), std::max(a, b)));
-        });
+        connection.each_edge_to_left_out(
+            i, [this](const EdgeUse& use) { edges_.push_back(use.key()); });
     }
     std::ranges::sort(edges_);
     faces = std::move(kept);
