@@ -64,6 +64,8 @@ struct Warning {
     int surface = -1;
     std::vector<std::int64_t> items;
     std::string text;
+
+    bool operator==(const Warning&) const = default;
 };
 
 /// Polyhedral cells that share faces exactly (the layout that OpenFOAM calls owner / neighbour),

@@ -2,12 +2,13 @@
 // Triangles divided along what they intersect.
 #include <algorithm>
 #include <cassert>
-#include <iterator>
 #include <numeric>
 #include <unordered_map>
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "arrangement/triangle_regions.hpp"
+#include "base/keep_single.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
@@ -28,22 +29,8 @@ constexpr std::size_t kLarge = 1 << 9;
 
 /// Rounding keeps the order of numbers: what has no point in common with the box of rounded points
 /// has none with the exact ones.
-template <std::size_t N>
-Box box_of(const exact::SpacePoints& points, const std::array<SpacePointId, N>& corners) {
-    Box box;
-    for (const SpacePointId corner : corners)
-        box.include(points.rounded(corner));
-    return box;
-}
-
-/// The results of all ranges, one after another.
-template <class Item>
-std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
-    std::vector<Item> all;
-    for (auto& range : ranges)
-        all.insert(all.end(), std::make_move_iterator(range.begin()),
-                   std::make_move_iterator(range.end()));
-    return all;
+Box box_of(const exact::SpacePoints& points, std::span<const SpacePointId> corners) {
+    return spatial::bounding_box(corners, [&](SpacePointId p) { return points.rounded(p); });
 }
 
 }  // namespace
@@ -74,10 +61,9 @@ public:
         tree_.reset();
         in_order_.assign(t.points.begin(), t.points.end());
         if (in_order_.size() > kLarge) {
-            std::vector<Box> boxes(in_order_.size());
-            for (std::size_t i = 0; i < boxes.size(); ++i)
-                boxes[i].include(points_.rounded(in_order_[i]));
-            tree_.emplace(std::move(boxes));
+            tree_.emplace(mapped(in_order_, [this](SpacePointId p) {
+                return box_of(points_, {&p, 1});
+            }));
             return;
         }
         std::sort(in_order_.begin(), in_order_.end(), [this](SpacePointId p, SpacePointId q) {
@@ -152,12 +138,8 @@ std::vector<std::int32_t> TriangleArrangement::large_triangles(
 /// Puts the points and segments of all triangles in order, each once.
 void TriangleArrangement::sort_all(const Execution& execution) {
     each_triangle(execution, [this](std::size_t i) {
-        const auto order = [](auto& of) {
-            std::sort(of.begin(), of.end());
-            of.erase(std::unique(of.begin(), of.end()), of.end());
-        };
-        order(triangles_[i].points);
-        order(triangles_[i].segments);
+        sort_unique(triangles_[i].points);
+        sort_unique(triangles_[i].segments);
     });
 }
 
@@ -197,15 +179,6 @@ std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& poin
     return boxed;
 }
 
-template <class Segment>
-std::vector<Box> boxes_of(const std::vector<BoxedSegment<Segment>>& boxed) {
-    std::vector<Box> boxes;
-    boxes.reserve(boxed.size());
-    for (const auto& own : boxed)
-        boxes.push_back(own.box);
-    return boxes;
-}
-
 /// make(i) for all i, on all threads.
 template <class Item, class Make>
 std::vector<std::optional<Item>> made_for_all(std::size_t count, const Execution& execution,
@@ -229,9 +202,8 @@ void TriangleArrangement::exchange_segments() {
     const auto tree_of = [&](std::int32_t triangle) -> const spatial::BoxTree& {
         const auto at = trees.find(triangle);
         if (at != trees.end()) return at->second;
-        std::vector<Box> boxes;
-        for (const Segment& s : triangles_[index(triangle)].segments)
-            boxes.push_back(box_of(points_, s.ends));
+        auto boxes = mapped(triangles_[index(triangle)].segments,
+                            [&](const Segment& s) { return box_of(points_, s.ends); });
         return trees.try_emplace(triangle, std::move(boxes)).first->second;
     };
     std::vector<Found> found;
@@ -282,7 +254,7 @@ struct TriangleArrangement::LargeTriangle {
     LargeTriangle(const exact::SpacePoints& points, std::int32_t of, const Triangle& t)
         : number(of),
           boxed(boxed_segments(points, t.segments, (t.axis + 1) % 3)),
-          tree(boxes_of(boxed)) {}
+          tree(mapped(boxed, &BoxedSegment<Segment>::box)) {}
 
     std::int32_t number;
     std::vector<BoxedSegment<Segment>> boxed;
@@ -294,10 +266,9 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
     const LargeTriangle& large, const Execution& execution) const {
     const Triangle& t = triangles_[index(large.number)];
     const auto& boxed = large.boxed;
-    std::vector<std::vector<SegmentPair>> found((boxed.size() + kChunk - 1) / kChunk);
-    parallel_ranges(
+    return found_in_ranges<SegmentPair>(
         boxed.size(), kChunk, execution,
-        [&](std::size_t begin, std::size_t end) {
+        [&](std::size_t begin, std::size_t end, std::vector<SegmentPair>& found) {
             std::vector<std::size_t> near;
             for (std::size_t i = begin; i < end; ++i) {
                 near.clear();
@@ -308,12 +279,11 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
                 const auto [a, b] = boxed[i].segment->ends;
                 for (const std::size_t j : near) {
                     const auto [c, d] = boxed[j].segment->ends;
-                    if (do_cross(t, {a, b, c, d})) found[begin / kChunk].push_back({a, b, c, d});
+                    if (do_cross(t, {a, b, c, d})) found.push_back({a, b, c, d});
                 }
             }
         },
         0.02);
-    return joined(found);
 }
 
 /// Notes where segments of one triangle cross each other: only where the triangles of a group do
@@ -449,7 +419,7 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
                                 messages[first + begin / kChunk], own[begin / kChunk]);
                 },
                 0.02);
-            edges[index(triangle)] = joined(own);
+            edges[index(triangle)] = realmodel::joined(own);
             nodes_on_large[which].reset();
         }
         changed.clear();
@@ -462,8 +432,7 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
                 changed.push_back(message.to);
             }
         }
-        std::sort(changed.begin(), changed.end());
-        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+        sort_unique(changed);
     }
     return edges;
 }
@@ -485,8 +454,7 @@ public:
             return;
         }
         [[maybe_unused]] const std::size_t first = regions.size();
-        std::sort(edges.begin(), edges.end());
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        sort_unique(edges);
         graph_.add_regions({t.axis, t.facing}, edges, regions.loops);
         regions.triangles.resize(regions.loops.size(), triangle);
         assert(tile(t, regions, first));

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <set>
 
+#include "base/keep_single.hpp"
 #include "exact/space_predicates.hpp"
 
 namespace realmodel::arrangement {
@@ -54,8 +55,7 @@ void PlaneGraph::take(const std::vector<std::array<SpacePointId, 2>>& edges) {
     nodes_.clear();
     for (const auto& edge : edges)
         nodes_.insert(nodes_.end(), edge.begin(), edge.end());
-    std::sort(nodes_.begin(), nodes_.end());
-    nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+    sort_unique(nodes_);
     halves_.clear();
     first_leaving_.assign(nodes_.size() + 2, 0);
     for (const auto& [a, b] : edges) {

@@ -150,12 +150,9 @@ std::int32_t Ring::find_bridge(const LoopCorner& from, std::span<const Loop> oth
 }
 
 void Ring::join_hole(const Loop& hole, std::span<const Loop> others) {
-    std::size_t leftmost = 0;
-    for (std::size_t i = 1; i < hole.size(); ++i) {
-        if (hole[i].at < hole[leftmost].at) leftmost = i;
-    }
-    const std::int32_t outer = find_bridge(hole[leftmost], others);
-    const std::int32_t inner = append(hole) + static_cast<std::int32_t>(leftmost);
+    const auto leftmost = std::ranges::min_element(hole, {}, &LoopCorner::at);
+    const std::int32_t outer = find_bridge(*leftmost, others);
+    const std::int32_t inner = append(hole) + static_cast<std::int32_t>(leftmost - hole.begin());
     // both ends of the bridge stand in the ring twice, once for each of its sides
     const auto outer_again = static_cast<std::int32_t>(links_.size());
     links_.push_back(link(outer));
@@ -305,15 +302,13 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
                             &q = loops[hole][(i + 1) % loops[hole].size()].at;
         allowed += slack(p, q, q, rounding);
     }
-    const LoopCorner& corner =
-        *std::min_element(loops[hole].begin(), loops[hole].end(),
-                          [](const LoopCorner& a, const LoopCorner& b) { return a.at < b.at; });
+    const LoopCorner& corner = *std::ranges::min_element(loops[hole], {}, &LoopCorner::at);
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (areas[i] <= 0) continue;
         ++outlines;
         only = i;
-        const bool touches = std::any_of(loops[i].begin(), loops[i].end(),
-                                         [&](const auto& c) { return c.node == corner.node; });
+        const bool touches =
+            std::ranges::find(loops[i], corner.node, &LoopCorner::node) != loops[i].end();
         if (!touches && !contains(loops[i], corner, turns)) continue;
         if (found == loops.size() || areas[i] < areas[found]) found = i;
     }
@@ -358,10 +353,7 @@ bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
         Ring ring(rounding, turns, triangles);
         ring.take(loops[i]);
         const auto left = [&](std::size_t hole) {
-            return std::min_element(
-                       loops[hole].begin(), loops[hole].end(),
-                       [](const LoopCorner& a, const LoopCorner& b) { return a.at < b.at; })
-                ->at;
+            return std::ranges::min_element(loops[hole], {}, &LoopCorner::at)->at;
         };
         std::sort(holes[i].begin(), holes[i].end(), [&](std::size_t a, std::size_t b) {
             return std::pair(left(a), a) < std::pair(left(b), b);

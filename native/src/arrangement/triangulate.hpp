@@ -2,10 +2,10 @@
 #pragma once
 
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "arrangement/polygons.hpp"
+#include "exact/space_predicates.hpp"
 
 namespace realmodel::arrangement {
 
@@ -22,6 +22,24 @@ class CornerTurns {
 public:
     virtual ~CornerTurns() = default;
     virtual int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const;
+};
+
+/// The same of exact points.
+/// @tparam PointOf  point_of(node): the point of a corner's node
+template <class PointOf>
+class PointTurns : public CornerTurns {
+public:
+    PointTurns(const exact::SpacePoints& points, const View& view, const PointOf& point_of)
+        : points_(points), view_(view), point_of_(point_of) {}
+    int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
+        const auto p = point_of_(a.node), q = point_of_(b.node), r = point_of_(c.node);
+        return view_.sign() * exact::orient2d(points_, view_.axis(), p, q, r);
+    }
+
+private:
+    const exact::SpacePoints& points_;
+    const View& view_;
+    const PointOf& point_of_;
 };
 
 /// Divides the region that loops bound (outlines counter-clockwise, holes clockwise; a hole may be

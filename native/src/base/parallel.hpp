@@ -56,6 +56,11 @@ inline void poll(Progress* progress, std::size_t round) {
     if (progress != nullptr && (round & 0x3fff) == 0) progress->check();
 }
 
+/// Begins a part of the work, where somebody watches it (Progress::begin).
+inline void begin_phase(Progress* progress, double start, double end, const char* text) {
+    if (progress != nullptr) progress->begin(start, end, text);
+}
+
 /// What the threads of one loop share: how far it is, and the error of its lowest failed chunk.
 class LoopGuard {
 public:

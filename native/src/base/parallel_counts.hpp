@@ -101,6 +101,16 @@ inline std::uint32_t count_one(std::uint32_t& counter) {
     __builtin_prefetch(address);
 }
 
+/// Makes a value the least of what any thread gives, or the greatest by another order.
+template <class Value, class Before>
+void take_extreme(Value& value, Value other, const Before& before) {
+    const std::atomic_ref shared(value);
+    Value known = shared.load(std::memory_order_relaxed);
+    while (before(other, known) &&
+           !shared.compare_exchange_weak(known, other, std::memory_order_relaxed)) {
+    }
+}
+
 /// Says so of an item, from any thread: all write the same.
 inline void mark(std::uint8_t& flag) {
     std::atomic_ref(flag).store(1, std::memory_order_relaxed);

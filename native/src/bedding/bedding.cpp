@@ -5,8 +5,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 

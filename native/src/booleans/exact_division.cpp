@@ -10,6 +10,7 @@
 #include "arrangement/triangulate.hpp"
 #include "base/counting_sort.hpp"
 #include "base/key_table.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "exact/space_predicates.hpp"
@@ -18,7 +19,6 @@ namespace realmodel::booleans {
 
 using arrangement::Region;
 using arrangement::View;
-using spatial::Box;
 using spatial::BoxTree;
 
 namespace {
@@ -98,21 +98,6 @@ bool is_flat_star(const SpacePoints& points, SpacePointId middle, std::span<cons
     return rounds == 1 && ends[0] == ends[1];
 }
 
-/// Turns of exact points, which loop corners number as nodes.
-class PointTurns : public arrangement::CornerTurns {
-public:
-    PointTurns(const SpacePoints& points, const View& view) : points_(points), view_(view) {}
-    int operator()(const arrangement::LoopCorner& a, const arrangement::LoopCorner& b,
-                   const arrangement::LoopCorner& c) const override {
-        return view_.sign() * exact::orient2d(points_, view_.axis(), SpacePointId(a.node),
-                                              SpacePointId(b.node), SpacePointId(c.node));
-    }
-
-private:
-    const SpacePoints& points_;
-    const View& view_;
-};
-
 bool is_triangle(const Region& region) {
     return region.loops.size() == 1 && region.loops[0].size() == 3;
 }
@@ -135,7 +120,7 @@ bool ExactDivision::is_aside(const TriangleCorners& own, const TriangleCorners& 
                              const exact::SideFilter& plane_of_other) const {
     int side = 0;
     for (const SpacePointId p : own) {
-        if (p == other[0] || p == other[1] || p == other[2]) continue;
+        if (has(other, p)) continue;
         const auto found = plane_of_other(pieces_.points.rounded(p));
         if (!found || (side != 0 && *found != side)) return false;
         side = *found;
@@ -175,10 +160,8 @@ void ExactDivision::find_candidates() {
     // the tree of the inputs is that of their pieces, as long as none is divided
     std::optional<BoxTree> own;
     if (!pieces_.are_whole() || count != pieces_.input_count()) {
-        std::vector<Box> boxes(count);
-        std::transform(chosen_.begin(), chosen_.end(), boxes.begin(),
-                       [this](const PieceId& id) { return pieces_.box(pieces_[id].corners); });
-        own.emplace(std::move(boxes), execution_);
+        const auto box_of = [this](const PieceId& id) { return pieces_.box(pieces_[id].corners); };
+        own.emplace(mapped(chosen_, box_of), execution_);
     }
     const BoxTree& tree = own ? *own : pieces_.tree();
     std::vector<Item> items(count);  // in the order of the tree, which has near ones together
@@ -189,14 +172,12 @@ void ExactDivision::find_candidates() {
         }
     });
     const std::vector<std::uint8_t> is_flat = flat_stars(items);
-    std::vector<std::vector<std::array<std::int32_t, 2>>> found(
-        (tree.leaf_count() + kFacetsAtOnce - 1) / kFacetsAtOnce);
     const auto filter_of = [&](const TriangleCorners& c) {
         return exact::SideFilter(points.rounded(c[0]), points.rounded(c[1]), points.rounded(c[2]));
     };
-    parallel_ranges(
-        tree.leaf_count(), kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-            auto& pairs = found[begin / kFacetsAtOnce];
+    candidates_ = found_in_ranges<std::array<std::int32_t, 2>>(
+        tree.leaf_count(), kFacetsAtOnce, execution_,
+        [&](std::size_t begin, std::size_t end, auto& pairs) {
             std::size_t last = count;  // the pairs of a piece follow one another
             std::optional<exact::SideFilter> plane;
             tree.find_pairs(begin, end, [&](std::size_t place, std::size_t of_other) {
@@ -220,8 +201,6 @@ void ExactDivision::find_candidates() {
                 pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
             });
         });
-    for (const auto& pairs : found)
-        candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
     parallel_sort(candidates_, std::less<>(), execution_);
 }
 
@@ -244,16 +223,14 @@ void ExactDivision::find_meetings() {
         for (std::int32_t& i : pair)
             i = triangle_of[index(i)];
     }
-    const std::size_t count = candidates_.size();
-    std::vector<std::vector<Meeting>> found((count + kFacetsAtOnce - 1) / kFacetsAtOnce);
-    parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
-            if (met && is_contact(*met)) found[begin / kFacetsAtOnce].push_back(*met);
-        }
-    });
-    for (const auto& meetings : found)
-        meetings_.insert(meetings_.end(), meetings.begin(), meetings.end());
+    meetings_ = found_in_ranges<Meeting>(
+        candidates_.size(), kFacetsAtOnce, execution_,
+        [&](std::size_t begin, std::size_t end, std::vector<Meeting>& found) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
+                if (met && is_contact(*met)) found.push_back(*met);
+            }
+        });
 }
 
 /// Whether two triangles that intersect do so elsewhere than in what they share.
@@ -314,15 +291,14 @@ std::vector<TriangleCorners> ExactDivision::divided(const Region& region) const 
         }
     }
     std::vector<std::array<arrangement::LoopCorner, 3>> found;
+    const auto point_of = [](std::int32_t node) { return SpacePointId(node); };
     arrangement::triangulate(loops, view.rounding(positions), found,
-                             PointTurns(pieces_.points, view));
+                             arrangement::PointTurns(pieces_.points, view, point_of));
     // corners, and two more for each hole, which a bridge joins with the outline
     assert(found.size() + 2 == positions.size() + 2 * (loops.size() - 1));
-    std::vector<TriangleCorners> triangles;
-    for (const auto& t : found)
-        triangles.push_back(
-            {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)});
-    return triangles;
+    return mapped(found, [](const auto& t) -> TriangleCorners {
+        return {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)};
+    });
 }
 
 void ExactDivision::divide(const std::vector<Meeting>& at) {

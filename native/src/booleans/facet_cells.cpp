@@ -105,9 +105,9 @@ void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
     Array<Box> boxes(count);
     parallel_each(count, execution_, [&](std::size_t f) {
-        boxes[f] = {};
-        for (const std::int32_t v : mesh_.facets[f].corners)
-            boxes[f].include(vertices_[index(v)]);
+        boxes[f] = spatial::bounding_box(
+            mesh_.facets[f].corners,
+            [&](std::int32_t v) -> const Position& { return vertices_[index(v)]; });
     });
     arrangement::RayBoxes ray_boxes(std::move(boxes));
     // facets of each part, of which one after another is tried

@@ -40,11 +40,8 @@ public:
         TriangleCorners own;
         for (std::size_t k = 0; k < 3; ++k)
             own[k] = enter(places_.add(points.rounded(facet.corners[k])), facet.corners[k]);
-        for (axis_ = 0; axis_ < 3 && facing_ == 0; ++axis_)
-            facing_ = exact::orient2d(places_, axis_, own[0], own[1], own[2]);
-        if (facing_ == 0) return;
-        --axis_;
         find_best_axis(facet.corners);
+        if (facing_ == 0) return;
         note_corners(mesh_.add_triangle({own[0].number(), own[1].number(), own[2].number()}));
         for (std::size_t k = 0; k < 3; ++k)
             divide_edge(own[k], own[(k + 1) % 3], facet.on_edges[k]);
@@ -88,17 +85,14 @@ private:
     }
 
     /// The view along the axis in which the triangle is largest, among those in which it has an
-    /// area.
+    /// area, if there are any.
     void find_best_axis(const TriangleCorners& corners) {
         double largest = -1;
-        std::array<std::array<double, 3>, 3> p;
-        for (std::size_t k = 0; k < 3; ++k)
-            p[k] = global_.rounded(corners[k]);
+        const Vec3 normal = triangle_normal(
+            global_.rounded(corners[0]), global_.rounded(corners[1]), global_.rounded(corners[2]));
         const TriangleCorners own{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-            const double area = std::abs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -
-                                         (p[1][v] - p[0][v]) * (p[2][u] - p[0][u]));
+            const double area = std::abs(normal[axis]);
             if (area <= largest) continue;
             const int turn = exact::orient2d(places_, axis, own[0], own[1], own[2]);
             if (turn == 0) continue;

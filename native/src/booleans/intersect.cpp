@@ -184,10 +184,9 @@ bool is_kept(Operation operation, bool in_first, bool in_second) {
 Refinement intersect(const TriangleView& first, const TriangleView& second,
                      const Execution& execution) {
     const RefinedTriangles parts = refine({first, second}, execution);
-    if (execution.progress != nullptr) execution.progress->begin(0.8, 0.9, "finding facets");
+    begin_phase(execution.progress, 0.8, 0.9, "finding facets");
     FacetMesh mesh = facets_of(parts, execution);
-    if (execution.progress != nullptr)
-        execution.progress->begin(0.9, 0.99, "finding what is inside");
+    begin_phase(execution.progress, 0.9, 0.99, "finding what is inside");
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
     IntersectionLoops loops = find_loops(mesh, parts.vertices.size(), execution);
     Refinement result;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "booleans/loops.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <utility>
 

@@ -110,7 +110,7 @@ void Nearness::find_same(const FacetPair& pair, double within, NearParts& found)
             if (all[i] == all[j]) continue;
             const Position &p = points_.rounded(all[i]), &q = points_.rounded(all[j]);
             if (std::abs(p[0] - q[0]) > within || length(minus(p, q)) > within) continue;
-            found.same.push_back(edge_of(all[i], all[j]));
+            found.same.push_back(unordered(all[i], all[j]));
         }
     }
 }

@@ -67,12 +67,8 @@ private:
     double ulps_;
 };
 
-inline Edge edge_of(SpacePointId a, SpacePointId b) {
-    return a < b ? Edge{a, b} : Edge{b, a};
-}
-
 inline std::array<Edge, 3> edges_of(const TriangleCorners& c) {
-    return {edge_of(c[0], c[1]), edge_of(c[1], c[2]), edge_of(c[2], c[0])};
+    return {unordered(c[0], c[1]), unordered(c[1], c[2]), unordered(c[2], c[0])};
 }
 
 }  // namespace realmodel::booleans

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "base/keep_single.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "booleans/exact_division.hpp"
 #include "booleans/snapping.hpp"
@@ -137,20 +137,17 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
     if (state_ == State::kWhole) {
         inputs = fresh_;
     } else {
-        std::vector<std::vector<std::int32_t>> near((fresh_.size() + 63) / 64);
-        parallel_ranges(fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end) {
-            auto& own = near[begin / 64];
-            for (std::size_t i = begin; i < end; ++i) {
-                for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
-                    if (!piece.is_fresh) continue;
-                    pieces_.find_inputs(pieces_.box(piece.corners),
-                                        [&](std::int32_t input) { own.push_back(input); });
+        inputs = found_in_ranges<std::int32_t>(
+            fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end, Numbers& own) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
+                        if (!piece.is_fresh) continue;
+                        pieces_.find_inputs(pieces_.box(piece.corners),
+                                            [&](std::int32_t input) { own.push_back(input); });
+                    }
                 }
-            }
-            sort_unique(own);
-        });
-        for (const auto& some : near)
-            inputs.insert(inputs.end(), some.begin(), some.end());
+                sort_unique(own);
+            });
         sort_unique(inputs);
     }
     found.reserve(inputs.size());
@@ -317,8 +314,7 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
 std::optional<RefinedTriangles> Refiner::run() {
     for (int n = 0; n < kMostRounds && pieces_.count() <= most_pieces_; ++n) {
         const auto share = [](double rounds) { return 0.02 + 0.78 * rounds / (rounds + 1); };
-        if (execution_.progress != nullptr)
-            execution_.progress->begin(share(n), share(n + 1), "intersecting triangles");
+        begin_phase(execution_.progress, share(n), share(n + 1), "intersecting triangles");
         if (fresh_.empty() || !round()) return result();
     }
     return std::nullopt;

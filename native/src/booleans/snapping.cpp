@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
 #include "base/keep_single.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"
@@ -47,11 +46,9 @@ void cancel_folds(std::vector<TrianglePiece>& pieces) {
         for (auto even = begin, back = odd; even != odd && back != end; ++even, ++back)
             goes[even->piece] = goes[back->piece] = 1;
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (goes[i] == 0) pieces[kept++] = pieces[i];
-    }
-    pieces.resize(kept);
+    std::erase_if(pieces, [&](const TrianglePiece& piece) {
+        return goes[static_cast<std::size_t>(&piece - pieces.data())] != 0;
+    });
 }
 
 }  // namespace
@@ -91,7 +88,7 @@ Snapping::Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat
     : pieces_(pieces), wide_(pieces.points, 0), narrow_(pieces.points, 0), execution_(execution) {
     for (const TriangleCorners& t : flat) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
+            const Edge edge = unordered(t[k], t[(k + 1) % 3]);
             if (!narrow_.is_between(t[(k + 2) % 3], edge)) continue;
             const std::int32_t number = edges_.add(edge);
             on_edges_.resize(edges_.size());
@@ -286,20 +283,11 @@ void Snapping::spread_points() {
     for (std::size_t f = 0; f < places_.size(); ++f) {
         if (!places_[f].near.empty()) facets.push_back(static_cast<std::int32_t>(f));
     }
-    std::vector<std::vector<OnEdge>> found((facets.size() + kTrianglesAtOnce - 1) /
-                                           kTrianglesAtOnce);
-    for (bool goes_on = true; goes_on;) {
-        parallel_ranges(facets.size(), kTrianglesAtOnce, execution_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                take_points(facets[i], found[begin / kTrianglesAtOnce]);
-                        });
-        std::vector<OnEdge> all;
-        for (auto& own : found) {
-            append(all, own);
-            own.clear();
-        }
-        goes_on = add_points(std::move(all));
+    const auto take = [&](std::size_t begin, std::size_t end, std::vector<OnEdge>& found) {
+        for (std::size_t i = begin; i < end; ++i)
+            take_points(facets[i], found);
+    };
+    while (add_points(found_in_ranges<OnEdge>(facets.size(), kTrianglesAtOnce, execution_, take))) {
     }
 }
 
@@ -391,7 +379,7 @@ std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) 
     std::vector<SpacePointId> all(in_order.begin(), in_order.end());
     for (std::size_t k = 0; k < 3; ++k) {
         const SpacePointId from = in_order[k], to = in_order[(k + 1) % 3];
-        const auto on = points_on(edge_of(from, to));
+        const auto on = points_on(unordered(from, to));
         auto& own = facet.on_edges[k];
         own.assign(on.begin(), on.end());
         if (to < from) std::reverse(own.begin(), own.end());
@@ -411,7 +399,7 @@ std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) 
                 bool has_last = has_point(last);
                 const auto want = [&](SpacePointId next) {
                     const bool has_next = has_point(next);
-                    if (has_last && has_next) facet.wanted.push_back(edge_of(last, next));
+                    if (has_last && has_next) facet.wanted.push_back(unordered(last, next));
                     last = next;
                     has_last = has_next;
                 };
@@ -432,28 +420,23 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
         boxes.emplace_back().include(pieces_.points.rounded(merge.from));
     for (std::size_t e = 0; e < on_edges_.size(); ++e) {
         if (on_edges_[e].points.empty()) continue;
-        spatial::Box& box = boxes.emplace_back();
-        for (const SpacePointId p : edges_[static_cast<std::int32_t>(e)])
-            box.include(pieces_.points.rounded(p));
+        boxes.push_back(
+            spatial::bounding_box(edges_[static_cast<std::int32_t>(e)],
+                                  [&](SpacePointId p) { return pieces_.points.rounded(p); }));
     }
     for (std::size_t f = 0; f < places_.size(); ++f) {
         if (!places_[f].over.empty())
             boxes.push_back(pieces_.box(facets_[static_cast<std::int32_t>(f)]));
     }
-    std::vector<std::vector<std::int32_t>> found((boxes.size() + kTrianglesAtOnce - 1) /
-                                                 kTrianglesAtOnce);
-    parallel_ranges(
-        boxes.size(), kTrianglesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
-            auto& own = found[begin / kTrianglesAtOnce];
+    auto inputs = found_in_ranges<std::int32_t>(
+        boxes.size(), kTrianglesAtOnce, execution_,
+        [&](std::size_t begin, std::size_t end, std::vector<std::int32_t>& found) {
             for (std::size_t i = begin; i < end; ++i)
-                pieces_.find_inputs(boxes[i], [&own](std::int32_t input) { own.push_back(input); });
-            sort_unique(own);
+                pieces_.find_inputs(boxes[i], [&](std::int32_t input) { found.push_back(input); });
+            sort_unique(found);
         });
-    std::vector<std::int32_t> inputs;
-    for (const auto& own : found)
-        append(inputs, own);
     parallel_sort(inputs, std::less<>(), execution_);
-    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+    sort_unique(inputs);
     return inputs;
 }
 

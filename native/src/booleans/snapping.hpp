@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "booleans/key_numbers.hpp"
+#include "base/key_numbers.hpp"
 #include "booleans/nearness.hpp"
 #include "booleans/triangle_pieces.hpp"
 

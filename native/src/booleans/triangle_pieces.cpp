@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::booleans {
@@ -104,9 +105,7 @@ void TrianglePieces::replace(std::int32_t input, std::vector<TrianglePiece>&& pi
     own.pieces = std::move(pieces);
     own.tree.reset();
     if (own.pieces.size() < kMany) return;
-    std::vector<spatial::Box> boxes(own.pieces.size());
-    std::transform(own.pieces.begin(), own.pieces.end(), boxes.begin(),
-                   [this](const TrianglePiece& piece) { return box(piece.corners); });
+    auto boxes = mapped(own.pieces, [this](const auto& piece) { return box(piece.corners); });
     own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
 }
 

@@ -61,10 +61,7 @@ public:
     void replace(std::int32_t input, std::vector<TrianglePiece>&& pieces);
 
     spatial::Box box(const TriangleCorners& corners) const {
-        spatial::Box found;
-        for (const SpacePointId v : corners)
-            found.include(points.rounded(v));
-        return found;
+        return spatial::bounding_box(corners, [this](SpacePointId v) { return points.rounded(v); });
     }
     /// Calls visit(input) for the triangles of the inputs whose pieces may meet a box.
     template <class Visit>

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/key_numbers.hpp"
 #include "base/vectors.hpp"
-#include "booleans/key_numbers.hpp"
 
 namespace realmodel::booleans {
 

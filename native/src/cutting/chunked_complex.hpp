@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,13 +26,11 @@ public:
     }
     /// Notes that a node comes up in a chunk: of one chunk one thread does, in order.
     void meet(std::size_t chunk, NodeId node) {
-        const std::atomic_ref first(nodes_[index(node)].chunk);
-        auto known = first.load(std::memory_order_relaxed);
+        std::uint32_t& first = nodes_[index(node)].chunk;
         const auto own = static_cast<std::uint32_t>(chunk);
-        if (known <= own) return;
+        if (std::atomic_ref(first).load(std::memory_order_relaxed) <= own) return;
         first_of_[chunk].push_back(node);
-        while (known > own && !first.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
-        }
+        take_extreme(first, own, std::less<>());
     }
     /// Writes the positions of all that came up, by their new numbers.
     template <class PositionOf>

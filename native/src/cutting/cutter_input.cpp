@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "arrangement/edge_fan.hpp"
+#include "base/keep_single.hpp"
 #include "base/key_table.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "exact/orient2d.hpp"
@@ -165,21 +166,16 @@ void SurfaceInput::divide_borders() {
     for (std::size_t e = 0; e < uses.size(); ++e) {
         if (uses[e].size() != 1) continue;
         edges.push_back(uses.ends(e));
-        Box& box = boxes.emplace_back();
-        for (const NodeId v : edges.back()) {
-            corners.push_back(v);
-            box.include(at(v));
-        }
+        corners.insert(corners.end(), edges.back().begin(), edges.back().end());
+        boxes.push_back(spatial::bounding_box(edges.back(), [this](NodeId v) { return at(v); }));
     }
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    sort_unique(corners);
     const BoxTree tree(boxes);
     std::vector<OnEdge> found;
     for (const NodeId v : corners) {
         const Position p = at(v);
         const double tolerance = rounding_of(std::span(&p, 1));
-        Box box;
-        box.include(p);
+        Box box{p, p};
         box.widen(tolerance);
         tree.find(box, [&](std::int32_t e) {
             const Edge& edge = edges[index(e)];

@@ -88,12 +88,7 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
     if (!overlay_.surface().is_closed) {
         const auto face =
             overlay_.model().face(is_region ? overlay_.face_of(item) : item - overlay_.size());
-        Position middle{0, 0, 0};
-        for (const NodeId v : face) {
-            for (std::size_t k = 0; k < 3; ++k)
-                middle[k] += overlay_.position(v)[k] / static_cast<double>(face.size());
-        }
-        return (*nearest_)(middle);
+        return (*nearest_)(overlay_.middle_of(face));
     }
     if (!is_region)
         return nearest_->within(overlay_.points(),

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/cutter_surface.hpp"
 
-#include <algorithm>
-
 #include "arrangement/edge_fan.hpp"
+#include "base/lists.hpp"
 #include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
 
+std::vector<Position> positions_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    return mapped(polygon, [&](NodeId v) { return model.vertex(v); });
+}
+
 std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    std::vector<Position> positions;
-    positions.reserve(polygon.size());
-    for (const NodeId v : polygon)
-        positions.push_back(model.vertex(v));
+    const std::vector<Position> positions = positions_of(model, polygon);
     const View view(polygon_normal(positions));
     Loop loop;
     loop.reserve(polygon.size());

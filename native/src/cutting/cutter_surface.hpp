@@ -8,6 +8,7 @@
 
 #include "cutting/polygons.hpp"
 #include "realmodel/cutting/cut.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
@@ -16,6 +17,11 @@ struct CutterSurface {
     std::vector<Position> vertices;
     std::vector<std::array<std::int32_t, 3>> triangles;
     bool is_closed = false;  ///< every edge has an even number of triangles
+
+    std::array<Position, 3> corners(std::size_t triangle) const {
+        const auto& t = triangles[triangle];
+        return {vertices[index(t[0])], vertices[index(t[1])], vertices[index(t[2])]};
+    }
 };
 
 /// An edge that an odd number of triangles have, as one of them runs, and the third corner of that.
@@ -40,6 +46,13 @@ CutterSurface oriented_surface(const TriangleView& surface, bool with_seam = tru
 /// The boundary of a block.
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
+
+/// Around a polygon of the model's vertices.
+inline spatial::Box box_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    return spatial::bounding_box(polygon, [&](NodeId v) { return model.vertex(v); });
+}
+
+std::vector<Position> positions_of(const ComplexView& model, std::span<const NodeId> polygon);
 
 /// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
 /// its corners.

@@ -295,9 +295,8 @@ Winding CutterWinding::cast(std::size_t region, Progress* progress) {
     if (!face_boxes_) face_boxes_.emplace(overlay_.face_boxes());
     for (const std::int32_t f :
          face_boxes_->find(arrangement::ray_box(points, p, axis), progress)) {
-        const auto face = index(f);
-        const auto cells = overlay_.cells_of(face);
-        for (const auto& t : overlay_.triangles_of(face)) {
+        const auto [cells, triangles] = overlay_.boxed_face(index(f));
+        for (const auto& t : triangles) {
             const int side = exact::ray_crosses(points, axis, p, t, faces_ray);
             if (side == 0) continue;
             add(winding, cells[0], side);

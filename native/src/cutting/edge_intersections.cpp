@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -32,8 +33,7 @@ std::vector<std::int8_t> vertex_sides(const ComplexView& model, const exact::Ori
 EdgeIntersections::EdgeIntersections(const ComplexView& model, const exact::OrientedPlane& plane,
                                      std::vector<std::array<NodeId, 2>> edges)
     : first_(static_cast<NodeId>(model.vertex_count())), edges_(std::move(edges)) {
-    std::sort(edges_.begin(), edges_.end());
-    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    sort_unique(edges_);
     checked_number(model.vertex_count() + edges_.size(), "vertices and cut edges");
     positions_.reserve(edges_.size());
     for (const auto& [a, b] : edges_)

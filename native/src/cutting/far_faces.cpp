@@ -19,13 +19,6 @@ namespace {
 
 constexpr std::size_t kEdgeChunk = 1 << 12;  // nodes or faces at a time
 
-spatial::Box box_of(const ComplexView& model, std::int32_t face) {
-    spatial::Box box;
-    for (const NodeId v : model.face(index(face)))
-        box.include(model.vertex(v));
-    return box;
-}
-
 /// Whether rounding has something to do with a face, wherever it is: a wall without extent in plan.
 bool is_upright(const ComplexView& model, std::int32_t face, const spatial::Box& box) {
     return model.face_surface[index(face)] == kWall && box.low[0] == box.high[0] &&
@@ -54,7 +47,7 @@ public:
             faces_.size(), kEdgeChunk, execution_, [&](std::size_t begin, std::size_t end) {
                 spatial::Box around;
                 for (std::size_t i = begin; i < end; ++i) {
-                    const spatial::Box box = box_of(model_, faces_[i]);
+                    const spatial::Box box = box_of(model_, model_.face(index(faces_[i])));
                     if (surface.is_near(box, margin) || is_upright(model_, faces_[i], box))
                         stays_[i] = kNear;
                     around.include(box);

@@ -10,13 +10,8 @@ namespace realmodel::cutting {
 
 class WholePieces;
 
-/// Puts both halves and the section together. `positions` are the model's vertices and the new
-/// nodes after them.
-Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const CutPieces& pieces, const std::vector<HalfCell>& half_cells,
-                    const Execution& execution);
-
-/// The same of a model of which a part was cut up.
+/// Puts both halves and the section together. `new_positions` are those of the nodes after the
+/// model's vertices.
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
                     const WholePieces& pieces, const std::vector<HalfCell>& half_cells,
                     const Execution& execution);

@@ -15,38 +15,10 @@
 
 namespace realmodel::cutting {
 
-namespace {
-
-/// The faces, in order, of which one of the cells is one that is asked for.
-/// @param is_asked  of cells; several threads may ask at once
-template <class IsAsked>
-std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked,
-                                   const Execution& execution) {
-    std::vector<std::int32_t> all;
-    number_in_order(
-        model.face_count(), execution,
-        [&](std::size_t f) {
-            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
-            return (one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other));
-        },
-        [&](std::size_t count) { all.resize(count); },
-        [&](std::size_t f, std::size_t i) { all[i] = static_cast<std::int32_t>(f); });
-    return all;
-}
-
-}  // namespace
-
 void include_at_once(spatial::Box& box, const spatial::Box& other) {
-    const auto widen = [](double& own, double to, const auto& is_beyond) {
-        const std::atomic_ref shared(own);
-        double known = shared.load(std::memory_order_relaxed);
-        while (is_beyond(to, known) &&
-               !shared.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
-        }
-    };
     for (std::size_t k = 0; k < 3; ++k) {
-        widen(box.low[k], other.low[k], std::less<>());
-        widen(box.high[k], other.high[k], std::greater<>());
+        take_extreme(box.low[k], other.low[k], std::less<>());
+        take_extreme(box.high[k], other.high[k], std::greater<>());
     }
 }
 
@@ -68,9 +40,7 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
     if (!largest.empty()) rounding = 4 * kComputedUlps * ulp(std::ranges::max(largest));
     spatial::Box around;
     for (const NearestSide& surface : surfaces) {
-        spatial::Box box;
-        for (const Position& p : surface.surface().vertices)
-            box.include(p);
+        spatial::Box box = spatial::bounding_box(surface.surface().vertices);
         box.widen(4 * margin_of(*this, surface));
         around.include(box);
     }
@@ -143,30 +113,22 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
     });
     std::vector<std::int8_t> sides(model.cell_count(), kOn);
     // of the first cell of what is connected: its last face, whose first vertex stands for it
-    constexpr std::int32_t kNotFirst = -2, kNone = -1;
-    std::vector<std::int32_t> face(model.cell_count(), kNotFirst);
-    for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
-        if (is_far(c) && joined.find(c) == c) face[index(c)] = kNone;
-    }
+    std::vector<std::int32_t> face(model.cell_count(), -1);
+    const auto is_first = [&](std::int32_t c) { return is_far(c) && joined.find(c) == c; };
     parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             for (std::size_t k = 0; k < 2; ++k) {
-                const std::int32_t cell = model.cell(f, k);
-                if (cell < 0) continue;
-                const std::atomic_ref last(face[index(cell)]);
-                auto known = last.load(std::memory_order_relaxed);
-                const auto own = static_cast<std::int32_t>(f);
-                while (known != kNotFirst && known < own &&
-                       !last.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
-                }
+                const std::int32_t c = model.cell(f, k);
+                if (is_first(c))
+                    take_extreme(face[index(c)], static_cast<std::int32_t>(f), std::greater<>());
             }
         }
     });
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (!is_far(c)) continue;
-        if (face[index(c)] == kNotFirst) {
+        if (joined.find(c) != c) {
             sides[index(c)] = sides[index(joined.find(c))];
-        } else if (face[index(c)] != kNone) {
+        } else if (face[index(c)] >= 0) {
             sides[index(c)] = surface.side(model.vertex(model.face(index(face[index(c)]))[0]));
         }
     }
@@ -180,10 +142,14 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         if (is_near[index(c)] == 0) continue;
         number_[index(c)] = static_cast<std::int32_t>(cells_.size());
         cells_.push_back(c);
-        cell_block_.push_back(model.cell_block[index(c)]);
+        part_.cell_block.push_back(model.cell_block[index(c)]);
     }
-    faces_ = faces_of(
-        model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, execution);
+    const auto is_asked = [&](std::int32_t cell) { return cell >= 0 && is_near[index(cell)] != 0; };
+    number_in_order(
+        model.face_count(), execution,
+        [&](std::size_t f) { return is_asked(model.cell(f, 0)) || is_asked(model.cell(f, 1)); },
+        [this](std::size_t count) { faces_.resize(count); },
+        [this](std::size_t f, std::size_t i) { faces_[i] = static_cast<std::int32_t>(f); });
     if (surface != nullptr && model.cell_kind == CellKind::kBlocks)
         far_ = FarFaces(model, is_near, faces_, *surface, margin, execution);
     // in the model's order: what is decided by numbers does not depend on which faces come first
@@ -196,16 +162,17 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
     number_in_order(
         is_here.size(), execution, [&](std::size_t v) { return is_here[v] != 0; },
         [this](std::size_t count) {
-            vertices_.resize(count);
+            part_.vertices.resize(count);
             vertices_of_.resize(count);
         },
         [&](std::size_t v, std::size_t number) {
             const auto node = static_cast<NodeId>(v);
             own_vertex[v] = static_cast<NodeId>(number);
-            vertices_[number] = model.vertex(node);
+            part_.vertices[number] = model.vertex(node);
             vertices_of_[number] = node;
         });
     far_.renumber(own_vertex);
+    part_.face_offsets.push_back(0);
     for (const std::int32_t face : faces_) {
         const auto f = index(face);
         std::array<std::int32_t, 2> own{-1, -1};
@@ -216,24 +183,20 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
-            face_vertices_.push_back(own_vertex[index(v)]);
+            part_.face_vertices.push_back(own_vertex[index(v)]);
         }
-        face_offsets_.push_back(static_cast<std::int64_t>(face_vertices_.size()));
-        face_cells_.push_back(own[0] >= 0 ? own[0] : own[1]);
-        face_cells_.push_back(own[0] >= 0 ? own[1] : -1);
-        face_surface_.push_back(model.face_surface[f]);
+        part_.face_offsets.push_back(static_cast<std::int64_t>(part_.face_vertices.size()));
+        part_.face_cells.push_back(own[0] >= 0 ? own : std::array{own[1], -1});
+        part_.face_surface.push_back(model.face_surface[f]);
         beyond_.push_back(own[0] < 0 ? model.cell(f, 0) : own[1] < 0 ? model.cell(f, 1) : -1);
     }
 }
 
 ComplexView NearPart::view() const {
-    ComplexView view = model_;
-    view.vertices = {reinterpret_cast<const double*>(vertices_.data()), 3 * vertices_.size()};
-    view.face_offsets = face_offsets_;
-    view.face_vertices = face_vertices_;
-    view.face_cells = face_cells_;
-    view.face_surface = face_surface_;
-    view.cell_block = cell_block_;
+    ComplexView view = part_;
+    view.blocks = model_.blocks;
+    view.surfaces = model_.surfaces;
+    view.cell_kind = model_.cell_kind;
     return view;
 }
 
@@ -286,7 +249,7 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
     std::ranges::stable_sort(of_faces, {}, key);
     auto beside = std::ranges::count_if(
         beyond_, [&](std::int32_t cell) { return cell >= 0 && whole.far_part_[index(cell)] >= 0; });
-    const auto own = static_cast<NodeId>(vertices_.size());
+    const auto own = static_cast<NodeId>(part_.vertices.size());
     const auto all = static_cast<NodeId>(model_.vertex_count());
     whole.near_.origins.reserve(near.size());
     whole.near_.polygons.nodes.reserve(near.polygons.nodes.size());

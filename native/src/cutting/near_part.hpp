@@ -16,6 +16,10 @@ namespace realmodel::cutting {
 /// which stay as they are.
 class WholePieces {
 public:
+    WholePieces() = default;
+    /// All was cut up.
+    explicit WholePieces(CutPieces&& pieces) : near_(std::move(pieces)) {}
+
     /// In chunks, of which several threads may visit some each: calls visit(polygon, piece) in the
     /// order of the model's faces; caps last.
     std::size_t chunks() const { return chunks_of(model_.face_count()) + chunks_of(cap_count()); }
@@ -64,8 +68,8 @@ public:
     ComplexView view() const;
     /// What was left out of near cells.
     const FarFaces& far() const { return far_; }
-    /// The model's cell that one of the part is.
-    std::int32_t cell(std::int32_t own) const { return cells_[index(own)]; }
+    /// The model's cells that those of the part are.
+    const std::vector<std::int32_t>& cells() const { return cells_; }
     /// Makes pieces of the part's faces, and parts of its cells, those of the whole model, in the
     /// order of its faces and cells: the other cells are added, and their faces follow from them.
     /// @param sides  of the model's cells that are none of the part's: kOn leaves them out
@@ -81,9 +85,7 @@ private:
     ComplexView model_;
     FarFaces far_;
     std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
-    std::vector<Position> vertices_;
-    std::vector<std::int64_t> face_offsets_{0};
-    std::vector<std::int32_t> face_vertices_, face_cells_, face_surface_, cell_block_;
+    CellComplex part_;
     std::vector<std::int32_t> cells_, vertices_of_, faces_;
     /// Of faces: the model's cell beyond, where that is none of the part's; else -1.
     std::vector<std::int32_t> beyond_;

@@ -7,6 +7,7 @@
 
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/ray_boxes.hpp"
+#include "base/lists.hpp"
 #include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
 
@@ -69,13 +70,9 @@ bool plane_meets(const std::array<Position, 3>& triangle, const Box& box) {
 }
 
 std::vector<Box> boxes_of(const CutterSurface& surface) {
-    std::vector<Box> boxes;
-    for (const auto& t : surface.triangles) {
-        Box& box = boxes.emplace_back();
-        for (const NodeId v : t)
-            box.include(surface.vertices[index(v)]);
-    }
-    return boxes;
+    return mapped(surface.triangles, [&](const auto& t) {
+        return spatial::bounding_box(t, [&](NodeId v) { return surface.vertices[index(v)]; });
+    });
 }
 
 }  // namespace
@@ -96,12 +93,6 @@ NearestSide::NearestSide(const CutterSurface& surface, const Execution& executio
                 border_[t] |= static_cast<std::uint8_t>(1U << i);
         }
     }
-}
-
-std::array<Position, 3> NearestSide::corners(std::int32_t triangle) const {
-    const auto& t = surface_.triangles[index(triangle)];
-    return {surface_.vertices[index(t[0])], surface_.vertices[index(t[1])],
-            surface_.vertices[index(t[2])]};
 }
 
 /// Whether a point of a triangle is on one of its border edges, but for rounding.

@@ -37,7 +37,9 @@ public:
     const CutterSurface& surface() const { return surface_; }
 
 private:
-    std::array<Position, 3> corners(std::int32_t triangle) const;
+    std::array<Position, 3> corners(std::int32_t triangle) const {
+        return surface_.corners(index(triangle));
+    }
     bool is_on_border(std::int32_t triangle, const Position& q) const;
 
     const CutterSurface& surface_;

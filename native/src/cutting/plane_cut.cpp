@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "base/counting_sort.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "cutting/cell_cutter.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "cutting/face_splitter.hpp"
 #include "cutting/halves.hpp"
 #include "cutting/model_check.hpp"
+#include "cutting/near_part.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 #include "exact/orient2d.hpp"
 #include "spatial/box_tree.hpp"
@@ -77,7 +79,8 @@ public:
         number_cells(half_cells);
         round_parts({model_, new_positions_, pieces_, half_cells, false, execution_},
                     {false, false});
-        return assemble_halves(model_, new_positions_, pieces_, half_cells, execution_);
+        return assemble_halves(model_, new_positions_, WholePieces(std::move(pieces_)), half_cells,
+                               execution_);
     }
 
 private:
@@ -203,13 +206,8 @@ CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
     CutPiece piece{
         static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
     if (side != kOn) return piece;
-    std::vector<Position> corners;
-    for (const NodeId node : polygon)
-        corners.push_back(position(node));
-    const Position normal = polygon_normal(corners);
-    double along = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        along += normal[k] * plane_.normal()[k];
+    const auto corners = mapped(polygon, [this](NodeId node) { return position(node); });
+    const double along = dot(polygon_normal(corners), plane_.normal());
     piece.is_level = true;
     for (std::size_t k = 0; k < 2; ++k)
         piece.sides[k] = level_side(face, k, along > 0 ? 1 : -1);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/parallel.hpp"
+#include "cutting/halves.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/rounding/part_rounding.hpp"
@@ -21,22 +22,18 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface, c
     const ComplexView near = part.view();
     SurfaceOverlay overlay(near, surface, execution, 0, {}, part.far());
     if (overlay.reaches_far_faces()) return std::nullopt;
-    if (execution.progress != nullptr)
-        execution.progress->begin(0.3, 0.5, "finding what the surface goes through");
+    begin_phase(execution.progress, 0.3, 0.5, "finding what the surface goes through");
     const CutterWinding winding(overlay, execution.progress);
     const CutterSides sides(overlay, winding, execution.progress);
-    if (execution.progress != nullptr)
-        execution.progress->begin(0.5, 0.68, "finding the parts of cells");
+    begin_phase(execution.progress, 0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, execution.progress);
-    if (execution.progress != nullptr)
-        execution.progress->begin(0.85, 0.92, "rounding what was cut");
+    begin_phase(execution.progress, 0.85, 0.92, "rounding what was cut");
     round_parts(
         {near, overlay.new_positions(), made.pieces, made.half_cells, false, execution, part.far()},
         made.touches);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
-    if (execution.progress != nullptr)
-        execution.progress->begin(0.95, 1.0, "putting the halves together");
+    begin_phase(execution.progress, 0.95, 1.0, "putting the halves together");
     Cut halves =
         assemble_halves(model, overlay.new_positions(), *pieces, made.half_cells, execution);
     halves.below_touches = made.touches[0];
@@ -100,7 +97,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution&
         for (std::size_t p = 0; p < polygons.size(); ++p)
             pieces.add(polygons[p], origin);
     }
-    return assemble_halves(model, {}, pieces, cells, execution);
+    return assemble_halves(model, {}, WholePieces(std::move(pieces)), cells, execution);
 }
 
 }  // namespace

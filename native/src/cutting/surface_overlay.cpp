@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"
@@ -113,9 +114,7 @@ std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
 std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(NodeId vertex) const {
     std::vector<std::int32_t> near;
     const Position p = model_.vertex(vertex);
-    Box box;
-    box.include(p);
-    tree_->find(box, [&](std::int32_t t) {
+    tree_->find(Box{p, p}, [&](std::int32_t t) {
         if (!is_beside({&vertex, 1}, t)) near.push_back(t);
     });
     std::sort(near.begin(), near.end());
@@ -133,8 +132,7 @@ std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(Node
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto found =
-                place_in_triangle(p, tolerance, {corner(t, 0), corner(t, 1), corner(t, 2)}))
+        if (const auto found = place_in_triangle(p, tolerance, surface_.corners(index(t))))
             places.push_back(*found);
     }
     return places;
@@ -203,28 +201,20 @@ void SurfaceOverlay::overlay_all() {
         number_of[index(divided_[i])] = first_cutter_ + static_cast<std::int32_t>(i);
     for (const CrossedFace& own : parts_.crossed)
         arrangement_.add_line(number_of[index(own.triangle)], own.ends[0], own.ends[1]);
-    constexpr std::size_t kChunk = 1 << 8;
-    std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
-                                                                      kChunk);
-    if (execution_.progress != nullptr)
-        execution_.progress->begin(0.08, 0.15, "finding where surface and faces meet");
+    begin_phase(execution_.progress, 0.08, 0.15, "finding where surface and faces meet");
     const auto positions_of = [this](std::int32_t t) {
         const auto& corners = arrangement_.corners(t);
         return std::array{points_.rounded(corners[0]), points_.rounded(corners[1]),
                           points_.rounded(corners[2])};
     };
-    const auto box_of = [&](std::int32_t t) {
-        Box box;
-        for (const Position& p : positions_of(t))
-            box.include(p);
-        return box;
-    };
+    const auto box_of = [&](std::int32_t t) { return spatial::bounding_box(positions_of(t)); };
     // triangles of the surface that cross each other beyond the model are left alone, unless one of
     // them reaches it
     std::vector<std::uint8_t> is_beyond(count, 0);
     for (std::size_t t = index(first_cutter_); t < count; ++t)
         is_beyond[t] = box_of(static_cast<std::int32_t>(t)).meets(model_box_) ? 0 : 1;
-    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+    using Intersection = TriangleArrangement::Intersection;
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Intersection>& found) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             const PlaneOutline outline(positions_of(t), margin_);
@@ -233,21 +223,17 @@ void SurfaceOverlay::overlay_all() {
                 if (other <= t || (is_beyond[i] != 0 && is_beyond[index(other)] != 0) ||
                     outline.is_surely_beside(positions_of(other)))
                     return;
-                if (const auto intersection = arrangement_.intersection(t, other))
-                    found[begin / kChunk].push_back(*intersection);
+                if (const auto met = arrangement_.intersection(t, other)) found.push_back(*met);
             });
         }
-    });
-    if (execution_.progress != nullptr)
-        execution_.progress->begin(0.15, 0.3, "dividing faces and surface");
-    std::size_t segments = 0;
-    for (const auto& intersections : found)
-        segments += intersections.size();
-    points_.reserve_intersections(segments);  // each is an end of two segments
-    for (const auto& intersections : found) {
-        if (execution_.progress != nullptr) execution_.progress->check();
-        for (const TriangleArrangement::Intersection& intersection : intersections)
-            arrangement_.insert(intersection);
+    };
+    constexpr std::size_t kChunk = 1 << 8;
+    const auto met = found_in_ranges<Intersection>(count, kChunk, execution_, find);
+    begin_phase(execution_.progress, 0.15, 0.3, "dividing faces and surface");
+    points_.reserve_intersections(met.size());  // each is an end of two segments
+    for (std::size_t i = 0; i < met.size(); ++i) {
+        poll(execution_.progress, i << 8);  // points take time
+        arrangement_.insert(met[i]);
     }
     arrangement_.divide(execution_);
 }
@@ -276,20 +262,26 @@ void SurfaceOverlay::name_nodes() {
     for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
         if (vertex_point_[v] != kNone) out[index(vertex_point_[v])] = static_cast<NodeId>(v);
     }
-    const auto& of_points = arrangement_.regions().loops;
-    loops_.loop_begins = of_points.loop_begins;
-    loops_.region_begins = of_points.region_begins;
-    loops_.nodes.resize(of_points.nodes.size());
-    for (std::size_t i = 0; i < of_points.nodes.size(); ++i) {
-        const SpacePointId p = of_points.nodes[i];
+    const auto node_of = [&](SpacePointId p) {
         NodeId& node = out[index(p)];
         if (node < 0) {
             node = add_node(points_.rounded(p));
             exact_of_new_.push_back(p);
         }
-        loops_.nodes[i] = node;
+        return node;
+    };
+    const auto& of_points = arrangement_.regions().loops;
+    loops_.loop_begins = of_points.loop_begins;
+    loops_.region_begins = of_points.region_begins;
+    loops_.nodes.resize(of_points.nodes.size());
+    std::ranges::transform(of_points.nodes, loops_.nodes.begin(), node_of);
+    surface_nodes_.assign(surface_.vertices.size(), -1);
+    for (std::size_t component = 0; component < undivided_.components(); ++component) {
+        for (const std::int32_t t : undivided_.triangles(component)) {
+            for (const std::int32_t vertex : surface_.triangles[index(t)])
+                surface_nodes_[index(vertex)] = node_of(surface_point_[index(vertex)]);
+        }
     }
-    name_undivided(out);
     for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
         loops_.add_loop(parts_.beside[i]);
         loops_.end_region();
@@ -320,24 +312,6 @@ void SurfaceOverlay::add_halves(const CrossedFace& own, std::span<const SpacePoi
         loops_.end_loop();
         loops_.end_region();
         parts_.face_of_beside.push_back(own.face);
-    }
-}
-
-/// Gives the corners of undivided triangles nodes.
-void SurfaceOverlay::name_undivided(std::vector<NodeId>& node_of_point) {
-    surface_nodes_.assign(surface_.vertices.size(), -1);
-    for (std::size_t component = 0; component < undivided_.components(); ++component) {
-        for (const std::int32_t t : undivided_.triangles(component)) {
-            for (const std::int32_t vertex : surface_.triangles[index(t)]) {
-                const SpacePointId p = surface_point_[index(vertex)];
-                NodeId& node = node_of_point[index(p)];
-                if (node < 0) {
-                    node = add_node(points_.rounded(p));
-                    exact_of_new_.push_back(p);
-                }
-                surface_nodes_[index(vertex)] = node;
-            }
-        }
     }
 }
 
@@ -390,13 +364,6 @@ SpacePointId SurfaceOverlay::far_corner(std::span<const NodeId> polygon,
     return exact(found);
 }
 
-arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
-    std::vector<arrangement::HalfPlane> items;
-    arrangement::EdgeFan fan;
-    find_fan(uses, items, fan);
-    return fan;
-}
-
 void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
                               std::vector<arrangement::HalfPlane>& items,
                               arrangement::EdgeFan& fan) {
@@ -426,10 +393,8 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
 
 std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
     if (!is_of_face(region)) return arrangement_.view_of(triangle(region));
-    std::vector<Position> corners;
-    for (const NodeId node : loops_[region][0])
-        corners.push_back(position(node));
-    const View view(polygon_normal(corners));
+    const View view(
+        polygon_normal(mapped(loops_[region][0], [this](NodeId node) { return position(node); })));
     return {view.axis(), view.sign()};
 }
 
@@ -440,9 +405,7 @@ SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    std::vector<SpacePointId> own;
-    for (const NodeId node : outline)
-        own.push_back(exact(node));
+    const auto own = mapped(outline, [this](NodeId node) { return exact(node); });
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < own.size(); ++i) {
         const int x = exact::compare(points_, k, own[i], own[lowest]);

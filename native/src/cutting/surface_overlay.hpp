@@ -74,6 +74,14 @@ public:
         const auto vertices = static_cast<NodeId>(model_.vertex_count());
         return node < vertices ? model_.vertex(node) : new_positions_[index(node - vertices)];
     }
+    Position middle_of(std::span<const NodeId> nodes) const {
+        Position middle{0, 0, 0};
+        for (const NodeId node : nodes) {
+            for (std::size_t k = 0; k < 3; ++k)
+                middle[k] += position(node)[k] / static_cast<double>(nodes.size());
+        }
+        return middle;
+    }
     std::size_t node_count() const { return model_.vertex_count() + new_positions_.size(); }
     std::vector<Position>& new_positions() { return new_positions_; }
     /// A new node, of which no exact point is known.
@@ -104,9 +112,8 @@ public:
     const std::array<SpacePointId, 3>& corners(std::size_t region) const {
         return arrangement_.corners(triangle(region));
     }
-    /// The fan of an edge's uses by regions and whole faces, in nodes.
-    arrangement::EdgeFan fan_of(std::span<const arrangement::EdgeUse> uses);
-    /// The same for many edges one after another, in memory that they share.
+    /// The fan of an edge's uses by regions and whole faces, in nodes, of many edges one after
+    /// another in memory that they share.
     void find_fan(std::span<const arrangement::EdgeUse> uses,
                   std::vector<arrangement::HalfPlane>& scratch, arrangement::EdgeFan& fan);
     /// A point within a region, on none of its edges; of a polygon one of its corners that is
@@ -116,9 +123,12 @@ public:
     std::pair<std::size_t, int> view_of(std::size_t region) const;
     /// Around all faces, and what vertices may have moved by; then around those left out.
     Array<spatial::Box> face_boxes() const;
-    /// The triangles of one of these, and the cells on its sides.
-    std::vector<std::array<SpacePointId, 3>> triangles_of(std::size_t face);
-    std::array<std::int32_t, 2> cells_of(std::size_t face) const;
+    /// One of these.
+    struct BoxedFace {
+        std::array<std::int32_t, 2> cells;  ///< on its sides
+        std::vector<std::array<SpacePointId, 3>> triangles;
+    };
+    BoxedFace boxed_face(std::size_t face);
     /// Around the whole model, and a little wider.
     const spatial::Box& model_box() const { return model_box_; }
 
@@ -200,7 +210,6 @@ private:
     void add_triangles();
     void overlay_all();
     void name_nodes();
-    void name_undivided(std::vector<NodeId>& node_of_point);
     void sort_new_nodes();
 
     const ComplexView& model_;

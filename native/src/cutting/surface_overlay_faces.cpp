@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/key_table.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
-#include "base/ulp.hpp"
 #include "cutting/plane_outline.hpp"
 #include "cutting/surface_overlay.hpp"
 #include "exact/orient2d.hpp"
@@ -22,9 +22,7 @@ using spatial::BoxTree;
 class SurfaceOverlay::FacePlane {
 public:
     FacePlane(const ComplexView& model, std::span<const NodeId> polygon, double margin) {
-        std::vector<Position> corners;
-        for (const NodeId v : polygon)
-            corners.push_back(model.vertex(v));
+        const auto corners = positions_of(model, polygon);
         origin_ = corners[0];
         normal_ = polygon_normal(corners);
         margin_ = 2 * margin;
@@ -84,12 +82,11 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
         margin_ = std::max(margin_, 4 * rounding_of(std::array{model_box_.low, model_box_.high}));
     model_box_.widen(margin_);
     std::vector<Box> boxes;
-    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
-        Box& box = boxes.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-            box.include(corner(t, i));
-        box.widen(margin_);
-        normals_.push_back(polygon_normal(std::array{corner(t, 0), corner(t, 1), corner(t, 2)}));
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+        const auto corners = surface_.corners(t);
+        boxes.push_back(spatial::bounding_box(corners));
+        boxes.back().widen(margin_);
+        normals_.push_back(polygon_normal(corners));
     }
     tree_ = std::make_unique<BoxTree>(std::move(boxes), execution_);
     active_.assign(model_.face_count(), 0);
@@ -106,7 +103,7 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
                 if (is_beside(model_.face(f), t)) return;
                 active_[f] = 1;
                 if (!plane) plane.emplace(model_, model_.face(f), margin_);
-                if (!plane->is_beside({corner(t, 0), corner(t, 1), corner(t, 2)}))
+                if (!plane->is_beside(surface_.corners(index(t))))
                     std::atomic_ref(meets[index(t)]).store(1, std::memory_order_relaxed);
             });
         }
@@ -144,10 +141,7 @@ bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) 
 /// Calls visit(triangle) for those whose boxes a polygon's meets.
 template <class Visit>
 void SurfaceOverlay::each_near(std::span<const NodeId> polygon, const Visit& visit) const {
-    Box box;
-    for (const NodeId v : polygon)
-        box.include(model_.vertex(v));
-    tree_->find(box, visit);
+    tree_->find(box_of(model_, polygon), visit);
 }
 
 /// The first triangle of the surface that a polygon may pass, -1 none.
@@ -206,15 +200,12 @@ bool SurfaceOverlay::passes_within(NodeId a, NodeId b,
 /// one line within it.
 std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t face) const {
     const auto polygon = model_.face(index(face));
-    std::vector<Position> corners;
-    for (const NodeId v : polygon)
-        corners.push_back(model_.vertex(v));
+    const auto corners = positions_of(model_, polygon);
     CrossedFace found{face, -1};
     bool is_one = true;
     each_near(polygon, [&](std::int32_t t) {
         if (!is_one || is_beside(polygon, t) ||
-            PlaneOutline({corner(t, 0), corner(t, 1), corner(t, 2)}, margin_)
-                .is_surely_beside(corners))
+            PlaneOutline(surface_.corners(index(t)), margin_).is_surely_beside(corners))
             return;
         is_one = found.triangle < 0;
         found.triangle = t;
@@ -286,9 +277,7 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
     if (half + 1 < loop.size()) strip.push_back(loop.back());
     triangulate(std::span(&strip, 1), rounding, triangles);
     parts.add(face, triangles);
-    std::vector<NodeId> nodes;
-    for (const LoopCorner& c : loop)
-        nodes.push_back(c.node);
+    const std::vector<NodeId> nodes = mapped(loop, &LoopCorner::node);
     for (const auto& side : {std::span(nodes).first(half), std::span(nodes).subspan(half)}) {
         if (side.size() > 2) divide(face, side, parts);
     }
@@ -315,35 +304,28 @@ Array<Box> SurfaceOverlay::face_boxes() const {
     const std::size_t own = model_.face_count();
     Array<Box> boxes(own + far_.faces().size());
     parallel_each(boxes.size(), execution_, [&](std::size_t f) {
-        boxes[f] = {};
-        const ComplexView& of = f < own ? model_ : far_.model();
-        for (const NodeId v : of.face(f < own ? f : index(far_.faces()[f - own])))
-            boxes[f].include(of.vertex(v));
+        boxes[f] = f < own ? box_of(model_, model_.face(f))
+                           : box_of(far_.model(), far_.model().face(index(far_.faces()[f - own])));
         boxes[f].widen(margin_);
     });
     return boxes;
 }
 
-std::array<std::int32_t, 2> SurfaceOverlay::cells_of(std::size_t face) const {
-    const std::size_t own = model_.face_count();
-    if (face < own) return {model_.cell(face, 0), model_.cell(face, 1)};
-    const auto first = index(far_.first(far_.groups_of_faces()[face - own]));
-    std::array cells{model_.cell(first, 0), model_.cell(first, 1)};
-    if (far_.is_reversed(far_.faces()[face - own])) std::swap(cells[0], cells[1]);
-    return cells;
-}
-
-std::vector<std::array<SpacePointId, 3>> SurfaceOverlay::triangles_of(std::size_t face) {
-    std::vector<std::array<SpacePointId, 3>> triangles;
+SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
     if (face >= model_.face_count()) {
+        const std::size_t number = face - model_.face_count();
+        const std::int32_t left_out = far_.faces()[number];
+        const auto first = index(far_.first(far_.groups_of_faces()[number]));
+        const std::size_t side = far_.is_reversed(left_out) ? 1 : 0;
         std::vector<std::array<NodeId, 3>> corners;
-        triangulate_face(far_.model(), index(far_.faces()[face - model_.face_count()]), corners);
-        for (const auto& t : corners) {
-            auto& own = triangles.emplace_back();
-            for (std::size_t i = 0; i < 3; ++i)
-                own[i] = points_.add(far_.model().vertex(t[i]));
-        }
-        return triangles;
+        triangulate_face(far_.model(), index(left_out), corners);
+        return {{model_.cell(first, side), model_.cell(first, 1 - side)},
+                mapped(corners, [this](const auto& t) {
+                    const auto point = [&](NodeId v) {
+                        return points_.add(far_.model().vertex(v));
+                    };
+                    return std::array{point(t[0]), point(t[1]), point(t[2])};
+                })};
     }
     FaceParts parts;
     const std::int32_t own = first_same_[face];
@@ -362,9 +344,9 @@ std::vector<std::array<SpacePointId, 3>> SurfaceOverlay::triangles_of(std::size_
         parts.add_beside(own, model_.face(face));
     }
     triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
-    for (const auto& t : parts.triangles)
-        triangles.push_back({exact(t[0]), exact(t[1]), exact(t[2])});
-    return triangles;
+    return {{model_.cell(face, 0), model_.cell(face, 1)}, mapped(parts.triangles, [this](auto& t) {
+                return std::array{exact(t[0]), exact(t[1]), exact(t[2])};
+            })};
 }
 
 /// Divides more faces, on all threads.
@@ -394,8 +376,7 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     std::size_t first) const {
     constexpr std::size_t kTriangles = 1 << 11;  // at a time
     const std::size_t count = parts_.triangles.size() - first;
-    std::vector<std::vector<std::array<NodeId, 2>>> found((count + kTriangles - 1) / kTriangles);
-    parallel_ranges(count, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+    const auto find = [&](std::size_t begin, std::size_t end, auto& found) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto& t = parts_.triangles[first + i];
             bool flat = true;
@@ -404,12 +385,10 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
                                        vertex_point_[index(t[1])], vertex_point_[index(t[2])]) == 0;
             }
             for (std::size_t k = 0; flat && k < 3; ++k)
-                found[begin / kTriangles].push_back(unordered(t[k], t[(k + 1) % 3]));
+                found.push_back(unordered(t[k], t[(k + 1) % 3]));
         }
-    });
-    std::vector<std::array<NodeId, 2>> edges;
-    for (const auto& chunk : found)
-        edges.insert(edges.end(), chunk.begin(), chunk.end());
+    };
+    auto edges = found_in_ranges<std::array<NodeId, 2>>(count, kTriangles, execution_, find);
     std::sort(edges.begin(), edges.end());
     return edges;
 }

@@ -7,7 +7,9 @@
 
 #include "arrangement/joined_polygons.hpp"
 #include "base/counting_sort.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
+#include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
 
@@ -20,14 +22,14 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
       sides_(sides),
       loses_(overlay.model().cell_block.size(), 0) {
     make_patches(progress);
-    if (progress != nullptr) progress->begin(0.68, 0.75, "joining what bounds a part");
+    begin_phase(progress, 0.68, 0.75, "joining what bounds a part");
     make_caps();
     joined_.emplace(slots_.size());
     join_parts(progress);
     attach_hollows(progress);
     join_across();
     number_parts();
-    if (progress != nullptr) progress->begin(0.77, 0.85, "dividing faces into polygons");
+    begin_phase(progress, 0.77, 0.85, "dividing faces into polygons");
     write_patches(progress);
     write_caps(progress);
     find_touches(progress);
@@ -395,10 +397,9 @@ void SurfaceParts::join_parts(Progress* progress) {
 /// Of several slots of one cell around an edge those belong together that bound one sector of it:
 /// each that the cell begins at, going round, with the one where it ends.
 void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
-    std::vector<EdgeUse> group;
-    for (const SlotUse& use : uses)
-        group.push_back(use.use);
-    const EdgeFan fan = overlay_.fan_of(group);
+    std::vector<arrangement::HalfPlane> scratch;
+    EdgeFan fan;
+    overlay_.find_fan(mapped(uses, &SlotUse::use), scratch, fan);
     struct Step {
         std::int32_t slot;
         int change;  ///< 1 the cell begins, -1 it ends

@@ -6,8 +6,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "cutting/cutter_sides.hpp"
-#include "cutting/halves.hpp"
-#include "cutting/shell.hpp"
+#include "cutting/pieces.hpp"
 
 namespace realmodel::cutting {
 

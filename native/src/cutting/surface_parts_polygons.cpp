@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/surface_parts.hpp"
@@ -11,32 +12,12 @@ namespace realmodel::cutting {
 
 namespace {
 
-/// Orientations of nodes where they are exactly.
-class ExactTurns : public CornerTurns {
-public:
-    ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
-    int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
-        return view_.sign() * exact::orient2d(overlay_.points(), view_.axis(),
-                                              overlay_.exact(a.node), overlay_.exact(b.node),
-                                              overlay_.exact(c.node));
-    }
-
-private:
-    SurfaceOverlay& overlay_;
-    const View& view_;
-};
-
 /// Each polygon in triangles round a node of its own.
 Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
     Polygons divided;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
         const auto nodes = polygons[p];
-        Position middle{0, 0, 0};
-        for (const NodeId node : nodes) {
-            for (std::size_t k = 0; k < 3; ++k)
-                middle[k] += overlay.position(node)[k] / static_cast<double>(nodes.size());
-        }
-        const NodeId center = overlay.add_node(middle);
+        const NodeId center = overlay.add_node(overlay.middle_of(nodes));
         for (std::size_t i = 0; i < nodes.size(); ++i)
             divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center});
     }
@@ -97,8 +78,9 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<N
         // the same polygons wherever the loop begins
         std::rotate(own.begin(), std::ranges::min_element(own, {}, &LoopCorner::node), own.end());
     }
+    const auto exact_of = [&](NodeId node) { return overlay.exact(node); };
     return divide_convex(corners, view.rounding(positions), {}, polygons,
-                         ExactTurns(overlay, view));
+                         arrangement::PointTurns(overlay.points(), view, exact_of));
 }
 
 /// Parts in the order of the model's cells, those of one cell in that of what bounds them.
@@ -154,10 +136,7 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
         polygons.add(model.face(face));
         return;
     }
-    std::vector<Position> corners;
-    corners.reserve(model.face(face).size());
-    for (const NodeId v : model.face(face))
-        corners.push_back(model.vertex(v));
+    const auto corners = positions_of(model, model.face(face));
     const bool is_wall = model.face_surface[face] == kWall;
     Polygons whole;
     if (!divide_loops(overlay_, polygon_normal(corners), patch.loops(), is_wall, whole)) {
@@ -169,8 +148,7 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
             divide_loops(overlay_, normal, overlay_.loops(index(region)), false, whole);
         }
     }
-    for (std::size_t p = 0; p < whole.size(); ++p)
-        polygons.add(whole[p]);
+    polygons.add(whole, 0, whole.size());
 }
 
 /// Patches are divided on all threads and written in their order.
@@ -195,10 +173,8 @@ void SurfaceParts::divide(const CapPlace& place, Polygons& polygons) {
         return;
     }
     const std::size_t region = index(caps_[place.caps].region);
-    const auto& triangle = overlay_.corners(region);
-    std::array<Position, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = overlay_.points().rounded(triangle[k]);
+    const auto corners = mapped(overlay_.corners(region),
+                                [this](SpacePointId p) { return overlay_.points().rounded(p); });
     divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false, polygons);
 }
 
@@ -222,8 +198,7 @@ void SurfaceParts::write_caps(Progress* progress) {
         const Caps& caps = caps_[cap_places_[i].caps];
         polygons.clear();
         in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
-            for (std::size_t p = first; p < end; ++p)
-                polygons.add(all[p]);
+            polygons.add(all, first, end);
         });
         // no two polygons of a half may be the same; between two parts of a half there is one
         std::array<bool, 2> written{false, false};

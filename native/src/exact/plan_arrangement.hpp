@@ -7,9 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include "base/index.hpp"
 #include "base/key_table.hpp"

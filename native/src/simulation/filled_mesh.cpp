@@ -37,6 +37,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
 #include "simulation/corner_tetrahedra.hpp"
@@ -439,7 +440,7 @@ void refine(Complex& complex, const Domain& domain, const Criteria& criteria, st
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
                        std::span<const meshing::LocalLength> sizes, const Execution& execution) {
-    if (execution.progress != nullptr) execution.progress->begin(0.0, 0.2, "finding boundaries");
+    begin_phase(execution.progress, 0.0, 0.2, "finding boundaries");
     const BoundaryFaces faces = boundary_faces(model, cell_region, kept, execution);
     Domain domain(model, faces.triangles, execution.progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
@@ -451,8 +452,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     const Criteria criteria(length, tolerance);
     Complex complex;
     try {
-        if (execution.progress != nullptr)
-            execution.progress->begin(0.2, 0.7, "dividing into tetrahedra");
+        begin_phase(execution.progress, 0.2, 0.7, "dividing into tetrahedra");
         for (const auto& p : on_edges)
             insert(complex, p, kBall * length(point_of(p), 1, 1), 1, 1);
         for (const SurfaceSeed& seed : seeds)
@@ -460,8 +460,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
                    faces.triangles[index(seed.triangle)].surface + kFirstSurface);
         if (complex.triangulation().dimension() < 3) refuse_nothing();
         refine(complex, domain, criteria, most, execution.progress);
-        if (execution.progress != nullptr)
-            execution.progress->begin(0.7, 1.0, "removing flat tetrahedra");
+        begin_phase(execution.progress, 0.7, 1.0, "removing flat tetrahedra");
         CGAL::exude_mesh_3(complex, CGAL::parameters::sliver_bound = kSliver);
     } catch (const CGAL::Failure_exception&) {
         refuse_division();

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/index.hpp"
@@ -54,6 +55,16 @@ struct Box {
         return true;
     }
 };
+
+/// Around the positions of some things.
+/// @param position_of  position_of(thing)
+template <class Things, class PositionOf = std::identity>
+Box bounding_box(const Things& things, const PositionOf& position_of = {}) {
+    Box box;
+    for (const auto& thing : things)
+        box.include(position_of(thing));
+    return box;
+}
 
 /// Finds the boxes that meet a given one: a binary tree that halves them along the
 /// longest side of their middles.

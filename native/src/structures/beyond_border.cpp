@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a fault goes on beyond its border.
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "base/parallel.hpp"
@@ -10,6 +9,7 @@
 namespace realmodel::structures {
 
 using cutting::Position;
+using spatial::bounding_box;
 using spatial::Box;
 
 namespace {
@@ -31,9 +31,7 @@ struct Slab {
 };
 
 std::optional<Slab> slab_of(const std::array<Position, 3>& corners) {
-    Slab slab{.corners = corners, .normals = {}, .box = {}};
-    for (const Position& p : corners)
-        slab.box.include(p);
+    Slab slab{.corners = corners, .normals = {}, .box = bounding_box(corners)};
     const Position normal = triangle_normal(corners[0], corners[1], corners[2]);
     if (!(dot(normal, normal) > 0)) return std::nullopt;
     slab.normals[0] = unit(normal);
@@ -86,15 +84,13 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
             prisms[t].corners[i] = {low[v], low[v + 1], low[v + 2]};
             prisms[t].corners[i + 3] = {high[v], high[v + 1], high[v + 2]};
         }
-        for (const Position& p : prisms[t].corners)
-            prisms[t].box.include(p);
+        prisms[t].box = bounding_box(prisms[t].corners);
         all.include(prisms[t].box);
     }
     std::vector<std::uint8_t> found(count, 0);
     if (count == 0) return found;
     const StructureSurface surface = first_surface(faults, all);
-    for (const Position& p : surface.single[0].vertices)
-        all.include(p);
+    all.include(bounding_box(surface.single[0].vertices));
     const Position extent = minus(all.high, all.low);
     const double near = kTouches * length(extent);
     Box sheet;
@@ -105,10 +101,7 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
     std::vector<Slab> slabs;
     for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
         if (surface.is_continuation[t] == 0) continue;
-        std::array<Position, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = surface.surface.vertices[index(surface.surface.triangles[t][i])];
-        const auto slab = slab_of(corners);
+        const auto slab = slab_of(surface.surface.corners(t));
         if (slab && slab->box.meets(sheet)) slabs.push_back(*slab);
     }
     parallel_ranges(count, 1 << 6, execution, [&](std::size_t begin, std::size_t end) {
@@ -126,17 +119,10 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
 
 std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
     std::span<const Structure> faults, const std::array<std::array<double, 3>, 2>& corners) {
-    Box box;
-    for (const Position& p : corners)
-        box.include(p);
-    const StructureSurface surface = first_surface(faults, box);
+    const StructureSurface surface = first_surface(faults, bounding_box(corners));
     std::vector<std::array<Position, 3>> found;
     for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
-        if (surface.is_continuation[t] == 0) continue;
-        const auto& own = surface.surface.triangles[t];
-        found.push_back({surface.surface.vertices[index(own[0])],
-                         surface.surface.vertices[index(own[1])],
-                         surface.surface.vertices[index(own[2])]});
+        if (surface.is_continuation[t] != 0) found.push_back(surface.surface.corners(t));
     }
     return found;
 }

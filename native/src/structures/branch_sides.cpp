@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "arrangement/triangulate.hpp"
+#include "base/lists.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -16,7 +16,7 @@ namespace realmodel::structures {
 using arrangement::TriangleArrangement;
 using cutting::Position;
 using exact::SpacePointId;
-using spatial::Box;
+using spatial::bounding_box;
 
 namespace {
 
@@ -46,8 +46,7 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
         area += size;
         if (size <= largest) continue;
         largest = size;
-        for (std::size_t k = 0; k < 3; ++k)
-            middle[k] = (at[0][k] + at[1][k] + at[2][k]) / 3;
+        middle = middle_of(at[0], at[1], at[2]);
     }
     return {area, middle};
 }
@@ -63,10 +62,8 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
             if (surface.structure[t] != structure ||
                 (surface.is_continuation[t] != 0 && !with_continuation))
                 continue;
-            std::array<SpacePointId, 3> corners;
-            for (std::size_t i = 0; i < 3; ++i)
-                corners[i] =
-                    points.add(surface.surface.vertices[index(surface.surface.triangles[t][i])]);
+            const auto [a, b, c] = surface.surface.corners(t);
+            const std::array corners{points.add(a), points.add(b), points.add(c)};
             arrangement.add(corners);
             triangles.push_back(t);
         }
@@ -74,12 +71,8 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     add(branch, false);
     const std::size_t own = triangles.size();
     add(other, true);
-    std::vector<Box> boxes;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        Box& box = boxes.emplace_back();
-        for (const SpacePointId p : arrangement.corners(static_cast<std::int32_t>(t)))
-            box.include(points.rounded(p));
-    }
+    const auto boxes =
+        mapped(triangles, [&](std::size_t t) { return bounding_box(surface.surface.corners(t)); });
     const spatial::BoxTree tree({boxes.begin() + static_cast<std::ptrdiff_t>(own), boxes.end()});
     BranchSides found;
     std::vector<TriangleArrangement::Intersection> meetings;

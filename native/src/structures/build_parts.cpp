@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
@@ -145,9 +146,7 @@ std::vector<std::int32_t> numbers_of_kept(const CellComplex& complex,
 
 /// Whether two surfaces lie upon the same block, or upon nothing.
 bool repeats_blocks(const std::vector<PartSurface>& surfaces) {
-    std::vector<std::int32_t> blocks;
-    for (const PartSurface& surface : surfaces)
-        blocks.push_back(surface.block);
+    std::vector<std::int32_t> blocks = mapped(surfaces, &PartSurface::block);
     std::ranges::sort(blocks);
     return std::ranges::adjacent_find(blocks) != blocks.end();
 }
@@ -196,11 +195,6 @@ CellComplex model_of_stacks(const StructuredInput& input, const PartOfSpace& par
     }
 }
 
-bool are_same(const Warning& one, const Warning& other) {
-    return one.kind == other.kind && one.surface == other.surface && one.items == other.items &&
-           one.text == other.text;
-}
-
 /// The models that have cells, the parts that they are of, and their warnings, each once.
 struct PartModels {
     std::vector<PartModel> models;
@@ -220,8 +214,8 @@ struct PartModels {
             models.push_back({model, sides_of(p)});
             parts.push_back(static_cast<std::int32_t>(p));
             for (const Warning& warning : built[p].warnings) {
-                const auto is_same = [&](const Warning& w) { return are_same(w, warning); };
-                if (std::ranges::none_of(warnings, is_same)) warnings.push_back(warning);
+                if (std::ranges::find(warnings, warning) == warnings.end())
+                    warnings.push_back(warning);
             }
         }
     }
@@ -290,10 +284,6 @@ Joined join_parts(const StructuredInput& input, const PartModels& parts,
         part = parts.parts[index(part)];
     joined.complex.warnings = parts.warnings;
     return joined;
-}
-
-void begin_phase(Progress* progress, double from, double to, const char* what) {
-    if (progress != nullptr) progress->begin(from, to, what);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
@@ -38,30 +39,21 @@ Box box_of(const ComplexView& model) {
 }
 
 /// Cells of several models, with the vertices that they share once.
-struct Together {
-    std::vector<Position> vertices;
-    std::vector<std::int64_t> face_offsets;
-    std::vector<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+struct Together : CellComplex {
     std::vector<std::int32_t> model_of_cell;
     std::vector<std::uint8_t> is_near;  ///< of cells
     std::vector<Sides> model_sides;
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
-    CellKind cell_kind = CellKind::kColumns;
 
     Together(std::span<const PartModel> models, const std::vector<std::vector<CellPlace>>& places,
              const Execution& execution);
     void share_vertices(const Execution& execution);
     ComplexView view() const {
-        return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
-                .face_offsets = face_offsets,
-                .face_vertices = face_vertices,
-                .face_cells = face_cells,
-                .face_surface = face_surface,
-                .cell_block = cell_block,
-                .blocks = blocks,
-                .surfaces = surfaces,
-                .cell_kind = cell_kind};
+        ComplexView view = *this;
+        view.blocks = blocks;
+        view.surfaces = surfaces;
+        return view;
     }
 };
 
@@ -106,7 +98,7 @@ Together::Together(std::span<const PartModel> models,
     model_of_cell.resize(cell_block.size());
     is_near.resize(cell_block.size());
     face_surface.resize(count_before(faces));
-    face_cells.resize(2 * face_surface.size());
+    face_cells.resize(face_surface.size());
     face_vertices.resize(count_before(corners));
     face_offsets.resize(face_surface.size() + 1);
     face_offsets.back() = static_cast<std::int64_t>(face_vertices.size());
@@ -133,7 +125,7 @@ Together::Together(std::span<const PartModel> models,
             }
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::size_t which = wanted[0] ? k : 1 - k;
-                face_cells[2 * face + k] = wanted[which] ? number[index(model.cell(f, which))] : -1;
+                face_cells[face][k] = wanted[which] ? number[index(model.cell(f, which))] : -1;
             }
             face_surface[face++] = model.face_surface[f];
         });
@@ -147,11 +139,10 @@ Together::Together(std::span<const PartModel> models,
 void Together::share_vertices(const Execution& execution) {
     std::vector<std::uint8_t> is_shared(vertices.size(), 0);
     for (std::size_t f = 0; f < face_surface.size(); ++f) {
-        const auto is_beside = [&](std::size_t k) {
-            const std::int32_t cell = face_cells[2 * f + k];
-            return cell >= 0 && is_near[index(cell)] != 0;
-        };
-        if (!is_beside(0) && !is_beside(1)) continue;
+        if (std::ranges::none_of(face_cells[f], [&](std::int32_t cell) {
+                return cell >= 0 && is_near[index(cell)] != 0;
+            }))
+            continue;
         for (auto i = index(face_offsets[f]); i < index(face_offsets[f + 1]); ++i)
             is_shared[index(face_vertices[i])] = 1;
     }
@@ -172,10 +163,6 @@ void Together::share_vertices(const Execution& execution) {
     }
     for (std::int32_t& v : face_vertices)
         v = number[index(v)];
-}
-
-void begin(Progress* progress, double from, double to, const char* what) {
-    if (progress != nullptr) progress->begin(from, to, what);
 }
 
 /// The faces of what is left of the cells.
@@ -219,11 +206,9 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// On which side of each structure something is.
 std::vector<cutting::NearestSide> nearest_sides(const StructureSurface& surface,
                                                 const Execution& execution) {
-    std::vector<cutting::NearestSide> nearest;
-    nearest.reserve(surface.single.size());
-    for (const cutting::CutterSurface& single : surface.single)
-        nearest.emplace_back(single, execution);
-    return nearest;
+    return mapped(surface.single, [&](const cutting::CutterSurface& single) {
+        return cutting::NearestSide(single, execution);
+    });
 }
 
 /// The structures that models are joined at.
@@ -241,36 +226,36 @@ std::optional<Joined> join(const Together& together, const StructuresHere& given
     const ComplexView all = together.view();
     const cutting::NearPart part(all, together.is_near, execution);
     const ComplexView near = part.view();
-    std::vector<std::int32_t> model_of_cell;
-    for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
-        model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
-    begin(execution.progress, 0.1, 0.15, "finding faces near structures");
+    const auto model_of_cell =
+        mapped(part.cells(), [&](std::int32_t c) { return together.model_of_cell[index(c)]; });
+    begin_phase(execution.progress, 0.1, 0.15, "finding faces near structures");
     // with what continues a structure nothing else is left undivided
     std::vector<std::int32_t> groups;
     for (std::size_t t = 0; t < given.surface.structure.size(); ++t)
         groups.push_back(2 * given.surface.structure[t] + given.surface.is_continuation[t]);
     SurfaceOverlay overlay(near, given.surface.surface, execution, least_rounding, groups);
-    begin(execution.progress, 0.3, 0.5, "finding what structures go through");
+    begin_phase(execution.progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, execution.progress);
     const StructureSides sides(overlay, winding, given.surface, given.structures, given.nearest,
                                execution.progress);
     assert(model_of_cell.size() == near.cell_count());
     const WantedParts wanted(overlay, winding, sides, model_of_cell, together.model_sides, acts);
-    begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
+    begin_phase(execution.progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
-    begin(execution.progress, 0.85, 0.92, "rounding what was cut");
+    begin_phase(execution.progress, 0.85, 0.92, "rounding what was cut");
     round_joined_parts(
         {near, overlay.new_positions(), made.pieces, made.half_cells, true, execution},
         made.touches, least_rounding);
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
-    begin(execution.progress, 0.95, 1.0, "putting the parts together");
+    begin_phase(execution.progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
     joined.complex =
         assemble(together, overlay.new_positions(), *pieces, made.half_cells, execution);
-    for (const cutting::HalfCell& cell : made.half_cells)
-        joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
+    joined.cell_part = mapped(made.half_cells, [&](const cutting::HalfCell& cell) {
+        return together.model_of_cell[index(cell.cell)];
+    });
     joined.complex.volumes = strata::block_volumes(joined.complex, together.blocks, execution);
     return joined;
 }
@@ -324,10 +309,9 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
         if (!overlay.is_active(f))
             include(sides.part_of(overlay.size() + f), std::array{rock.face(f)});
     }
-    std::vector<Part> parts;
-    for (const auto& [own, box] : boxes)
-        parts.push_back({own, box.low, box.high});
-    return parts;
+    return mapped(boxes, [](const auto& own) {
+        return Part{own.first, own.second.low, own.second.high};
+    });
 }
 
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
@@ -341,11 +325,10 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
                                                        : structure_surface(structures, continued);
     const auto nearest = nearest_sides(surface, execution);
-    begin(execution.progress, 0, 0.1, "leaving out what is in other parts");
-    std::vector<std::vector<CellPlace>> places;
-    for (const PartModel& own : models) {
-        places.push_back(places_of_cells(own.model, own.sides, nearest, structures, execution));
-    }
+    begin_phase(execution.progress, 0, 0.1, "leaving out what is in other parts");
+    const auto places = mapped(models, [&](const PartModel& own) {
+        return places_of_cells(own.model, own.sides, nearest, structures, execution);
+    });
     Together together(models, places, execution);
     together.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;

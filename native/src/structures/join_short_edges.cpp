@@ -8,6 +8,8 @@
 #include <unordered_map>
 
 #include "base/disjoint_sets.hpp"
+#include "base/keep_single.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
 #include "cutting/rounding/contraction.hpp"
@@ -80,8 +82,7 @@ private:
         std::vector<NodeId> nodes;
         for (const Edge& edge : edges)
             nodes.insert(nodes.end(), edge.begin(), edge.end());
-        std::ranges::sort(nodes);
-        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        sort_unique(nodes);
         const auto number = [&nodes](NodeId node) {
             return static_cast<std::int32_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
         };
@@ -95,8 +96,7 @@ private:
             nodes_[node] = {node};
         }
         for (auto& own : around) {
-            std::ranges::sort(own);
-            own.erase(std::unique(own.begin(), own.end()), own.end());
+            sort_unique(own);
             for (const std::int32_t part : own)
                 now_.try_emplace(part);
         }
@@ -239,10 +239,9 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
     const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
     const cutting::CutPieces& pieces = parts.pieces;
     constexpr std::size_t kPieces = 1 << 12;  // at a time
-    std::vector<std::vector<Edge>> found((pieces.size() + kPieces - 1) / kPieces);
-    parallel_ranges(
+    const auto found = found_in_ranges<Edge>(
         pieces.size(), kPieces, parts.execution,
-        [&](std::size_t begin, std::size_t end) {
+        [&](std::size_t begin, std::size_t end, std::vector<Edge>& own) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];
                 for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -251,14 +250,12 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
                     const Position away = minus(parts.at(edge[0]), parts.at(edge[1]));
                     if (std::ranges::all_of(away,
                                             [allowed](double x) { return std::abs(x) <= allowed; }))
-                        found[begin / kPieces].push_back(edge);
+                        own.push_back(edge);
                 }
             }
         },
         0.05);
-    std::set<Edge> edges;
-    for (const auto& chunk : found)
-        edges.insert(chunk.begin(), chunk.end());
+    const std::set<Edge> edges(found.begin(), found.end());
     if (!edges.empty()) ShortEdges(parts, allowed, edges).contract_all();
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
-
 #include "cutting/rounding/rounded_parts.hpp"
 
 namespace realmodel::structures {

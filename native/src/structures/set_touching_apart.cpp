@@ -4,6 +4,8 @@
 #include <functional>
 #include <map>
 
+#include "base/keep_single.hpp"
+#include "base/lists.hpp"
 #include "base/packed_pair.hpp"
 #include "base/parallel.hpp"
 #include "structures/joined_rounding.hpp"
@@ -86,10 +88,9 @@ std::vector<std::size_t> shortest_way_back(std::span<const EdgeOfPiece> uses) {
 
 /// The edges near structures that some part has more than twice, in order.
 std::vector<Edge> touching_edges(const RoundedParts& parts) {
-    std::vector<std::vector<Edge>> of_parts(parts.half_cells.size());
-    parallel_ranges(
-        of_parts.size(), 1 << 6, parts.execution,
-        [&](std::size_t begin, std::size_t end) {
+    auto found = found_in_ranges<Edge>(
+        parts.half_cells.size(), 1 << 6, parts.execution,
+        [&](std::size_t begin, std::size_t end, std::vector<Edge>& own) {
             std::vector<std::uint64_t> uses;
             for (std::size_t part = begin; part < end; ++part) {
                 uses.clear();
@@ -104,16 +105,12 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
                 }
                 std::ranges::sort(uses);
                 for (std::size_t i = 2; i < uses.size(); ++i) {
-                    if (uses[i] == uses[i - 2]) of_parts[part].push_back(unpacked_pair(uses[i]));
+                    if (uses[i] == uses[i - 2]) own.push_back(unpacked_pair(uses[i]));
                 }
             }
         },
         0.02);
-    std::vector<Edge> found;
-    for (const auto& own : of_parts)
-        found.insert(found.end(), own.begin(), own.end());
-    std::ranges::sort(found);
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
 }
 

@@ -55,13 +55,7 @@ void StructureSides::refuse(const char* kind, const char* text, std::int32_t str
 }
 
 Position StructureSides::middle_of(std::size_t region) const {
-    const auto outline = overlay_.loops(region)[0];
-    Position middle{0, 0, 0};
-    for (const NodeId node : outline) {
-        for (std::size_t k = 0; k < 3; ++k)
-            middle[k] += overlay_.position(node)[k] / static_cast<double>(outline.size());
-    }
-    return middle;
+    return overlay_.middle_of(overlay_.loops(region)[0]);
 }
 
 /// Which structures each region that counts is of, by all that coincide with it.

@@ -3,14 +3,13 @@
 #include "structures/structure_surface.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <span>
 
 #include "base/disjoint_sets.hpp"
-#include "base/key_table.hpp"
+#include "base/key_numbers.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
 #include "structures/branch_sides.hpp"
@@ -193,25 +192,9 @@ private:
     std::vector<std::array<Position, 3>> triangles_;
 };
 
-/// Whether a part of a segment is in a box.
-bool passes(const Box& box, const Position& from, const Position& to) {
-    double begin = 0, end = 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double step = to[k] - from[k];
-        if (step == 0) {
-            if (from[k] < box.low[k] || from[k] > box.high[k]) return false;
-            continue;
-        }
-        const double low = (box.low[k] - from[k]) / step, high = (box.high[k] - from[k]) / step;
-        begin = std::max(begin, std::min(low, high));
-        end = std::min(end, std::max(low, high));
-    }
-    return begin <= end;
-}
-
-/// Whether a part of a triangle is in a box: what its six planes leave of the triangle.
-bool passes(const Box& box, const std::array<Position, 3>& triangle) {
-    std::vector<Position> left(triangle.begin(), triangle.end());
+/// Whether a part of a triangle, or of a segment, is in a box: what its six planes leave of that.
+bool passes(const Box& box, std::span<const Position> corners) {
+    std::vector<Position> left(corners.begin(), corners.end());
     for (std::size_t plane = 0; plane < 6 && !left.empty(); ++plane) {
         const std::size_t k = plane / 2;
         const auto inward = [&](const Position& p) {
@@ -240,7 +223,7 @@ bool divides(const CutterSurface& fault, const Box& rock) {
     const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
     return std::ranges::none_of(border_of(fault),
                                 [&](const CutterBorderEdge& edge) {
-                                    return passes(near, at(edge.from), at(edge.to));
+                                    return passes(near, std::array{at(edge.from), at(edge.to)});
                                 }) &&
            std::ranges::any_of(fault.triangles, [&](const auto& t) {
                return passes(rock, std::array{at(t[0]), at(t[1]), at(t[2])});
@@ -257,14 +240,10 @@ std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
         std::vector<std::uint8_t>& found = all.emplace_back(own.vertices.size(), 0);
         const cutting::NearestSide nearest(given[index(other)]);
         double above = 0;
-        for (const auto& t : own.triangles) {
-            const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
-                                     own.vertices[index(t[2])]};
-            const Position normal = polygon_normal(corners);
-            Position middle{0, 0, 0};
-            for (std::size_t k = 0; k < 3; ++k)
-                middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
-            above += nearest(middle) * length(normal);
+        for (std::size_t t = 0; t < own.triangles.size(); ++t) {
+            const auto corners = own.corners(t);
+            const Position middle = middle_of(corners[0], corners[1], corners[2]);
+            above += nearest(middle) * length(polygon_normal(corners));
         }
         for (std::size_t v = 0; v < found.size(); ++v) {
             if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
@@ -299,7 +278,8 @@ public:
     void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
     void add(const std::array<Position, 3>& corners, bool is_continuation) {
         if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
-        put({node(corners[0]), node(corners[1]), node(corners[2])}, is_continuation);
+        put({vertices_.add(corners[0]), vertices_.add(corners[1]), vertices_.add(corners[2])},
+            is_continuation);
         CutterSurface& single = all_.single.back();
         const auto first = static_cast<NodeId>(single.vertices.size());
         single.vertices.insert(single.vertices.end(), corners.begin(), corners.end());
@@ -308,26 +288,25 @@ public:
     /// @param rock  what of the body is away from it cuts nothing; nullopt: all cuts
     void add_body(const CutterSurface& body, const std::optional<Box>& rock) {
         std::vector<NodeId> nodes(body.vertices.size(), -1);
-        for (const auto& t : body.triangles) {
-            const std::array corners{body.vertices[index(t[0])], body.vertices[index(t[1])],
-                                     body.vertices[index(t[2])]};
-            Box box;
-            for (const Position& p : corners)
-                box.include(p);
-            if ((rock && !box.meets(*rock)) ||
+        for (std::size_t t = 0; t < body.triangles.size(); ++t) {
+            const auto corners = body.corners(t);
+            if ((rock && !spatial::bounding_box(corners).meets(*rock)) ||
                 cutting::in_one_line(corners[0], corners[1], corners[2]))
                 continue;
             std::array<NodeId, 3> own{};
             for (std::size_t i = 0; i < 3; ++i) {
-                NodeId& known = nodes[index(t[i])];
-                if (known < 0) known = node(corners[i]);
+                NodeId& known = nodes[index(body.triangles[t][i])];
+                if (known < 0) known = vertices_.add(corners[i]);
                 own[i] = known;
             }
             put(own, false);
         }
         all_.single.back() = body;
     }
-    StructureSurface surface() && { return std::move(all_); }
+    StructureSurface surface() && {
+        all_.surface.vertices = vertices_.keys();
+        return std::move(all_);
+    }
 
 private:
     void put(const std::array<NodeId, 3>& triangle, bool is_continuation) {
@@ -335,36 +314,25 @@ private:
         all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
         all_.is_continuation.push_back(is_continuation ? 1 : 0);
     }
-    NodeId node(const Position& p) {
-        auto& vertices = all_.surface.vertices;
-        const Position key = plus(p, Position{0, 0, 0});  // both zeros alike
-        const auto [found, is_new] =
-            number_.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(key)),
-                                static_cast<NodeId>(vertices.size()),
-                                [&](NodeId other) { return vertices[index(other)] == p; });
-        if (is_new) vertices.push_back(p);
-        return found;
-    }
 
     StructureSurface all_;
-    KeyTable number_;  ///< of vertices
+    KeyNumbers<Position> vertices_;
 };
 
-/// @param count  of structures, those that are taken
 /// Which triangles of structures there are.
 struct Extent {
     bool continues_all = false;  ///< those are continued, too, that divide the rock by themselves
     bool has_all_of_bodies = true;  ///< the surface of all has what of bodies is beyond the rock
 };
 
+/// @param count  of structures, those that are taken
 StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
                             const Box& rock, const Extent& extent_of) {
     std::vector<CutterSurface> given;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
         given.push_back(checked_surface(structures[index(s)], s));
-        for (const Position& p : given.back().vertices)
-            whole.include(p);
+        whole.include(spatial::bounding_box(given.back().vertices));
     }
     const double size = length(minus(whole.high, whole.low));
     Box near = rock;
@@ -377,11 +345,8 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
             all.add_body(own, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
             continue;
         }
-        for (const auto& t : own.triangles) {
-            all.add(
-                {own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
-                false);
-        }
+        for (std::size_t t = 0; t < own.triangles.size(); ++t)
+            all.add(own.corners(t), false);
         if (extent_of.continues_all || !divides(own, rock)) {
             for (const auto& t : continuation(structures, given, s, size))
                 all.add(t, true);
@@ -431,10 +396,8 @@ StructureSurface structure_surface(std::span<const Structure> structures,
 
 std::vector<ContinuedStructure> continued_structures(
     std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
-    Box rock;
-    for (const Position& corner : corners)
-        rock.include(corner);
-    const StructureSurface surface = surface_of(structures, structures.size(), rock, {});
+    const StructureSurface surface =
+        surface_of(structures, structures.size(), spatial::bounding_box(corners), {});
     std::vector<ContinuedStructure> found(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
@@ -442,9 +405,7 @@ std::vector<ContinuedStructure> continued_structures(
     }
     for (std::size_t t = 0; t < surface.structure.size(); ++t) {
         ContinuedStructure& own = found[index(surface.structure[t])];
-        auto& corners_of = own.triangles.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-            corners_of[i] = surface.surface.vertices[index(surface.surface.triangles[t][i])];
+        own.triangles.push_back(surface.surface.corners(t));
         own.is_continuation.push_back(surface.is_continuation[t]);
     }
     return found;

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+
+#include "base/lists.hpp"
 
 namespace realmodel::structures {
 
@@ -171,9 +172,8 @@ bool WantedParts::is_sliver(std::size_t region) const {
     double length = 0, area = 0, rounding = 0;
     const auto loops = overlay_.loops(region);
     for (std::size_t k = 0; k < loops.size(); ++k) {
-        std::vector<Position> corners;
-        for (const NodeId node : loops[k])
-            corners.push_back(overlay_.position(node));
+        const auto corners =
+            mapped(loops[k], [this](NodeId node) { return overlay_.position(node); });
         for (std::size_t i = 0; i < corners.size(); ++i) {
             length += realmodel::length(minus(corners[(i + 1) % corners.size()], corners[i]));
         }

@@ -70,7 +70,7 @@ TEST(FacetDivision, ManyPointsAndAChainOfEdges) {
         const double s = 0.05 + 0.4 * static_cast<double>(i) / kChain;
         const SpacePointId p = sample.inside(s, 0.2 + 0.1 * uniform());
         sample.facet.within.push_back(p);
-        if (i > 0) sample.facet.wanted.push_back(edge_of(last, p));
+        if (i > 0) sample.facet.wanted.push_back(unordered(last, p));
         last = p;
     }
     while (sample.facet.within.size() < kInside) {
@@ -99,18 +99,18 @@ TEST(FacetDivision, AnEdgeAcrossEverything) {
         const double s = 0.02 + 0.5 * uniform(), t = 0.1 + 0.35 * uniform();
         sample.facet.within.push_back(sample.inside(s, t));
     }
-    sample.facet.wanted = {edge_of(from, to)};
+    sample.facet.wanted = {unordered(from, to)};
     const auto triangles = divided(sample.points, sample.facet, nullptr);
     expect_tiled(sample, triangles);
-    EXPECT_TRUE(edges_in(triangles).contains(edge_of(from, to)));
+    EXPECT_TRUE(edges_in(triangles).contains(unordered(from, to)));
     // two that cross: the first one stays
     const SpacePointId low = sample.inside(0.3, 0.05), high = sample.inside(0.3, 0.6);
     sample.facet.within.insert(sample.facet.within.end(), {low, high});
-    sample.facet.wanted.push_back(edge_of(low, high));
+    sample.facet.wanted.push_back(unordered(low, high));
     const auto again = divided(sample.points, sample.facet, nullptr);
     expect_tiled(sample, again);
-    EXPECT_TRUE(edges_in(again).contains(edge_of(from, to)));
-    EXPECT_FALSE(edges_in(again).contains(edge_of(low, high)));
+    EXPECT_TRUE(edges_in(again).contains(unordered(from, to)));
+    EXPECT_FALSE(edges_in(again).contains(unordered(low, high)));
 }
 
 /// The same points give the same triangles, whichever of its corners comes first.

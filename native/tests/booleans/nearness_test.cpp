@@ -29,14 +29,14 @@ protected:
 TEST_F(Near, VerticesBecomeOne) {
     const SpacePointId beside = at(4, 0, little);
     const NearParts found = find({beside, at(9, 0, 3), at(9, 9, 3)});
-    EXPECT_EQ(found.same, std::vector<Edge>{edge_of(level[1], beside)});
+    EXPECT_EQ(found.same, std::vector<Edge>{unordered(level[1], beside)});
 }
 
 TEST_F(Near, AVertexIsOnAnEdgeOrOverTheInside) {
     const SpacePointId on = at(2, little, 0), over = at(1, 1, -little);
     const NearParts beside = find({on, at(2, -9, 3), at(3, -9, 3)});
     EXPECT_EQ(beside.on_edges,
-              (std::vector<std::pair<Edge, SpacePointId>>{{edge_of(level[0], level[1]), on}}));
+              (std::vector<std::pair<Edge, SpacePointId>>{{unordered(level[0], level[1]), on}}));
     const NearParts above = find({over, at(1, 1, -9), at(1, 2, -9)});
     EXPECT_EQ(above.over, (std::vector<std::pair<TriangleCorners, SpacePointId>>{{level, over}}));
     EXPECT_TRUE(above.same.empty());

@@ -7,6 +7,7 @@
 
 #include "../arrangement/small_polygons.hpp"
 #include "cutting/halves.hpp"
+#include "cutting/near_part.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 
 namespace realmodel::cutting {
@@ -57,7 +58,7 @@ protected:
     NodeLoop nodes(std::size_t piece) const { return from_least(pieces_.polygons[piece]); }
     Cut rounded() {
         round_parts(rounded_parts(), {false, false});
-        return assemble_halves(model_, new_, pieces_, parts_, {1, nullptr});
+        return assemble_halves(model_, new_, WholePieces(CutPieces(pieces_)), parts_, {1, nullptr});
     }
     static void expect_distinct(const CellComplex& half) {
         const std::set<Position> found(half.vertices.begin(), half.vertices.end());

@@ -5,6 +5,7 @@
 
 #include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
+#include "cutting/near_part.hpp"
 
 namespace realmodel::cutting {
 namespace {
@@ -25,7 +26,9 @@ protected:
         }
         half_cells = {{0, sides[0]}, {1, sides[1]}};
     }
-    Cut halves() { return assemble_halves(model, {}, pieces, half_cells, {1, nullptr}); }
+    Cut halves() {
+        return assemble_halves(model, {}, WholePieces(CutPieces(pieces)), half_cells, {1, nullptr});
+    }
     static std::vector<std::int32_t> face(const CellComplex& c, std::size_t f) {
         return {c.face_vertices.begin() + c.face_offsets[f],
                 c.face_vertices.begin() + c.face_offsets[f + 1]};
@@ -90,7 +93,8 @@ TEST_F(TwoCubesUpsideDown, TheSectionIsSeenFromTheHalfAbove) {
 
 TEST_F(TwoCubesApart, NodesAfterTheVerticesAreTheNewPositions) {
     pieces.polygons.nodes[8] = NodeId{12};  // a corner of the top
-    const Cut cut = assemble_halves(model, {{0, 0, 3}}, pieces, half_cells, {1, nullptr});
+    const Cut cut = assemble_halves(model, {{0, 0, 3}}, WholePieces(CutPieces(pieces)), half_cells,
+                                    {1, nullptr});
     EXPECT_EQ(std::ranges::count(cut.above.vertices, Position{0, 0, 3}), 1);
     EXPECT_EQ(std::ranges::count(cut.below.vertices, Position{0, 0, 3}), 0);
 }

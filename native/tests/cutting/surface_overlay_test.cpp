@@ -73,7 +73,7 @@ TEST(SurfaceOverlay, AFaceThatOneTrianglePassesIsInTwo) {
         corners[overlay.face_of(r)] += overlay.loops(r)[0].size();
     }
     EXPECT_EQ(corners, (std::map<std::size_t, std::size_t>{{0, 12}, {1, 12}, {4, 8}, {8, 8}}));
-    EXPECT_EQ(overlay.triangles_of(0).size(), 2U * 4);
+    EXPECT_EQ(overlay.boxed_face(0).triangles.size(), 2U * 4);
     EXPECT_EQ(overlay.new_positions().size(), 4U + 3);
 }
 
@@ -181,7 +181,9 @@ TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
     std::size_t begin = 0;
     while (uses[begin].edge != uses[begin + 3].edge)
         ++begin;
-    const auto fan = cut.overlay.fan_of(std::span(uses).subspan(begin, 4));
+    std::vector<arrangement::HalfPlane> scratch;
+    arrangement::EdgeFan fan;
+    cut.overlay.find_fan(std::span(uses).subspan(begin, 4), scratch, fan);
     ASSERT_EQ(fan.blades(), 4U);
     for (std::size_t b = 0; b < 4; ++b) {
         const auto of_cutter = [&](std::size_t blade) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "arrangement/region_loops.hpp"
 #include "base/packed_pair.hpp"
 #include "cutting/rounding/equal_pieces.hpp"
 
@@ -80,7 +81,8 @@ std::optional<Contraction::Shape> Contraction::shape(std::span<const std::int32_
         std::sort(first, sorted.end());
         if (std::adjacent_find(first, sorted.end()) != sorted.end()) return std::nullopt;
         const int facing = parts_.pieces[index(own)].parts[0] == part ? 1 : -1;
-        faces.push_back({hash_of(loop), begin, size, facing * winding_of(loop)});
+        faces.push_back({arrangement::loop_hash(std::span<const NodeId>(loop)), begin, size,
+                         facing * winding_of(loop)});
     }
     if (!cancel_folded(scratch, may_fold_)) return std::nullopt;
     Shape found;

@@ -24,7 +24,7 @@ public:
     };
     /// A polygon of a part as contractions leave it: nodes from `begin` on.
     struct Face {
-        std::uint64_t hash;
+        std::uint32_t hash;
         std::size_t begin, size;
         int winding;
     };

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "arrangement/triangulate.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 
@@ -18,12 +19,10 @@ bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePositio
     const std::size_t n = corners.size();
     for (std::size_t i = 0; i < n; ++i) {
         const PlanePosition &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
-        const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - b[0], vy = c[1] - b[1];
-        const double cross = ux * vy - uy * vx;
-        const double allowed = rounding[0] * (std::abs(uy) + std::abs(vy)) +
-                               rounding[1] * (std::abs(ux) + std::abs(vx));
-        left = left && cross >= -allowed;
-        right = right && cross <= allowed;
+        const double turn = cross(minus(b, a), minus(c, b));
+        const double allowed = arrangement::slack(a, b, c, rounding);
+        left = left && turn >= -allowed;
+        right = right && turn <= allowed;
     }
     if (!left && !right) return false;
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -60,17 +59,13 @@ bool is_bent(const RoundedParts& parts, std::size_t piece,
     const auto& [face, cells, sides, is_level, of] = parts.pieces[piece];
     const bool is_wall = parts.surface_of(piece, kCutFace) == kWall;
     if (nodes.size() <= 3 || parts.is_whole_face(piece) || (is_wall && !is_level)) return false;
-    std::vector<Position> corners;
-    for (const NodeId node : nodes)
-        corners.push_back(parts.at(node));
+    const auto corners = mapped(nodes, [&](NodeId node) { return parts.at(node); });
     const Position normal = polygon_normal(corners);
     if (is_bent_too != nullptr && is_bent_too(corners)) return true;
     // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen best
     const bool lay_on_surface = face >= 0 && !is_level && normal[2] != 0;
     const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
-    std::vector<PlanePosition> flat;
-    for (const Position& corner : corners)
-        flat.push_back(seen(corner));
+    const std::vector<PlanePosition> flat = mapped(corners, seen);
     const PlanePosition rounding = seen.rounding(corners);
     // of what has no area it is not sure how it is seen best
     const bool is_sure = lay_on_surface || is_wall || has_area(flat, normal[seen.axis()], rounding);
@@ -124,9 +119,7 @@ bool middle_sees_all(const arrangement::Loop& loop, const PlanePosition& roundin
 std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::size_t piece) {
     const auto given = parts.pieces.polygons[piece];
     const std::vector<NodeId> nodes(given.begin(), given.end());
-    std::vector<Position> corners;
-    for (const NodeId node : nodes)
-        corners.push_back(parts.at(node));
+    const auto corners = mapped(nodes, [&](NodeId node) { return parts.at(node); });
     const View seen(polygon_normal(corners));
     const PlanePosition rounding = seen.rounding(corners);
     arrangement::Loop loop;
@@ -134,7 +127,7 @@ std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::si
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         loop.push_back({nodes[i], seen(corners[i])});
         const NodeId next = nodes[(i + 1) % nodes.size()];
-        sides.push_back({std::min(nodes[i], next), std::max(nodes[i], next)});
+        sides.push_back(unordered(nodes[i], next));
     }
     if (middle_sees_all(loop, rounding)) return {nodes};
     arrangement::Polygons convex;  // a loop that crosses itself, but for rounding, has some, too
@@ -147,7 +140,7 @@ std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::si
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
             found[k].push_back(ends[0]);
-            const std::array edge{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
+            const auto edge = unordered(ends[0], ends[1]);
             if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
             const auto [at, is_new] = between.try_emplace(edge, NodeId{});
             if (is_new) at->second = add_middle(parts, piece, ends);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "arrangement/region_loops.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::cutting {
@@ -21,13 +22,6 @@ void put_first(std::span<const NodeId> loop, std::vector<NodeId>& nodes) {
     if (winding_of(nodes) < 0) std::reverse(nodes.begin() + 1, nodes.end());
 }
 
-std::uint64_t hash_of(std::span<const NodeId> nodes) {
-    std::uint64_t hash = nodes.size();
-    for (const NodeId node : nodes)
-        hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(node)});
-    return hash;
-}
-
 std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
     const CutPieces& pieces = parts.pieces;
     // how many have the same hash, up to 2: only of these the nodes are compared
@@ -41,7 +35,7 @@ std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
                 const auto nodes = pieces.polygons[p];
                 const bool is_near = std::ranges::all_of(
                     nodes, [&](NodeId node) { return parts.is_near[index(node)] != 0; });
-                slot[p] = is_near ? hash_of(nodes) & (count.size() - 1) : kFar;
+                slot[p] = is_near ? arrangement::loop_hash(nodes) & (count.size() - 1) : kFar;
             }
         },
         0.05);

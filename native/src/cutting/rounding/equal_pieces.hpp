@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,9 +14,6 @@ int winding_of(std::span<const NodeId> loop);
 /// The nodes of a loop from its least one on, toward the lesser of the two beside that: the same
 /// for loops that pass the same edges.
 void put_first(std::span<const NodeId> loop, std::vector<NodeId>& nodes);
-
-/// The same for equal nodes in any order.
-std::uint64_t hash_of(std::span<const NodeId> nodes);
 
 /// Pieces near the cutter that pass the same edges: groups of two or more.
 std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <atomic>
 #include <cmath>
+#include <functional>
 
 #include "base/parallel.hpp"
 #include "cutting/rounding/part_rounding.hpp"
@@ -15,18 +16,15 @@ namespace {
 template <class IsIt, class Visit>
 void visit_where(const RoundedParts& parts, std::size_t count, const IsIt& is_it,
                  const Visit& visit) {
-    std::atomic<std::size_t> first{count};
+    std::size_t first = count;
     parallel_ranges(
         count, 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
-            if (first.load(std::memory_order_relaxed) < begin) return;
+            if (std::atomic_ref(first).load(std::memory_order_relaxed) < begin) return;
             std::size_t i = begin;
             while (i < end && !is_it(i))
                 ++i;
-            auto known = first.load(std::memory_order_relaxed);
-            while (i < end && i < known &&
-                   !first.compare_exchange_weak(known, i, std::memory_order_relaxed)) {
-            }
+            if (i < end) take_extreme(first, i, std::less<>());
         },
         0.05);
     for (std::size_t i = first; i < count; ++i) {

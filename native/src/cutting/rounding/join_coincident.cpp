@@ -24,14 +24,14 @@ std::vector<NodeId> contract(const RoundedParts& parts, std::vector<NodeId>& bec
     const std::size_t vertices = parts.vertices.size();
     for (std::size_t i = 0; i < positions.size(); ++i) {
         box.include(positions[i]);
-        const auto found = first.find_or_add(hash_of(positions[i]), static_cast<std::int32_t>(i),
-                                             is_at(positions[i]));
+        const auto found = first.find_or_add(Positions::hash(positions[i]),
+                                             static_cast<std::int32_t>(i), is_at(positions[i]));
         becomes[vertices + i] = static_cast<NodeId>(vertices) + found.number;
     }
     for (std::size_t v = 0; v < vertices; ++v) {
         const Position& p = parts.vertices[v];
         if (!box.contains(p)) continue;
-        const std::int32_t found = first.find(hash_of(p), is_at(p));
+        const std::int32_t found = first.find(Positions::hash(p), is_at(p));
         if (found >= 0) becomes[vertices + index(found)] = static_cast<NodeId>(v);
     }
     std::vector<NodeId> contracted;

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "base/keep_single.hpp"
+
 namespace realmodel::cutting {
 
 RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positions,
@@ -82,8 +84,7 @@ bool RoundedParts::are_closed() const {
 
 bool RoundedParts::are_apart() const {
     std::vector<NodeId> nodes = pieces.polygons.nodes;
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sort_unique(nodes);
     Positions found;
     return std::ranges::all_of(nodes, [&](NodeId node) { return found.insert(at(node)); });
 }

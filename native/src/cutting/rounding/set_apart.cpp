@@ -5,9 +5,7 @@
 namespace realmodel::cutting {
 
 void set_apart(RoundedParts& parts) {
-    spatial::Box box;
-    for (const Position& p : parts.new_positions)
-        box.include(p);
+    spatial::Box box = spatial::bounding_box(parts.new_positions);
     parts.taken.reserve(2 * parts.new_positions.size());
     if (!parts.new_positions.empty()) box.widen(16 * rounding_of(std::array{box.low, box.high}));
     for (const Position& p : parts.vertices) {

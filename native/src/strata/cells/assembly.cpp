@@ -2,7 +2,6 @@
 #include "strata/cells/assembly.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/memory.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "base/parallel.hpp"
 #include "strata/cells/exact_places.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 
 #include "base/parallel_counts.hpp"
 #include "strata/tiling/triangle_outlines.hpp"

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/parallel_counts.hpp"

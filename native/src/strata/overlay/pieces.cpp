@@ -97,21 +97,19 @@ std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
 /// tiling is all that it meets.
 bool PieceFinder::begin(const Facet& facet, bool for_split) {
     pieces_.clear();
-    if (!is_expected(facet.outline) && walk_.begin(facet.outline)) {
-        add_walked(facet, for_split);
-        return true;
+    if (is_expected(facet.outline) || !walk_.begin(facet.outline)) {
+        if (find_candidates(facet.outline)) {
+            add_common(candidates_.front(), facet.outline, facet);
+            return true;
+        }
+        if (!walk_.locate(facet.outline, {candidates_.begin(), candidates_.end()}) ||
+            !walk_.begin(facet.outline)) {
+            facet_clipper_.begin(facet.outline);
+            return false;
+        }
     }
-    if (find_candidates(facet.outline)) {
-        add_common(candidates_.front(), facet.outline, facet);
-        return true;
-    }
-    if (walk_.locate(facet.outline, {candidates_.begin(), candidates_.end()}) &&
-        walk_.begin(facet.outline)) {
-        add_walked(facet, for_split);
-        return true;
-    }
-    facet_clipper_.begin(facet.outline);
-    return false;
+    add_walked(facet, for_split);
+    return true;
 }
 
 void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
