@@ -19,10 +19,7 @@ SidesByCell::SidesByCell(const ComplexView& model, const Execution& execution) {
     };
     const std::size_t chunks = (sides + kItemsOfChunk - 1) / kItemsOfChunk;
     sides_ = bucketize_in_any_order<Side>(cells, chunks, produce, execution);
-    parallel_ranges(cells, kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            std::ranges::sort(sides_[c]);
-    });
+    parallel_each(cells, execution, [&](std::size_t c) { std::ranges::sort(sides_[c]); });
 }
 
 }  // namespace realmodel::validation

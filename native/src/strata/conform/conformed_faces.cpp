@@ -251,9 +251,8 @@ private:
 /// What follows asks for faces, not for their corners.
 void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execution& execution) {
     conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
-    parallel_ranges(faces.size() + 1, kFaces, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f)
-            conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
+    parallel_each(faces.size() + 1, execution, [&](std::size_t f) {
+        conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
     });
 }
 

@@ -28,17 +28,15 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
         }
     });
     entry_of_block_ = Array<std::uint32_t>(blocks + 1);
-    parallel_ranges(blocks, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-            const auto first = passing_.begin() + passing_of_block_[block];
-            const auto last = passing_.begin() + passing_of_block_[block + 1];
-            std::sort(first, last,
-                      [](const Passing& a, const Passing& b) { return a.corner < b.corner; });
-            std::size_t entries = std::min(kBlock, corners - block * kBlock);
-            for (auto passing = first; passing != last; ++passing)
-                entries += passing->vertices;
-            entry_of_block_[block] = static_cast<std::uint32_t>(entries);
-        }
+    parallel_each(blocks, execution, [&](std::size_t block) {
+        const auto first = passing_.begin() + passing_of_block_[block];
+        const auto last = passing_.begin() + passing_of_block_[block + 1];
+        std::sort(first, last,
+                  [](const Passing& a, const Passing& b) { return a.corner < b.corner; });
+        std::size_t entries = std::min(kBlock, corners - block * kBlock);
+        for (auto passing = first; passing != last; ++passing)
+            entries += passing->vertices;
+        entry_of_block_[block] = static_cast<std::uint32_t>(entries);
     });
     running_totals(entry_of_block_, UINT32_MAX, execution);
 }

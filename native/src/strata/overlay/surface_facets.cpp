@@ -10,8 +10,8 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
-constexpr std::size_t kAhead = 16;                             // pieces
+constexpr std::size_t kPolygons = 1 << 12;  // worked on at a time
+constexpr std::size_t kAhead = 16;          // pieces
 
 /// How much of an envelope there is up to somewhere.
 struct EnvelopeSize {
@@ -86,10 +86,8 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
     of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
     Array<std::uint32_t> number(count);
     const auto for_all = [&](const auto& visit) {
-        parallel_ranges(count, kPieces, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                visit(i, static_cast<std::size_t>(below.polygon[i]));
-        });
+        parallel_each(count, execution,
+                      [&](std::size_t i) { visit(i, static_cast<std::size_t>(below.polygon[i])); });
     };
     for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
     running_totals(of.offsets, UINT32_MAX, execution);
@@ -97,9 +95,8 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
     for_all([&](std::size_t i, std::size_t p) {
         of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
     });
-    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-            std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
+    parallel_each(polygons, execution, [&](std::size_t p) {
+        std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
     });
     return of;
 }
