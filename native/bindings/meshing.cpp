@@ -91,11 +91,8 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict
                          WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
-    meshing::PlanarMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = meshing::mesh_region(region, request, run(execution).progress);
-    }
+    auto mesh =
+        unlocked([&] { return meshing::mesh_region(region, request, run(execution).progress); });
     return to_tuple(std::move(mesh));
 }
 
@@ -104,7 +101,7 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
                                                 WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
-    const py::gil_scoped_release unlocked;
+    const py::gil_scoped_release release;
     const meshing::MeshEstimate estimate =
         meshing::estimate_region_mesh(region, request, run(execution).progress);
     return {estimate.triangles, estimate.bytes};
@@ -112,23 +109,15 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
 
 PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
     const std::vector<meshing::Ring> region = to_rings(rings);
-    meshing::PlanarMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = meshing::triangulate_rings(region);
-    }
+    auto mesh = unlocked([&] { return meshing::triangulate_rings(region); });
     return to_tuple(std::move(mesh));
 }
 
 Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
                                         WatchedExecution* execution) {
     const std::vector<meshing::Ring> polygon = to_rings(rings);
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    {
-        const py::gil_scoped_release unlocked;
-        triangles = meshing::triangulate_polygon(polygon, run(execution).progress);
-    }
-    return to_array(std::move(triangles));
+    return to_array(
+        unlocked([&] { return meshing::triangulate_polygon(polygon, run(execution).progress); }));
 }
 
 }  // namespace
