@@ -260,11 +260,9 @@ void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execut
 /// a corner.
 void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
                   const Execution& execution) {
-    parallel_ranges(
-        collinear.edges.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e)
-                collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
-        });
+    parallel_each(collinear.edges.size(), execution, [&](std::size_t e) {
+        collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
+    });
 }
 
 /// The vertices that the left edge of a pair took up, for the right one.

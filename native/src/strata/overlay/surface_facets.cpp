@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "base/parallel_counts.hpp"
 
@@ -81,24 +82,14 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
                                  const Execution& execution) {
+    constexpr std::size_t kPieces = 1 << 14;  // at a time
     const std::size_t count = below.polygon.size();
-    PiecesOfPolygons of;
-    of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
-    Array<std::uint32_t> number(count);
-    const auto for_all = [&](const auto& visit) {
-        parallel_each(count, execution,
-                      [&](std::size_t i) { visit(i, static_cast<std::size_t>(below.polygon[i])); });
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        for (std::size_t i = chunk * kPieces, end = std::min(count, i + kPieces); i < end; ++i)
+            put(index(below.polygon[i]), static_cast<std::uint32_t>(i));
     };
-    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
-    running_totals(of.offsets, UINT32_MAX, execution);
-    of.pieces = Array<std::uint32_t>(count);
-    for_all([&](std::size_t i, std::size_t p) {
-        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
-    });
-    parallel_each(polygons, execution, [&](std::size_t p) {
-        std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
-    });
-    return of;
+    return sorted_in_buckets<std::uint32_t>(polygons, (count + kPieces - 1) / kPieces, produce,
+                                            execution);
 }
 
 void add_surface_facets(const NumberedTiling& surface, const std::vector<std::uint8_t>& use,
@@ -140,11 +131,8 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
     });
     EnvelopeSize total{next.size(), next.outlines.corners.size(), next.face_polygons.size(),
                        next.face_polygons.corners.size()};
-    for (EnvelopeSize& size : start) {
-        const EnvelopeSize own = size;
-        size = total;
-        total += own;
-    }
+    for (EnvelopeSize& size : start)
+        total += std::exchange(size, total);
     check_total(std::max(total.corners, total.face_corners), UINT32_MAX);
     resize(next, total);
     parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
@@ -156,9 +144,9 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
                              to = of_polygon.offsets[p + 1] + kAhead;
                  k < to && k + kAhead < last_piece; ++k) {
                 prefetch(below.outlines.corners.begin() +
-                         below.outlines.offsets[of_polygon.pieces[k]]);
-                prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
-                prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
+                         below.outlines.offsets[of_polygon.values[k]]);
+                prefetch(below.outlines.offsets.begin() + of_polygon.values[k + kAhead]);
+                prefetch(below.node_above.begin() + of_polygon.values[k + kAhead]);
             }
             visit(
                 p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },

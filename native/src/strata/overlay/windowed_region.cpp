@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "strata/overlay/facet_overlay.hpp"
+#include "strata/overlay/shared_polygons.hpp"
 #include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
@@ -36,8 +37,7 @@ std::array<Corner, 4> window_outline(Site& site, const EnteredRock& rock) {
 bool may_cross(const PlanBox& box, const Window& window) {
     const double margin = 0x1p-40 * std::max({std::abs(box.low_x), std::abs(box.high_x),
                                               std::abs(box.low_y), std::abs(box.high_y)});
-    const PlanBox wide{box.low_x - margin, box.low_y - margin, box.high_x + margin,
-                       box.high_y + margin};
+    const PlanBox wide = box.widened(margin);
     const bool is_inside = wide.low_x > window.low_x && wide.high_x < window.high_x &&
                            wide.low_y > window.low_y && wide.high_y < window.high_y;
     return !is_inside && wide.meets({window.low_x, window.low_y, window.high_x, window.high_y});
@@ -93,6 +93,7 @@ void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
         which.push_back(p);
     }
     scope.commit(site.geometry);
+    share(scope, clipped);
     PolygonPool polygons;
     std::size_t next = 0;
     for (std::size_t p = 0; p < tiling.plane.size(); ++p) {
@@ -100,12 +101,8 @@ void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
             polygons.add(tiling.polygons[p]);
             continue;
         }
-        Polygon outline(clipped[next].begin(), clipped[next].end());
-        for (Corner& corner : outline)
-            corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
-        polygons.add(outline);
+        polygons.add(clipped[next++]);
         unlink(tiling, p);
-        ++next;
     }
     tiling.polygons = std::move(polygons);
 }
