@@ -17,14 +17,15 @@ BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std:
     }
     sort_unique(edges);
     segments_.reserve(edges.size());
-    for (const auto& [from, to] : edges)
-        segments_.push_back({from, to, geometry.add_edge(from, to).id()});
+    for (const auto& [from, to] : edges) {
+        const auto &p = geometry.point(from), &q = geometry.point(to);
+        const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
+                          std::max(p.y, q.y)};
+        segments_.push_back({from, to, geometry.add_edge(from, to).id(), box});
+    }
     in_tiles_ = bucketize<std::uint32_t>(tiles.size(), [&](const auto& put) {
         for (std::size_t s = 0; s < segments_.size(); ++s) {
-            const auto &p = geometry.point(segments_[s].from), &q = geometry.point(segments_[s].to);
-            const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
-                              std::max(p.y, q.y)};
-            tiles_.for_each(tiles_.span(box),
+            tiles_.for_each(tiles_.span(segments_[s].box),
                             [&](std::size_t tile) { put(tile, static_cast<std::uint32_t>(s)); });
         }
     });
@@ -77,17 +78,17 @@ bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& tr
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
     const PlanBox box = spatial::box_around(corners);
     return any_in(span, [&](const Segment& segment) {
-        const std::array ends{position(segment.from), position(segment.to)};
-        const PlanBox own = spatial::box_around(ends);
+        const PlanBox& own = segment.box;
         if (own.high_x <= box.low_x || own.low_x >= box.high_x || own.high_y <= box.low_y ||
             own.low_y >= box.high_y)
             return false;
+        const auto from = position(segment.from), to = position(segment.to);
         return reaches_inside(
             segment, corners.size(),
-            [&](std::size_t i) { return exact::orient2d(ends[0], ends[1], corners[i]); },
+            [&](std::size_t i) { return exact::orient2d(from, to, corners[i]); },
             [&](std::size_t i, exact::VertexId end) {
                 return exact::orient2d(corners[i], corners[(i + 1) % 3],
-                                       ends[end == segment.from ? 0 : 1]);
+                                       end == segment.from ? from : to);
             });
     });
 }

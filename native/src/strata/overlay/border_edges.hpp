@@ -45,6 +45,7 @@ private:
     struct Segment {
         exact::VertexId from, to;
         LineId line;
+        PlanBox box;
     };
     template <class Holds>
     bool any_in(const TileSpan& span, const Holds& holds) const;
