@@ -54,10 +54,9 @@ py::dict to_dict(cutting::Cut&& cut) {
 py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
                       const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    auto cut = unlocked([&] {
+    return to_dict(unlocked([&] {
         return cutting::cut_by_plane(arrays.complex, {point, normal}, run(execution));
-    });
-    return to_dict(std::move(cut));
+    }));
 }
 
 py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
@@ -65,37 +64,33 @@ py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
     require_columns(vertices, 3, "vertices of the surface");
     require_columns(triangles, 3, "triangles of the surface");
     const ModelArrays arrays(model);
-    auto cut = unlocked([&] {
+    return to_dict(unlocked([&] {
         return cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)},
                                        run(execution));
-    });
-    return to_dict(std::move(cut));
+    }));
 }
 
 py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t block,
                       WatchedExecution* execution) {
     const ModelArrays arrays(model), others(other);
-    auto cut = unlocked([&] {
+    return to_dict(unlocked([&] {
         return cutting::cut_by_block(arrays.complex, others.complex, block, run(execution));
-    });
-    return to_dict(std::move(cut));
+    }));
 }
 
 py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& point,
                           const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    auto section = unlocked([&] {
+    return to_dict(unlocked([&] {
         return cutting::section_by_plane(arrays.complex, {point, normal}, run(execution));
-    });
-    return to_dict(std::move(section));
+    }));
 }
 
 py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
                      const std::array<double, 2>& end, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    auto section =
-        unlocked([&] { return cutting::fence_panel(arrays.complex, start, end, run(execution)); });
-    return to_dict(std::move(section));
+    return to_dict(
+        unlocked([&] { return cutting::fence_panel(arrays.complex, start, end, run(execution)); }));
 }
 
 std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(

@@ -101,9 +101,8 @@ KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
                                                 dips_of(dips), sheets_of(sheets)};
-    auto kriged =
-        unlocked([&] { return interpolation::krige(from, to, model, options, run(execution)); });
-    return kriged_tuple(std::move(kriged));
+    return kriged_tuple(
+        unlocked([&] { return interpolation::krige(from, to, model, options, run(execution)); }));
 }
 
 KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
@@ -114,9 +113,8 @@ KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogr
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
                                                 dips_of(dips), sheets_of(sheets)};
-    auto kriged = unlocked(
-        [&] { return interpolation::krige_left_out(from, model, options, run(execution)); });
-    return kriged_tuple(std::move(kriged));
+    return kriged_tuple(unlocked(
+        [&] { return interpolation::krige_left_out(from, model, options, run(execution)); }));
 }
 
 Array<double> idw(const Array<double>& points, const Array<double>& nodes, double power,

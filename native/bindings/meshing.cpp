@@ -9,12 +9,12 @@
 #include <tuple>
 #include <vector>
 
-#include "arrays.hpp"
 #include "execution.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/ear_clipping.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 #include "realmodel/meshing/triangulation.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -23,13 +23,8 @@ namespace realmodel::bindings {
 namespace {
 
 std::vector<meshing::PlanPoint> to_places(const Array<double>& array, const char* name) {
-    require_columns(array, 2, name);
-    std::vector<meshing::PlanPoint> places;
-    places.reserve(static_cast<std::size_t>(array.shape(0)));
-    for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-        places.push_back({array.at(i, 0), array.at(i, 1)});
-    }
-    return places;
+    const auto places = rows<2>(array, name);
+    return {places.begin(), places.end()};
 }
 
 std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays,
@@ -91,9 +86,8 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict
                          WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
-    auto mesh =
-        unlocked([&] { return meshing::mesh_region(region, request, run(execution).progress); });
-    return to_tuple(std::move(mesh));
+    return to_tuple(
+        unlocked([&] { return meshing::mesh_region(region, request, run(execution).progress); }));
 }
 
 std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>& rings,
@@ -109,8 +103,7 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
 
 PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
     const std::vector<meshing::Ring> region = to_rings(rings);
-    auto mesh = unlocked([&] { return meshing::triangulate_rings(region); });
-    return to_tuple(std::move(mesh));
+    return to_tuple(unlocked([&] { return meshing::triangulate_rings(region); }));
 }
 
 Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,

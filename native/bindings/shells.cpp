@@ -53,11 +53,10 @@ py::list complex_shells(const py::dict& model, std::size_t blocks, const Positio
     ComplexArrays arrays(model);
     ComplexView& complex = arrays.complex;
     complex.blocks = blocks;
-    auto found = unlocked([&] {
+    return shell_arrays(unlocked([&] {
         return shrink ? shells::cell_shells(complex, *shrink, origin, run(execution))
                       : shells::block_shells(complex, origin, run(execution));
-    });
-    return shell_arrays(std::move(found));
+    }));
 }
 
 }  // namespace

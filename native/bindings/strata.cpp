@@ -37,11 +37,10 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
                            WatchedExecution* execution) {
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
-    auto complex = unlocked([&] {
+    return built_arrays(unlocked([&] {
         const MemoryGivenBack at_the_end;
         return strata::build_rock_masses(input, run(execution), kind);
-    });
-    return built_arrays(std::move(complex));
+    }));
 }
 
 py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<double, 4>& window,

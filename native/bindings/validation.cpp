@@ -64,9 +64,8 @@ struct ValidatedModel : ComplexArrays {
 
 py::list check_topology(const py::dict& model, WatchedExecution* execution) {
     const ValidatedModel arrays(model);
-    auto results =
-        unlocked([&] { return validation::check_topology(arrays.complex, run(execution)); });
-    return to_list(results);
+    return to_list(
+        unlocked([&] { return validation::check_topology(arrays.complex, run(execution)); }));
 }
 
 py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
@@ -83,11 +82,10 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     if (block.size() != surfaces || surfaces != static_cast<std::size_t>(arrays.complex.surfaces)) {
         throw py::value_error("block_of_surface: one for each surface of the rocks");
     }
-    auto results = unlocked([&] {
+    return to_list(unlocked([&] {
         return validation::check_samples(arrays.complex, {input, block}, places, seed,
                                          run(execution));
-    });
-    return to_list(results);
+    }));
 }
 
 Array<std::int32_t> cells_at(const py::dict& model, const Array<double>& positions,
