@@ -179,11 +179,8 @@ JoinedWalls join_stretches(std::span<const WallStretch> stretches,
     });
     WallBatch walls;
     for_all([&](const OpenWall& wall) {
-        const std::size_t first = walls.vertices.size();
-        add_wall_loop(wall.lower, wall.upper, walls.vertices,
-                      [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
-        walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
-        walls.cells.push_back({wall.left, wall.right});
+        walls.add(wall.lower, wall.upper, {wall.left, wall.right},
+                  [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
     });
     auto number = keep_vertices(is_needed, conformed, execution);
     for (std::int32_t& v : walls.vertices)

@@ -17,15 +17,11 @@ namespace {
 
 /// The window of a tile: its own, or the region that a rock mass without one has there.
 std::array<Corner, 4> window_outline(Site& site, const EnteredRock& rock) {
-    const auto plan_of = [&](std::size_t t) {
-        if (!rock.window) return (*rock.region)[t];
-        PlanTriangle v;
-        for (std::size_t i = 0; i < 3; ++i)
-            v[i] = site.geometry.space(rock.window->triangles[t].corner[i]).plan;
-        return v;
+    const auto half = [&](std::size_t t) {
+        return rock.window ? plan_of(site.geometry, rock.window->triangles[t]) : (*rock.region)[t];
     };
-    const PlanTriangle half = plan_of(0);
-    const std::array corners{half[0], half[1], half[2], plan_of(1)[2]};
+    const auto [a, b, c] = half(0);
+    const std::array corners{a, b, c, half(1)[2]};
     std::array<Corner, 4> outline;
     for (std::size_t i = 0; i < 4; ++i)
         outline[i] = {corners[i], site.geometry.add_edge(corners[i], corners[(i + 1) % 4])};

@@ -19,13 +19,6 @@ using exact::VertexId;
 
 namespace {
 
-PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triangle) {
-    PlanTriangle v;
-    for (std::size_t i = 0; i < 3; ++i)
-        v[i] = geometry.space(triangle.corner[i]).plan;
-    return v;
-}
-
 /// Void triangles (plane `empty`) where nothing is covered.
 void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTriangles& filling,
                PlaneId empty) {
@@ -93,6 +86,13 @@ std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
 }
 
 }  // namespace
+
+PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triangle) {
+    PlanTriangle v;
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = geometry.space(triangle.corner[i]).plan;
+    return v;
+}
 
 std::array<Corner, 3> triangle_outline(PlanArrangement& geometry, const PlanTriangle& v) {
     return {{{v[0], geometry.add_edge(v[0], v[1])},
