@@ -82,14 +82,23 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
                                  const Execution& execution) {
-    constexpr std::size_t kPieces = 1 << 14;  // at a time
+    // Not by sorted_in_buckets, which counts twice: each piece keeps its number among those of its
+    // polygon, which is read faster than it is counted again.
     const std::size_t count = below.polygon.size();
-    const auto produce = [&](std::size_t chunk, const auto& put) {
-        for (std::size_t i = chunk * kPieces, end = std::min(count, i + kPieces); i < end; ++i)
-            put(index(below.polygon[i]), static_cast<std::uint32_t>(i));
-    };
-    return sorted_in_buckets<std::uint32_t>(polygons, (count + kPieces - 1) / kPieces, produce,
-                                            execution);
+    PiecesOfPolygons of;
+    of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
+    Array<std::uint32_t> number(count);
+    parallel_each(count, execution, [&](std::size_t i) {
+        number[i] = count_one(of.offsets[index(below.polygon[i])]);
+    });
+    running_totals(of.offsets, UINT32_MAX, execution);
+    of.values.resize(count);
+    parallel_each(count, execution, [&](std::size_t i) {
+        of.values[of.offsets[index(below.polygon[i])] + number[i]] = static_cast<std::uint32_t>(i);
+    });
+    parallel_each(polygons, execution,
+                  [&](std::size_t p) { std::sort(of[p].begin(), of[p].end()); });
+    return of;
 }
 
 void add_surface_facets(const NumberedTiling& surface, const std::vector<std::uint8_t>& use,
