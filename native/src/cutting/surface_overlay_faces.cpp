@@ -77,18 +77,11 @@ void SurfaceOverlay::find_same_faces(bool are_there) {
 /// side of the triangle's plane. And the triangles that nothing meets.
 void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
     margin_ = std::max(margin_, rounding_of(surface_.vertices));
-    for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
-        for (const double x : model_.vertex(static_cast<NodeId>(v)))
-            margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
+    model_box_ = far_.box();
+    for (std::size_t v = 0; v < model_.vertex_count(); ++v)
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
-    }
-    if (far_.groups() > 0) {
-        model_box_.include(far_.box());
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (const double x : {model_box_.low[k], model_box_.high[k]})
-                margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
-        }
-    }
+    if (model_.vertex_count() > 0)
+        margin_ = std::max(margin_, 4 * rounding_of(std::array{model_box_.low, model_box_.high}));
     model_box_.widen(margin_);
     std::vector<Box> boxes;
     for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {

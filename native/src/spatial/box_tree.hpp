@@ -24,8 +24,10 @@ struct Box {
         }
     }
     void include(const Box& other) {
-        include(other.low);
-        include(other.high);
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], other.low[k]);
+            high[k] = std::max(high[k], other.high[k]);
+        }
     }
     void widen(double by) {
         for (std::size_t k = 0; k < 3; ++k) {

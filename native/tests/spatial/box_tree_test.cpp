@@ -22,6 +22,13 @@ std::vector<Box> random_boxes(std::size_t count) {
     return boxes;
 }
 
+TEST(Box, AnEmptyOneAddsNothing) {
+    Box box{{0, 1, 2}, {3, 4, 5}};
+    box.include(Box());
+    EXPECT_EQ(box.low, (Box::Position{0, 1, 2}));
+    EXPECT_EQ(box.high, (Box::Position{3, 4, 5}));
+}
+
 TEST(BoxTree, FindsWhatMeetsABox) {
     const auto boxes = random_boxes(300);
     const BoxTree tree(boxes);

@@ -94,8 +94,8 @@ void RoundedParts::update() {
         of_nodes->assign(nodes, 0);
     parallel_ranges(pieces.size(), 1 << 12, execution, [this](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
-            // of joined models whole cells, too, get new polygons where they meet a structure
-            const bool changed = (are_joined && (!is_whole_face(p) || pieces[p].is_level)) ||
+            // whole cells, too, get new polygons where they meet the cutter
+            const bool changed = !is_whole_face(p) || pieces[p].is_level ||
                                  std::ranges::any_of(pieces[p].parts, [this](std::int32_t part) {
                                      return part >= 0 && is_changed(part);
                                  });

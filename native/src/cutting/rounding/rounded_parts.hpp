@@ -81,7 +81,7 @@ struct RoundedParts {
     std::vector<std::uint8_t> has_far_faces;
     std::vector<Position> vertices;              ///< of the model, as `at` gives them
     std::vector<std::uint8_t> on_base, on_wall;  ///< of nodes
-    std::vector<std::uint8_t> is_near;           ///< of nodes: of a part that is less than its cell
+    std::vector<std::uint8_t> is_near;           ///< of nodes: of what the cutter has changed
     Buckets<std::int32_t> pieces_of;             ///< the pieces around each part
     Positions taken;  ///< of nodes, from set_apart() on; of the vertices those near new nodes
 

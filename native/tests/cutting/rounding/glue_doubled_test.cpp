@@ -20,6 +20,17 @@ TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     EXPECT_EQ(std::ranges::count(doubled, 0), 11);
 }
 
+TEST_F(AHalvedBox, PolygonsOfAWholeCellThatFaceEachOtherVanish) {
+    parts_ = {{0, kBelow}};
+    for (std::size_t f = 0; f < kFaces.size(); ++f)
+        add(static_cast<std::int32_t>(f), kBelow, {kFaces[f].begin(), kFaces[f].end()});
+    add(5, kBelow, {0, 4, 6});  // the cutter has divided that wall where it has no extent
+    add(5, kBelow, {0, 6, 4});
+    RoundedParts parts = rounded_parts();
+    glue_doubled(parts);
+    EXPECT_EQ(pieces_.size(), 6U);
+}
+
 TEST_F(AHalvedBox, OfPolygonsThatFaceTheSameWayAllButOneAreDoubled) {
     cut_at(0.5);
     pieces_.add(pieces_.polygons[2], {2, {0, -1}, {kBelow, kOn}, false, {0, -1}});
