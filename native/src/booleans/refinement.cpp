@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "base/keep_single.hpp"
@@ -37,13 +38,14 @@ constexpr std::size_t kMostPieces = 16, kFewPieces = 1 << 12;
 /// nothing meets out of order.
 class Refiner {
 public:
-    Refiner(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
-        : pieces_(surfaces, execution), execution_(execution) {
+    Refiner(const std::array<TriangleView, 2>& surfaces, double ulps, const Execution& execution)
+        : pieces_(surfaces, execution), execution_(execution), ulps_(ulps) {
         fresh_.resize(pieces_.input_count());
         std::iota(fresh_.begin(), fresh_.end(), 0);
     }
 
-    RefinedTriangles run();
+    /// None where rounds do not settle.
+    std::optional<RefinedTriangles> run();
 
 private:
     using Numbers = std::vector<std::int32_t>;
@@ -79,7 +81,7 @@ private:
     Execution execution_;
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
     State state_ = State::kWhole;
-    double ulps_ = kNearest;
+    double ulps_;
     std::size_t last_meetings_ = SIZE_MAX;  ///< that were brought together
     int exact_rounds_ = 0, snap_rounds_ = 0;
     std::size_t most_pieces_ = SIZE_MAX;
@@ -312,17 +314,14 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
     return changed;
 }
 
-RefinedTriangles Refiner::run() {
+std::optional<RefinedTriangles> Refiner::run() {
     for (int n = 0; n < kMostRounds && pieces_.count() <= most_pieces_; ++n) {
         const auto share = [](double rounds) { return 0.02 + 0.78 * rounds / (rounds + 1); };
         if (execution_.progress != nullptr)
             execution_.progress->begin(share(n), share(n + 1), "intersecting triangles");
         if (fresh_.empty() || !round()) return result();
     }
-    throw InputError(
-        "too_close",
-        "the surfaces come so close to each other, again and again, that rounding does "
-        "not keep them apart; move one of them a little");
+    return std::nullopt;
 }
 
 RefinedTriangles Refiner::result() const {
@@ -354,7 +353,15 @@ RefinedTriangles Refiner::result() const {
 }  // namespace
 
 RefinedTriangles refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution) {
-    return Refiner(surfaces, execution).run();
+    // surfaces that are farther apart than what is brought together first may cross in splinters
+    // that never settle: then more is brought together first
+    for (double ulps = kNearest; ulps <= kFarthest; ulps *= kGrowth * kGrowth) {
+        if (auto found = Refiner(surfaces, ulps, execution).run()) return std::move(*found);
+    }
+    throw InputError(
+        "too_close",
+        "the surfaces come so close to each other, again and again, that rounding does "
+        "not keep them apart; move one of them a little");
 }
 
 }  // namespace realmodel::booleans

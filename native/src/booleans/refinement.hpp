@@ -23,15 +23,12 @@ using Position = std::array<double, 3>;
 //             they share, or coincide
 //   meeting   where two pieces meet out of order (ExactDivision)
 //   near      what is closer than rounding can keep apart (Nearness): a vertex to another one, to
-//   an
-//             edge or a facet; two edges that pass each other
+//             an edge or a facet; two edges that pass each other
 //   round     fresh pieces are divided where they meet out of order (ExactDivision), or what is
-//   near
-//             there is brought together (Snapping). When no piece is fresh, what is left are
+//             near there is brought together (Snapping). When no piece is fresh, what is left are
 //   part      a piece of the result, which meets all others in order (RefinedTriangles)
-//   facet     parts that coincide, as one (FacetMesh); times: how often it is a part of P and of Q,
-//   -1
-//             for each that faces the other way
+//   facet     parts that coincide, as one (FacetMesh); times: how often it is a part of P and of
+//             Q, -1 for each that faces the other way
 //   winding   how often P and Q go round a cell of space. They go once round what is below them, so
 //             from below a facet to above it they change by -times; around an edge of a closed
 //             surface these changes add up to zero (FacetCells)
@@ -56,7 +53,8 @@ struct RefinedTriangles {
 /// What meets in something that doubles cannot keep is brought together first. Then, in rounds:
 /// triangles are divided exactly, new vertices are rounded, and what meets out of order after that
 /// is brought together or divided again, until nothing does. Where that takes many rounds, vertices
-/// are rounded to coarser and coarser steps, which merges them.
+/// are rounded to coarser and coarser steps, which merges them. Where it does not end, more is
+/// brought together before anything is divided.
 ///
 /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large, too_close; Cancelled
 RefinedTriangles refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution);
