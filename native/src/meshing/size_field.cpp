@@ -2,7 +2,6 @@
 #include "meshing/size_field.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>

@@ -2,7 +2,6 @@
 #include "simulation/corner_tetrahedra.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include "simulation/face_quality.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace realmodel::simulation {
