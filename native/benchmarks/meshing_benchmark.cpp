@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
     for (const double count : wanted) {
         const double edge = std::sqrt(area / count / (std::numbers::sqrt3 / 4));
         const auto start = std::chrono::steady_clock::now();
-        const PlanarMesh mesh = realmodel::meshing::mesh_region(rings, edge);
+        const PlanarMesh mesh = realmodel::meshing::mesh_region(rings, {.edge_length = edge});
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         const Quality quality = quality_of(mesh);

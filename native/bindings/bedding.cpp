@@ -48,12 +48,10 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     for (std::size_t n = 0; n < count; ++n) {
         polygons[n] = {faces.data()[n], reversed.data()[n], history.data()[n], layer.data()[n]};
     }
-    bedding::Bedding made;
-    {
-        const py::gil_scoped_release unlocked;
-        made = bedding::bedding_of(arrays.complex, histories, polygons, view(histories_of_corners),
+    auto made = unlocked([&] {
+        return bedding::bedding_of(arrays.complex, histories, polygons, view(histories_of_corners),
                                    run(execution));
-    }
+    });
     return {to_array(std::move(made.height)), to_array(std::move(made.thickness)),
             to_array(std::move(made.depth))};
 }

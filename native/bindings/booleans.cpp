@@ -92,9 +92,6 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     require_columns(first_triangles, 3, "triangles of the first surface");
     require_columns(second_vertices, 3, "vertices of the second surface");
     require_columns(second_triangles, 3, "triangles of the second surface");
-    const auto view = [](const auto& array) {
-        return std::span(array.data(), static_cast<std::size_t>(array.size()));
-    };
     const TriangleView first{view(first_vertices), view(first_triangles)};
     const TriangleView second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;

@@ -54,12 +54,9 @@ py::dict to_dict(cutting::Cut&& cut) {
 py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
                       const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    cutting::Cut cut;
-    {
-        const py::gil_scoped_release release;
-        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, run(execution));
-    }
-    return to_dict(std::move(cut));
+    return to_dict(unlocked([&] {
+        return cutting::cut_by_plane(arrays.complex, {point, normal}, run(execution));
+    }));
 }
 
 py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
@@ -67,46 +64,33 @@ py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
     require_columns(vertices, 3, "vertices of the surface");
     require_columns(triangles, 3, "triangles of the surface");
     const ModelArrays arrays(model);
-    cutting::Cut cut;
-    {
-        const py::gil_scoped_release release;
-        cut = cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)},
-                                      run(execution));
-    }
-    return to_dict(std::move(cut));
+    return to_dict(unlocked([&] {
+        return cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)},
+                                       run(execution));
+    }));
 }
 
 py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t block,
                       WatchedExecution* execution) {
     const ModelArrays arrays(model), others(other);
-    cutting::Cut cut;
-    {
-        const py::gil_scoped_release release;
-        cut = cutting::cut_by_block(arrays.complex, others.complex, block, run(execution));
-    }
-    return to_dict(std::move(cut));
+    return to_dict(unlocked([&] {
+        return cutting::cut_by_block(arrays.complex, others.complex, block, run(execution));
+    }));
 }
 
 py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& point,
                           const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    cutting::Section section;
-    {
-        const py::gil_scoped_release release;
-        section = cutting::section_by_plane(arrays.complex, {point, normal}, run(execution));
-    }
-    return to_dict(std::move(section));
+    return to_dict(unlocked([&] {
+        return cutting::section_by_plane(arrays.complex, {point, normal}, run(execution));
+    }));
 }
 
 py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
                      const std::array<double, 2>& end, WatchedExecution* execution) {
     const ModelArrays arrays(model);
-    cutting::Section section;
-    {
-        const py::gil_scoped_release release;
-        section = cutting::fence_panel(arrays.complex, start, end, run(execution));
-    }
-    return to_dict(std::move(section));
+    return to_dict(
+        unlocked([&] { return cutting::fence_panel(arrays.complex, start, end, run(execution)); }));
 }
 
 std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
@@ -117,11 +101,8 @@ std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
     const auto offsets = view(face_offsets);
     const std::span<const std::int32_t> corners(face_vertices.data(),
                                                 static_cast<std::size_t>(face_vertices.size()));
-    cutting::FaceTriangles found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = cutting::triangulate_faces(positions, offsets, corners, run(execution));
-    }
+    auto found = unlocked(
+        [&] { return cutting::triangulate_faces(positions, offsets, corners, run(execution)); });
     return {to_array(std::move(found.triangles)), to_array(std::move(found.offsets))};
 }
 

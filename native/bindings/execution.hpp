@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include "realmodel/base/execution.hpp"
 #include "realmodel/base/memory.hpp"
 
@@ -25,5 +27,12 @@ struct MemoryGivenBack {
     MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
     ~MemoryGivenBack() { give_back_memory(); }
 };
+
+/// What a call gives, which runs without the lock of the interpreter.
+template <class Call>
+auto unlocked(const Call& call) {
+    const pybind11::gil_scoped_release release;
+    return call();
+}
 
 }  // namespace realmodel::bindings

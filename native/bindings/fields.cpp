@@ -110,11 +110,8 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     std::optional<fields::FieldDraw> draw;
     if (drawn) draw = draw_of(*drawn, data.slits.count);
     const fields::FieldOptions options{tolerance, most_centers, draw ? &*draw : nullptr};
-    fields::Field made;
-    {
-        const py::gil_scoped_release unlocked;
-        made = fields::solve_field(lattice_of(lattice), data, options, run(execution));
-    }
+    auto made = unlocked(
+        [&] { return fields::solve_field(lattice_of(lattice), data, options, run(execution)); });
     py::dict out;
     out["values"] = to_array(std::move(made.values));
     out["levels"] = to_array(std::move(made.levels));
@@ -130,11 +127,8 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
 std::pair<Array<std::int64_t>, std::vector<std::string>> critical(const LatticeTuple& lattice,
                                                                   const Array<double>& values,
                                                                   WatchedExecution* execution) {
-    std::vector<fields::CriticalPoint> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::critical_points(lattice_of(lattice), view(values), run(execution));
-    }
+    auto found = unlocked(
+        [&] { return fields::critical_points(lattice_of(lattice), view(values), run(execution)); });
     std::vector<std::int64_t> nodes;
     std::vector<std::string> kinds;
     for (const fields::CriticalPoint& point : found) {

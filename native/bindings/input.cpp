@@ -36,23 +36,18 @@ std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
     input::TableFormat format{marks.first, marks.second, columns, {}, values_of(missing)};
     for (const auto& [column, values] : filters)
         format.filters.push_back({column, values_of(values)});
-    input::NumberTable table;
-    {
-        const py::gil_scoped_release unlocked;  // bytes do not change
-        table = input::read_numbers(whole, format, run(execution).threads);
-    }
+    auto table = unlocked(  // bytes do not change
+        [&] { return input::read_numbers(whole, format, run(execution).threads); });
     return {to_array(std::move(table.values), columns.size()), table.lines, table.filtered,
             table.missing};
 }
 
 py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {
     const std::string_view given = encoded;
-    std::vector<std::uint8_t> decoded;
-    {
-        const py::gil_scoped_release unlocked;
-        decoded = input::decode_lzw(
+    auto decoded = unlocked([&] {
+        return input::decode_lzw(
             {reinterpret_cast<const std::uint8_t*>(given.data()), given.size()}, most);
-    }
+    });
     return {reinterpret_cast<const char*>(decoded.data()), decoded.size()};
 }
 

@@ -101,12 +101,8 @@ KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
                                                 dips_of(dips), sheets_of(sheets)};
-    interpolation::Kriged kriged;
-    {
-        const py::gil_scoped_release unlocked;
-        kriged = interpolation::krige(from, to, model, options, run(execution));
-    }
-    return kriged_tuple(std::move(kriged));
+    return kriged_tuple(
+        unlocked([&] { return interpolation::krige(from, to, model, options, run(execution)); }));
 }
 
 KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
@@ -117,37 +113,27 @@ KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogr
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
                                                 dips_of(dips), sheets_of(sheets)};
-    interpolation::Kriged kriged;
-    {
-        const py::gil_scoped_release unlocked;
-        kriged = interpolation::krige_left_out(from, model, options, run(execution));
-    }
-    return kriged_tuple(std::move(kriged));
+    return kriged_tuple(unlocked(
+        [&] { return interpolation::krige_left_out(from, model, options, run(execution)); }));
 }
 
 Array<double> idw(const Array<double>& points, const Array<double>& nodes, double power,
                   const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = interpolation::inverse_distance(from, to, {power, neighborhood_of(neighborhood)},
-                                            run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(unlocked([&] {
+        return interpolation::inverse_distance(from, to, {power, neighborhood_of(neighborhood)},
+                                               run(execution));
+    }));
 }
 
 Array<double> idw_left_out(const Array<double>& points, double power,
                            const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = interpolation::inverse_distance_left_out(from, {power, neighborhood_of(neighborhood)},
-                                                     run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(unlocked([&] {
+        return interpolation::inverse_distance_left_out(
+            from, {power, neighborhood_of(neighborhood)}, run(execution));
+    }));
 }
 
 Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
@@ -157,23 +143,19 @@ Array<double> spline(const Array<double>& points, const Array<double>& nodes, do
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::ThinPlateOptions options{smoothing, neighborhood_of(neighborhood), spacing,
                                                   dips_of(dips)};
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = interpolation::thin_plate(from, to, options, run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(
+        unlocked([&] { return interpolation::thin_plate(from, to, options, run(execution)); }));
 }
 
 double buffer_of_clusters(const Array<double>& points, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const py::gil_scoped_release unlocked;
+    const py::gil_scoped_release release;
     return interpolation::buffer_of_clusters(from, run(execution));
 }
 
 double mean_spacing(const Array<double>& points, bool are_apart) {
     const auto from = rows<3>(points, "points");
-    const py::gil_scoped_release unlocked;
+    const py::gil_scoped_release release;
     return interpolation::mean_spacing(from, are_apart);
 }
 
@@ -181,28 +163,17 @@ Array<double> nearest_distance(const Array<double>& points, const Array<double>&
                                WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    std::vector<double> distances;
-    {
-        const py::gil_scoped_release unlocked;
-        distances = interpolation::nearest_distances(from, to, run(execution));
-    }
-    return to_array(std::move(distances));
+    return to_array(
+        unlocked([&] { return interpolation::nearest_distances(from, to, run(execution)); }));
 }
 
 Array<double> line_sums(const Array<double>& nodes, const Array<double>& directions,
                         const Array<double>& starts, const Array<double>& values, double step,
                         WatchedExecution* execution) {
     const auto to = rows<2>(nodes, "nodes");
-    const interpolation::Lines lines{rows<2>(directions, "directions"),
-                                     {starts.data(), static_cast<std::size_t>(starts.size())},
-                                     {values.data(), static_cast<std::size_t>(values.size())},
+    const interpolation::Lines lines{rows<2>(directions, "directions"), view(starts), view(values),
                                      step};
-    std::vector<double> sums;
-    {
-        const py::gil_scoped_release unlocked;
-        sums = interpolation::line_sums(to, lines, run(execution));
-    }
-    return to_array(std::move(sums));
+    return to_array(unlocked([&] { return interpolation::line_sums(to, lines, run(execution)); }));
 }
 
 /// As variogram_of takes it.
@@ -242,11 +213,8 @@ py::dict fit_variogram(const Array<double>& points,
     const interpolation::FitOptions options{drift_of(drift), neighbours, !anisotropy, are_apart,
                                             dips_of(dips),   has_bounds, error};
     const interpolation::Anisotropy along = anisotropy_of(anisotropy);
-    interpolation::FittedVariogram fitted;
-    {
-        const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, along, options, run(execution));
-    }
+    auto fitted = unlocked(
+        [&] { return interpolation::fit_variogram(from, along, options, run(execution)); });
     py::dict out = variogram_dict(fitted.variogram);
     add_experimental(out, std::move(fitted.experimental));
     return out;
@@ -266,11 +234,8 @@ py::list fit_alike(const std::vector<SurfaceTuple>& surfaces,
     options.finds_anisotropy = !anisotropy;
     options.error = error;
     const interpolation::Anisotropy along = anisotropy_of(anisotropy);
-    std::vector<interpolation::FittedVariogram> fitted;
-    {
-        const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_alike(data, along, options, run(execution));
-    }
+    auto fitted =
+        unlocked([&] { return interpolation::fit_alike(data, along, options, run(execution)); });
     py::list out;
     for (interpolation::FittedVariogram& each : fitted) {
         py::dict own = variogram_dict(each.variogram);
@@ -299,12 +264,10 @@ std::optional<py::dict> fit_sheets(const Array<double>& points, const SheetNumbe
     options.error = error;
     std::optional<interpolation::Variogram> given;
     if (variogram) given = variogram_of(*variogram);
-    std::optional<interpolation::FittedSheets> fitted;
-    {
-        const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_sheets(from, numbers, anisotropy_of(anisotropy), options, given,
-                                           run(execution));
-    }
+    auto fitted = unlocked([&] {
+        return interpolation::fit_sheets(from, numbers, anisotropy_of(anisotropy), options, given,
+                                         run(execution));
+    });
     if (!fitted) return std::nullopt;
     py::dict out = variogram_dict(fitted->variogram);
     add_experimental(out, std::move(fitted->experimental));

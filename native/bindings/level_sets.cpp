@@ -33,11 +33,7 @@ py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
                     const PointsTuple& points, const Array<double>& levels,
                     WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
-    std::vector<fields::LevelSet> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::level_sets(field, view(levels), run(execution));
-    }
+    auto found = unlocked([&] { return fields::level_sets(field, view(levels), run(execution)); });
     py::list sets;
     for (fields::LevelSet& each : found)
         sets.append(py::make_tuple(to_array(std::move(each.vertices)),
@@ -56,12 +52,8 @@ Array<double> field_at(const LatticeTuple& lattice, const Array<double>& values,
                        WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     require_columns(positions, 3, "positions");
-    std::vector<double> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::field_at(field, view(positions), run(execution));
-    }
-    return to_array(std::move(found));
+    return to_array(
+        unlocked([&] { return fields::field_at(field, view(positions), run(execution)); }));
 }
 
 py::tuple tetrahedra_at(const LatticeTuple& lattice, const Array<double>& values,
@@ -69,23 +61,15 @@ py::tuple tetrahedra_at(const LatticeTuple& lattice, const Array<double>& values
                         WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
     require_columns(positions, 3, "positions");
-    fields::TetrahedraAt found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::tetrahedra_at(field, view(positions), run(execution));
-    }
+    auto found =
+        unlocked([&] { return fields::tetrahedra_at(field, view(positions), run(execution)); });
     return py::make_tuple(to_array(std::move(found.corners)), to_array(std::move(found.weights)));
 }
 
 Array<std::uint8_t> points_between(const LatticeTuple& lattice, const Array<double>& values,
                                    const PointsTuple& points, WatchedExecution* execution) {
     const fields::LatticeField field = field_of(lattice, values, points);
-    std::vector<std::uint8_t> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::points_between(field, run(execution));
-    }
-    return to_array(std::move(found));
+    return to_array(unlocked([&] { return fields::points_between(field, run(execution)); }));
 }
 
 py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& corners,
@@ -93,11 +77,8 @@ py::tuple values_through(const Array<double>& given, const Array<std::int64_t>& 
                          WatchedExecution* execution) {
     const fields::LevelsAtContacts at{rows<4>(corners, "corners"), rows<4>(weights, "weights"),
                                       view(levels)};
-    fields::ValuesThrough found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::values_through(view(given), at, rounds, run(execution));
-    }
+    auto found =
+        unlocked([&] { return fields::values_through(view(given), at, rounds, run(execution)); });
     return py::make_tuple(to_array(std::move(found.values)), to_array(std::move(found.missed)));
 }
 
@@ -113,11 +94,8 @@ py::tuple without_critical_points(
     const fields::HeldData held{
         view(fixed), rows<3>(dips, "dips"), rows<3>(normals, "normals"), rows<3>(bounds, "bounds"),
         view(signs), view(levels)};
-    fields::RisingField found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = fields::without_critical_points(field, held, run(execution));
-    }
+    auto found =
+        unlocked([&] { return fields::without_critical_points(field, held, run(execution)); });
     return py::make_tuple(to_array(std::move(found.values)),
                           to_array(std::move(found.point_values)),
                           to_array(std::move(found.critical)));

@@ -9,12 +9,12 @@
 #include <tuple>
 #include <vector>
 
-#include "arrays.hpp"
 #include "execution.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/ear_clipping.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 #include "realmodel/meshing/triangulation.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -23,13 +23,8 @@ namespace realmodel::bindings {
 namespace {
 
 std::vector<meshing::PlanPoint> to_places(const Array<double>& array, const char* name) {
-    require_columns(array, 2, name);
-    std::vector<meshing::PlanPoint> places;
-    places.reserve(static_cast<std::size_t>(array.shape(0)));
-    for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-        places.push_back({array.at(i, 0), array.at(i, 1)});
-    }
-    return places;
+    const auto places = rows<2>(array, name);
+    return {places.begin(), places.end()};
 }
 
 std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays,
@@ -91,12 +86,8 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict
                          WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
-    meshing::PlanarMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = meshing::mesh_region(region, request, run(execution).progress);
-    }
-    return to_tuple(std::move(mesh));
+    return to_tuple(
+        unlocked([&] { return meshing::mesh_region(region, request, run(execution).progress); }));
 }
 
 std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>& rings,
@@ -104,7 +95,7 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
                                                 WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request = to_request(asked);
-    const py::gil_scoped_release unlocked;
+    const py::gil_scoped_release release;
     const meshing::MeshEstimate estimate =
         meshing::estimate_region_mesh(region, request, run(execution).progress);
     return {estimate.triangles, estimate.bytes};
@@ -112,23 +103,14 @@ std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>
 
 PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
     const std::vector<meshing::Ring> region = to_rings(rings);
-    meshing::PlanarMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = meshing::triangulate_rings(region);
-    }
-    return to_tuple(std::move(mesh));
+    return to_tuple(unlocked([&] { return meshing::triangulate_rings(region); }));
 }
 
 Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
                                         WatchedExecution* execution) {
     const std::vector<meshing::Ring> polygon = to_rings(rings);
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    {
-        const py::gil_scoped_release unlocked;
-        triangles = meshing::triangulate_polygon(polygon, run(execution).progress);
-    }
-    return to_array(std::move(triangles));
+    return to_array(
+        unlocked([&] { return meshing::triangulate_polygon(polygon, run(execution).progress); }));
 }
 
 }  // namespace

@@ -31,11 +31,8 @@ std::vector<Array<double>> check_region(const std::vector<Array<double>>& rings,
         const auto corners = rows<2>(rings[r], "rings");
         given.push_back({{corners.begin(), corners.end()}, polygons[r], holes[r]});
     }
-    std::vector<meshing::Ring> checked;
-    {
-        const py::gil_scoped_release unlocked;
-        checked = meshing::checked_region(given, run(execution).progress);
-    }
+    auto checked =
+        unlocked([&] { return meshing::checked_region(given, run(execution).progress); });
     std::vector<Array<double>> arrays;
     for (meshing::Ring& ring : checked)
         arrays.push_back(to_array(std::move(ring)));

@@ -27,12 +27,8 @@ using Position = std::array<double, 3>;
 std::tuple<Array<std::int32_t>, Array<std::int32_t>> polygon_edges(const Indices& offsets,
                                                                    const Indices& corners,
                                                                    std::size_t vertices) {
-    shells::PolygonEdges found;
     const auto begins = view(offsets), numbers = view(corners);
-    {
-        const py::gil_scoped_release unlocked;
-        found = shells::polygon_edges(begins, numbers, vertices);
-    }
+    auto found = unlocked([&] { return shells::polygon_edges(begins, numbers, vertices); });
     return {to_array(std::move(found.edges)), to_array(std::move(found.of_corner))};
 }
 
@@ -57,13 +53,10 @@ py::list complex_shells(const py::dict& model, std::size_t blocks, const Positio
     ComplexArrays arrays(model);
     ComplexView& complex = arrays.complex;
     complex.blocks = blocks;
-    std::vector<shells::Shell> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = shrink ? shells::cell_shells(complex, *shrink, origin, run(execution))
-                       : shells::block_shells(complex, origin, run(execution));
-    }
-    return shell_arrays(std::move(found));
+    return shell_arrays(unlocked([&] {
+        return shrink ? shells::cell_shells(complex, *shrink, origin, run(execution))
+                      : shells::block_shells(complex, origin, run(execution));
+    }));
 }
 
 }  // namespace

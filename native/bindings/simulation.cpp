@@ -54,7 +54,7 @@ std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices
     ComplexArrays arrays(model);
     arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
     const auto lengths = lengths_of<simulation::LineLength>(sizes);
-    const py::gil_scoped_release unlocked;
+    const py::gil_scoped_release release;
     return std::make_unique<PlanLines>(simulation::plan_lines(
         arrays.complex, view(block_rock), edge_length, lengths, run(execution)));
 }
@@ -112,15 +112,13 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     if (layers.size() != arrays.complex.blocks) throw py::value_error("layers: one for each block");
     const auto plan_vertices = rows<2, double>(vertices, "vertices");
     const auto plan_triangles = rows<3, std::int32_t>(triangles, "triangles");
-    LayeredMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = simulation::layered_mesh(arrays.complex, view(block_rock), lines,
+    auto mesh = unlocked([&] {
+        return simulation::layered_mesh(arrays.complex, view(block_rock), lines,
                                         {{plan_vertices.begin(), plan_vertices.end()},
                                          {plan_triangles.begin(), plan_triangles.end()}},
                                         {minimum_thickness, layers, layer_thickness, divided},
                                         run(execution));
-    }
+    });
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
     made["tetrahedron"] = elements_dict(mesh.tetrahedra);
@@ -143,12 +141,10 @@ py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
                      const std::vector<Size>& sizes, WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto lengths = lengths_of<meshing::LocalLength>(sizes);
-    simulation::FilledMesh mesh;
-    {
-        const py::gil_scoped_release unlocked;
-        mesh = simulation::filled_mesh(arrays.complex, view(cell_region), view(kept), edge_length,
+    auto mesh = unlocked([&] {
+        return simulation::filled_mesh(arrays.complex, view(cell_region), view(kept), edge_length,
                                        tolerance, lengths, run(execution));
-    }
+    });
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
     made["tetrahedra"] = to_array(std::move(mesh.tetrahedra));
@@ -170,12 +166,10 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
                      double tolerance, WatchedExecution* execution) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = blocks;
-    simulation::CleanedCells cells;
-    {
-        const py::gil_scoped_release unlocked;
-        cells =
-            simulation::clean_cells(arrays.complex, view(surface_kind), tolerance, run(execution));
-    }
+    auto cells = unlocked([&] {
+        return simulation::clean_cells(arrays.complex, view(surface_kind), tolerance,
+                                       run(execution));
+    });
     py::dict made = complex_arrays(cells.complex);
     made["cell_origin"] = to_array(std::move(cells.cell_origin));
     made["volumes_before"] = to_array(std::move(cells.volumes_before));
@@ -190,35 +184,26 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
 std::tuple<Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>>
 describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
                const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
-    simulation::CellDescriptions found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = simulation::describe_cells({view(face_offsets), view(face_vertices)}, view(begin),
-                                           view(sides));
-    }
+    auto found = unlocked([&] {
+        return simulation::describe_cells({view(face_offsets), view(face_vertices)}, view(begin),
+                                          view(sides));
+    });
     return {to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
             to_array(std::move(found.counts)), to_array(std::move(found.lengths))};
 }
 
 Array<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {
     const auto both = rows<2>(face_cells, "face_cells");
-    realmodel::Array<std::int64_t> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = simulation::inner_faces(both, cells);
-    }
-    return to_array(std::move(found));
+    return to_array(unlocked([&] { return simulation::inner_faces(both, cells); }));
 }
 
 py::dict ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
                        const Indices& face_cells, const Array<std::int64_t>& order) {
     const auto both = rows<2>(face_cells, "face_cells");
-    simulation::OrderedFaces found;
-    {
-        const py::gil_scoped_release unlocked;
-        found =
-            simulation::ordered_faces({view(face_offsets), view(face_vertices)}, both, view(order));
-    }
+    auto found = unlocked([&] {
+        return simulation::ordered_faces({view(face_offsets), view(face_vertices)}, both,
+                                         view(order));
+    });
     py::dict made;
     made["offsets"] = to_array(std::move(found.offsets));
     made["vertices"] = to_array(std::move(found.vertices));

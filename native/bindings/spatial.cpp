@@ -20,11 +20,7 @@ py::tuple nearest_points(const Array<double>& points, const Array<double>& posit
     const auto from = rows<2>(points, "points");
     const auto to = rows<2>(positions, "positions");
     if (count == 0) throw py::value_error("count: at least 1");
-    spatial::Nearest found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = spatial::nearest_points(from, to, count, run(execution));
-    }
+    auto found = unlocked([&] { return spatial::nearest_points(from, to, count, run(execution)); });
     return py::make_tuple(to_array(std::move(found.number), count),
                           to_array(std::move(found.distance), count));
 }
@@ -41,11 +37,8 @@ py::tuple nearest_triangles(const Array<double>& triangles, const Array<double>&
                             double reach, WatchedExecution* execution) {
     const auto to = rows<3>(positions, "positions");
     const auto corners = space_triangles(triangles);
-    spatial::Nearest found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = spatial::nearest_triangles(corners, to, reach, run(execution));
-    }
+    auto found =
+        unlocked([&] { return spatial::nearest_triangles(corners, to, reach, run(execution)); });
     return py::make_tuple(to_array(std::move(found.number)), to_array(std::move(found.distance)));
 }
 
@@ -55,12 +48,8 @@ Array<double> heights_at_distance(const Array<double>& triangles, const Array<do
     const auto corners = space_triangles(triangles);
     const auto to = rows<2>(positions, "positions");
     const auto heights = view(own), away = view(distance);
-    std::vector<double> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = spatial::heights_at_distance(corners, to, heights, away, run(execution));
-    }
-    return to_array(std::move(found));
+    return to_array(unlocked(
+        [&] { return spatial::heights_at_distance(corners, to, heights, away, run(execution)); }));
 }
 
 /// The boxes around polygons (N, K, 2 or 3).
@@ -85,10 +74,7 @@ std::vector<spatial::CornersOfBox> boxes_around(const Array<double>& polygons) {
 
 Array<std::int64_t> meeting_boxes(const Array<double>& first, const Array<double>& second) {
     const auto one = boxes_around(first), other = boxes_around(second);
-    const py::gil_scoped_release unlocked;
-    auto pairs = spatial::meeting_boxes(one, other);
-    const py::gil_scoped_acquire locked;
-    return to_array(std::move(pairs));
+    return to_array(unlocked([&] { return spatial::meeting_boxes(one, other); }));
 }
 
 Array<std::int8_t> orient2d(const Array<double>& a, const Array<double>& b,

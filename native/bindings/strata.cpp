@@ -37,13 +37,10 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
                            WatchedExecution* execution) {
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
-    CellComplex complex;
-    {
-        const py::gil_scoped_release release;
+    return built_arrays(unlocked([&] {
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, run(execution), kind);
-    }
-    return built_arrays(std::move(complex));
+        return strata::build_rock_masses(input, run(execution), kind);
+    }));
 }
 
 py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<double, 4>& window,
@@ -93,12 +90,10 @@ std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
     WatchedExecution* execution) {
     const std::size_t columns = columns_of(vertices);
     require_columns(triangles, 3, "triangles");
-    std::optional<strata::JoinedMesh> mesh;
-    {
-        const py::gil_scoped_release release;
+    auto mesh = unlocked([&] {
         const MemoryGivenBack at_the_end;
-        mesh = joins.mesh({view(vertices), view(triangles)}, columns, run(execution));
-    }
+        return joins.mesh({view(vertices), view(triangles)}, columns, run(execution));
+    });
     if (!mesh) return std::nullopt;
     return std::tuple(to_array(std::move(mesh->vertices), columns),
                       to_array(std::move(mesh->triangles), 3));
@@ -106,11 +101,7 @@ std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
 
 Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices) {
     const std::size_t columns = columns_of(vertices);
-    std::vector<double> found;
-    {
-        const py::gil_scoped_release release;
-        found = joins.snapped(view(vertices), columns);
-    }
+    auto found = unlocked([&] { return joins.snapped(view(vertices), columns); });
     return to_array(std::move(found), columns);
 }
 
@@ -125,23 +116,16 @@ std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices&
                                                                   std::size_t cells,
                                                                   WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
-    strata::CellSides found;
-    {
-        const py::gil_scoped_release release;
-        found = strata::cell_sides(faces, cells, run(execution).progress);
-    }
+    auto found =
+        unlocked([&] { return strata::cell_sides(faces, cells, run(execution).progress); });
     return {to_array(std::move(found.offsets)), to_array(std::move(found.sides))};
 }
 
 Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
                                     WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
-    std::vector<std::int32_t> component;
-    {
-        const py::gil_scoped_release release;
-        component = strata::cell_components(faces, view(cell_block), run(execution).progress);
-    }
-    return to_array(std::move(component));
+    return to_array(unlocked(
+        [&] { return strata::cell_components(faces, view(cell_block), run(execution).progress); }));
 }
 
 }  // namespace

@@ -33,11 +33,7 @@ structures::Structure view_of(const StructureArrays& arrays) {
     const auto& [vertices, triangles, is_body, ends_at, dies_out] = arrays;
     require_columns(vertices, 3, "vertices of a structure");
     require_columns(triangles, 3, "triangles of a structure");
-    return {{{vertices.data(), static_cast<std::size_t>(vertices.size())},
-             {triangles.data(), static_cast<std::size_t>(triangles.size())}},
-            is_body,
-            ends_at,
-            dies_out};
+    return {{view(vertices), view(triangles)}, is_body, ends_at, dies_out};
 }
 
 std::vector<structures::Structure> views_of(const std::vector<StructureArrays>& arrays) {
@@ -59,11 +55,7 @@ std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
     const std::array<std::array<double, 3>, 2>& box, const std::vector<StructureArrays>& structures,
     WatchedExecution* execution) {
     const auto views = views_of(structures);
-    std::vector<structures::Part> parts;
-    {
-        const py::gil_scoped_release release;
-        parts = structures::parts_of(box, views, run(execution));
-    }
+    auto parts = unlocked([&] { return structures::parts_of(box, views, run(execution)); });
     std::vector<structures::Sides> sides;
     std::vector<std::array<double, 3>> low, high;
     for (const structures::Part& part : parts) {
@@ -201,12 +193,10 @@ py::dict build_parts(const std::vector<PartArrays>& parts,
     input.blocks = static_cast<std::size_t>(acts.shape(1));
     input.cells = kind_of(cells);
     if (piece) input.piece = piece_of(*piece);
-    structures::Joined joined;
-    {
-        const py::gil_scoped_release release;
+    auto joined = unlocked([&] {
         const MemoryGivenBack at_the_end;
-        joined = structures::build_parts(input, run(execution));
-    }
+        return structures::build_parts(input, run(execution));
+    });
     py::dict result = built_arrays(std::move(joined.complex));
     result["cell_part"] = to_array(std::move(joined.cell_part));
     return result;
@@ -215,11 +205,9 @@ py::dict build_parts(const std::vector<PartArrays>& parts,
 py::dict merge_cells(const py::dict& complex, const Indices& number, WatchedExecution* execution) {
     ComplexArrays arrays(complex);
     arrays.complex.blocks = complex["blocks"].cast<std::size_t>();
-    CellComplex merged;
-    {
-        const py::gil_scoped_release release;
-        merged = structures::merge_cells(arrays.complex, view(number), run(execution).progress);
-    }
+    auto merged = unlocked([&] {
+        return structures::merge_cells(arrays.complex, view(number), run(execution).progress);
+    });
     return complex_arrays(merged);
 }
 
@@ -228,13 +216,8 @@ Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structure
     require_columns(points, 3, "points");
     const auto views = views_of(structures);
     if (views.empty()) throw py::value_error("structures: none is given");
-    std::vector<std::int8_t> sides;
-    {
-        const py::gil_scoped_release release;
-        sides = structures::sides_of_points(
-            views, {points.data(), static_cast<std::size_t>(points.size())}, run(execution));
-    }
-    return to_array(std::move(sides));
+    return to_array(
+        unlocked([&] { return structures::sides_of_points(views, view(points), run(execution)); }));
 }
 
 Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
@@ -251,15 +234,10 @@ Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
     }
     const auto views = views_of(faults);
     if (views.empty()) throw py::value_error("faults: none is given");
-    std::vector<std::uint8_t> found;
-    {
-        const py::gil_scoped_release release;
-        found = structures::triangles_beyond(
-            views, {low.data(), static_cast<std::size_t>(low.size())},
-            {high.data(), static_cast<std::size_t>(high.size())},
-            {triangles.data(), static_cast<std::size_t>(triangles.size())}, run(execution));
-    }
-    return to_array(std::move(found));
+    return to_array(unlocked([&] {
+        return structures::triangles_beyond(views, view(low), view(high), view(triangles),
+                                            run(execution));
+    }));
 }
 
 Array<double> structure_continuation(const std::vector<StructureArrays>& faults,

@@ -26,33 +26,21 @@ namespace {
 
 Array<double> hull_corners(const Array<double>& nodes) {
     const auto given = rows<2>(nodes, "nodes");
-    std::vector<std::array<double, 2>> corners;
-    {
-        const py::gil_scoped_release unlocked;
-        corners = interpolation::ConvexHull({given.begin(), given.end()}).corners();
-    }
-    return to_array(std::move(corners));
+    return to_array(unlocked([&] {
+        return interpolation::ConvexHull({given.begin(), given.end()}).corners();
+    }));
 }
 
 Array<std::int32_t> hull_border(const Array<double>& nodes) {
     const auto given = rows<2>(nodes, "nodes");
-    std::vector<std::int32_t> border;
-    {
-        const py::gil_scoped_release unlocked;
-        border = interpolation::hull_border(given);
-    }
-    return to_array(std::move(border));
+    return to_array(unlocked([&] { return interpolation::hull_border(given); }));
 }
 
 Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes,
                          WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    std::vector<std::uint8_t> outside;
-    {
-        const py::gil_scoped_release unlocked;
-        outside = interpolation::outside_hull(from, to, run(execution));
-    }
+    auto outside = unlocked([&] { return interpolation::outside_hull(from, to, run(execution)); });
     return to_array(std::move(outside)).attr("view")("bool");
 }
 
@@ -61,12 +49,7 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
                                WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = method(from, to, run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(unlocked([&] { return method(from, to, run(execution)); }));
 }
 
 /// border, all, window, is_whole.
@@ -81,11 +64,7 @@ std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
     const auto to = rows<2>(nodes, "nodes");
     const auto& [border, all, window, is_whole] = around_part;
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
-    interpolation::PartValues found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = method(from, to, around, run(execution));
-    }
+    auto found = unlocked([&] { return method(from, to, around, run(execution)); });
     return {to_array(std::move(found.z)), to_array(std::move(found.certain)).attr("view")("bool")};
 }
 
@@ -94,12 +73,8 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
     const auto corners = rows<3>(vertices, "vertices");
     const auto faces = rows<3>(triangles, "triangles");
     const auto to = rows<2>(nodes, "nodes");
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = interpolation::heights_on_surface(corners, faces, to, run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(unlocked(
+        [&] { return interpolation::heights_on_surface(corners, faces, to, run(execution)); }));
 }
 
 std::pair<Array<std::int32_t>, Array<double>> surface_places(const Array<double>& vertices,
@@ -109,11 +84,8 @@ std::pair<Array<std::int32_t>, Array<double>> surface_places(const Array<double>
     const auto corners = rows<3>(vertices, "vertices");
     const auto faces = rows<3>(triangles, "triangles");
     const auto to = rows<2>(nodes, "nodes");
-    interpolation::PlacesOnSurface found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = interpolation::places_on_surface(corners, faces, to, run(execution));
-    }
+    auto found = unlocked(
+        [&] { return interpolation::places_on_surface(corners, faces, to, run(execution)); });
     return {to_array(std::move(found.triangle)), to_array(std::move(found.weights))};
 }
 
@@ -131,11 +103,8 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
-    const auto heights = [](const Array<double>& array) {
-        return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
-    };
     const auto& [equal, least, most] = bounds;
-    interpolation::DsiConstraints constraints{heights(equal), heights(least), heights(most)};
+    interpolation::DsiConstraints constraints{view(equal), view(least), view(most)};
     if (dips) {
         constraints.dips = {rows<2>(dips->first, "positions of dips"),
                             rows<2>(dips->second, "slopes"), 1, 0};
@@ -144,11 +113,8 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
         constraints.lower = rows<3>(point_bounds->first, "lower bounds");
         constraints.upper = rows<3>(point_bounds->second, "upper bounds");
     }
-    interpolation::DsiHeights found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = interpolation::dsi(from, to, faces, constraints, weight, run(execution));
-    }
+    auto found = unlocked(
+        [&] { return interpolation::dsi(from, to, faces, constraints, weight, run(execution)); });
     py::dict out;
     out["z"] = to_array(std::move(found.z));
     out["outside"] = found.outside;
@@ -180,11 +146,8 @@ py::dict ties(const Array<double>& nodes, const Array<std::int32_t>& triangles,
                                           view(heights), view(sides), view(weights)};
     const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper),
                                        view(numbers)};
-    interpolation::Ties found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = interpolation::tie(given, asked, tolerance, run(execution));
-    }
+    auto found =
+        unlocked([&] { return interpolation::tie(given, asked, tolerance, run(execution)); });
     py::dict out;
     out["radii"] = to_array(std::move(found.terms.radii));
     out["positions"] = to_array(std::move(found.terms.positions));
@@ -206,12 +169,9 @@ Array<double> tied_heights(const Array<double>& heights, const Array<double>& no
     };
     const interpolation::TieTerms given{
         copy(radii), {centers.begin(), centers.end()}, copy(of_centers), copy(coefficients)};
-    std::vector<double> z;
-    {
-        const py::gil_scoped_release unlocked;
-        z = interpolation::tied_heights(view(heights), to, view(sided), given, run(execution));
-    }
-    return to_array(std::move(z));
+    return to_array(unlocked([&] {
+        return interpolation::tied_heights(view(heights), to, view(sided), given, run(execution));
+    }));
 }
 
 Array<double> raised_heights(const Array<double>& nodes, const Array<std::int32_t>& triangles,
@@ -223,12 +183,10 @@ Array<double> raised_heights(const Array<double>& nodes, const Array<std::int32_
     const interpolation::RaisedSheet sheet{rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"),
                                            view(z), view(least)};
     const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), {}};
-    std::vector<double> out;
-    {
-        const py::gil_scoped_release unlocked;
-        out = interpolation::raised_heights(sheet, asked, view(margins), tolerance, run(execution));
-    }
-    return to_array(std::move(out));
+    const auto narrowed_by = view(margins);
+    return to_array(unlocked([&] {
+        return interpolation::raised_heights(sheet, asked, narrowed_by, tolerance, run(execution));
+    }));
 }
 
 Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::int32_t>& triangles,
@@ -236,12 +194,7 @@ Array<std::int32_t> nodes_around(const Array<double>& nodes, const Array<std::in
     const auto from = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
     const auto at = rows<2>(places, "places");
-    std::vector<std::int32_t> found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = interpolation::nodes_around(from, faces, at);
-    }
-    return to_array(std::move(found));
+    return to_array(unlocked([&] { return interpolation::nodes_around(from, faces, at); }));
 }
 
 std::pair<Array<std::int32_t>, Array<double>> crowded_data(
@@ -253,11 +206,7 @@ std::pair<Array<std::int32_t>, Array<double>> crowded_data(
         rows<2>(nodes, "nodes"), rows<3>(triangles, "triangles"), zeros, {}, {}};
     const std::vector<std::int32_t> one(static_cast<std::size_t>(places.shape(0)), 0);
     const interpolation::TieData asked{rows<2>(places, "places"), view(lower), view(upper), one};
-    interpolation::CrowdedData found;
-    {
-        const py::gil_scoped_release unlocked;
-        found = interpolation::crowded_data(sheet, asked, least);
-    }
+    auto found = unlocked([&] { return interpolation::crowded_data(sheet, asked, least); });
     return {to_array(std::move(found.numbers)), to_array(std::move(found.room))};
 }
 

@@ -64,12 +64,8 @@ struct ValidatedModel : ComplexArrays {
 
 py::list check_topology(const py::dict& model, WatchedExecution* execution) {
     const ValidatedModel arrays(model);
-    std::vector<validation::TestResult> results;
-    {
-        const py::gil_scoped_release release;
-        results = validation::check_topology(arrays.complex, run(execution));
-    }
-    return to_list(results);
+    return to_list(
+        unlocked([&] { return validation::check_topology(arrays.complex, run(execution)); }));
 }
 
 py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
@@ -86,25 +82,18 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     if (block.size() != surfaces || surfaces != static_cast<std::size_t>(arrays.complex.surfaces)) {
         throw py::value_error("block_of_surface: one for each surface of the rocks");
     }
-    std::vector<validation::TestResult> results;
-    {
-        const py::gil_scoped_release release;
-        results =
-            validation::check_samples(arrays.complex, {input, block}, places, seed, run(execution));
-    }
-    return to_list(results);
+    return to_list(unlocked([&] {
+        return validation::check_samples(arrays.complex, {input, block}, places, seed,
+                                         run(execution));
+    }));
 }
 
 Array<std::int32_t> cells_at(const py::dict& model, const Array<double>& positions,
                              WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto at = rows<3>(positions, "positions");
-    std::vector<std::int32_t> cells;
-    {
-        const py::gil_scoped_release release;
-        cells = validation::cells_at(arrays.complex, at, run(execution));
-    }
-    return to_array(std::move(cells));
+    return to_array(
+        unlocked([&] { return validation::cells_at(arrays.complex, at, run(execution)); }));
 }
 
 }  // namespace

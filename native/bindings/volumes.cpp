@@ -21,13 +21,10 @@ Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64
                            std::size_t cells, WatchedExecution* execution) {
     const auto positions = rows<3, double>(vertices, "vertices");
     const auto sides = rows<2, std::int32_t>(face_cells, "face_cells");
-    std::vector<double> volumes;
-    {
-        const py::gil_scoped_release release;
-        volumes = strata::cell_volumes(positions, view(face_offsets), view(face_vertices), sides,
-                                       cells, run(execution));
-    }
-    return to_array(std::move(volumes));
+    return to_array(unlocked([&] {
+        return strata::cell_volumes(positions, view(face_offsets), view(face_vertices), sides,
+                                    cells, run(execution));
+    }));
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ struct Surface {
 
 void print_volumes() {
     const realmodel::meshing::Ring outline{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
-    const PlanarMesh mesh = realmodel::meshing::mesh_region(std::span(&outline, 1), 10.0);
+    const PlanarMesh mesh =
+        realmodel::meshing::mesh_region(std::span(&outline, 1), {.edge_length = 10.0});
     std::vector<std::int32_t> triangles;
     for (const auto& corners : mesh.triangles) {
         triangles.insert(triangles.end(), corners.begin(), corners.end());

@@ -66,7 +66,7 @@ void print_stacks() {
 void print_mesh_and_heights() {
     const std::vector<meshing::Ring> rings{{{0, 0}, {100, 3}, {120, 70}, {55, 40}, {-7, 66}},
                                            {{30, 15}, {50, 17}, {44, 30}}};
-    const meshing::PlanarMesh mesh = meshing::mesh_region(rings, 2.5);
+    const meshing::PlanarMesh mesh = meshing::mesh_region(rings, {.edge_length = 2.5});
     print("region mesh", Digest().add(mesh.vertices).add(mesh.triangles).value());
 
     fuzz::RandomSource random(5);

@@ -146,7 +146,7 @@ void parallel_ranges(std::size_t count, std::size_t size, const Execution& execu
 /// Calls work(i) for every item from 0 to count - 1, many of them in a chunk: work is short.
 template <class Work>
 void parallel_each(std::size_t count, const Execution& execution, const Work& work) {
-    parallel_ranges(count, 1 << 12, execution, [&work](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, 1 << 10, execution, [&work](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             work(i);
     });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -15,11 +16,8 @@ namespace realmodel {
 /// @return how many there are in all
 inline std::size_t count_before(std::vector<std::size_t>& counts) {
     std::size_t total = 0;
-    for (std::size_t& count : counts) {
-        const std::size_t own = count;
-        count = total;
-        total += own;
-    }
+    for (std::size_t& count : counts)
+        total += std::exchange(count, total);
     return total;
 }
 
@@ -42,6 +40,22 @@ void number_in_order(std::size_t items, const Execution& execution, const IsOne&
             if (is_one(i)) take(i, number++);
         }
     });
+}
+
+/// What look(item, found) appends to `found` for items, on several threads, in their order.
+template <class Found, class Look>
+std::vector<Found> collect_in_order(std::size_t items, const Execution& execution,
+                                    const Look& look) {
+    constexpr std::size_t kChunk = 1 << 12;
+    std::vector<std::vector<Found>> of_chunks((items + kChunk - 1) / kChunk);
+    parallel_ranges(items, kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            look(i, of_chunks[begin / kChunk]);
+    });
+    std::vector<Found> all;
+    for (const auto& found : of_chunks)
+        all.insert(all.end(), found.begin(), found.end());
+    return all;
 }
 
 /// @throws InputError kind too_large, where there are more vertices than so many

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -28,8 +30,7 @@ constexpr std::uint32_t kNone = UINT32_MAX;
 constexpr double kNear = 32 * 0x1p-52;     // of the largest coordinate: what rounding may do
 constexpr double kBeside = 8 * kNear;      // of it: from an upright polygon to a position beside it
 constexpr double kInwards = 1.0 / 64;      // of the way from a corner to the middle of its polygon
-constexpr std::size_t kPositions = 512;    // plan positions that a thread takes at once
-constexpr std::size_t kPolygons = 16'384;  // polygons, likewise
+constexpr std::size_t kPolygons = 16'384;  // polygons that a thread takes at once
 constexpr std::size_t kCorners = 16'384;   // corners, likewise
 
 /// A corner of a polygon, by their numbers, and its vertex.
@@ -333,13 +334,10 @@ void Corners::replay(std::size_t history, std::span<const std::size_t> used,
         auto& at = places[plan_of_[sheets[k]]];
         const bool is_new = at.empty();
         at.resize(used.size());
-        parallel_ranges(
-            used.size(), kPositions, execution_, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t n = begin; n < end; ++n) {
-                    if (is_new) at[n] = plan.at(positions_[used[n]]);
-                    columns[n].lay(histories_[history], k, sheets_[sheets[k]]->at(at[n]));
-                }
-            });
+        parallel_each(used.size(), execution_, [&](std::size_t n) {
+            if (is_new) at[n] = plan.at(positions_[used[n]]);
+            columns[n].lay(histories_[history], k, sheets_[sheets[k]]->at(at[n]));
+        });
         if (last[plan_of_[sheets[k]]] == k) at = {};
         set_layer(k + 1);
     }

@@ -107,12 +107,22 @@ AxisRatios along_axis(const Vec3& axis, double ratio) {
     return {{axis, second, cross(axis, second)}, {ratio, 1, 1}};
 }
 
+/// Turned about one of its axes.
+AxisRatios turned_about(AxisRatios of, std::size_t axis, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    Vec3& second = of.axes[(axis + 1) % 3];
+    Vec3& third = of.axes[(axis + 2) % 3];
+    second =
+        unit(plus(times(elementary::cos(angle), second), times(elementary::sin(angle), third)));
+    third = cross(of.axes[axis], second);
+    return of;
+}
+
 /// With its second axis turned about the first, and another ratio along it.
 AxisRatios turned(const AxisRatios& of, double degrees, double ratio) {
-    const double angle = degrees * std::numbers::pi / 180;
-    const Vec3 second = unit(
-        plus(times(elementary::cos(angle), of.axes[1]), times(elementary::sin(angle), of.axes[2])));
-    return {{of.axes[0], second, cross(of.axes[0], second)}, {of.ratios[0], ratio, 1}};
+    AxisRatios out = turned_about(of, 0, degrees);
+    out.ratios = {of.ratios[0], ratio, 1};
+    return out;
 }
 
 std::vector<Vec3> main_directions() {
@@ -166,17 +176,6 @@ void search_second(const Search& search, Candidate& best) {
         factor = std::sqrt(factor);
     }
     Search::improve(best, found, kWorth);
-}
-
-/// Turned about one of its axes.
-AxisRatios turned_about(AxisRatios of, std::size_t axis, double degrees) {
-    const double angle = degrees * std::numbers::pi / 180;
-    Vec3& second = of.axes[(axis + 1) % 3];
-    Vec3& third = of.axes[(axis + 2) % 3];
-    second =
-        unit(plus(times(elementary::cos(angle), second), times(elementary::sin(angle), third)));
-    third = cross(of.axes[axis], second);
-    return of;
 }
 
 /// Those near one: turned about each axis, with other ratios along two of them, or with ranges

@@ -291,9 +291,7 @@ private:
         }
         std::vector<std::pair<std::size_t, std::size_t>> ranked;
         for (std::vector<std::size_t>& numbers : on) {
-            std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
-                return missed[a] != missed[b] ? missed[a] > missed[b] : a < b;
-            });
+            std::ranges::sort(numbers, {}, [&](std::size_t n) { return std::pair(-missed[n], n); });
             for (std::size_t rank = 0; rank < numbers.size(); ++rank)
                 ranked.emplace_back(rank, numbers[rank]);
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fields/functional.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace realmodel::fields {
@@ -28,12 +29,6 @@ double between(const SlopeAtom& a, const SlopeAtom& b, const Kernel& kernel) {
     if (!(r > 0)) return -straight;
     return -(straight + kernel.bend(r) * (dot(d, a.along) + along(a.lift, b.lift, a.along_lift)) *
                             (dot(d, b.along) + along(a.lift, b.lift, b.along_lift)));
-}
-
-Lift scaled(double factor, Lift lift) {
-    for (double& each : lift)
-        each *= factor;
-    return lift;
 }
 
 }  // namespace
@@ -64,15 +59,10 @@ Vec3 Functional::of_coordinates() const {
 
 Lift Functional::of_lift() const {
     Lift sum;
-    const auto add = [&](double weight, const Lift& lift) {
-        sum.resize(lift.size());
-        for (std::size_t k = 0; k < lift.size(); ++k)
-            sum[k] += weight * lift[k];
-    };
     for (const ValueAtom& atom : values)
-        add(atom.weight, atom.lift);
+        add_lift(sum, atom.weight, atom.lift);
     for (const SlopeAtom& atom : slopes)
-        add(1, atom.along_lift);
+        add_lift(sum, 1, atom.along_lift);
     return sum;
 }
 

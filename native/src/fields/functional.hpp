@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,7 @@ inline Vec3 mapped(const Map3& map, const Vec3& v) {
 using Lift = std::vector<double>;
 
 inline double product(const Lift& a, const Lift& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k)
-        sum += a[k] * b[k];
-    return sum;
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 /// Of a - b.
 inline double squared(const Lift& a, const Lift& b) {
@@ -34,6 +32,17 @@ inline double squared(const Lift& a, const Lift& b) {
     for (std::size_t k = 0; k < a.size(); ++k)
         sum += (a[k] - b[k]) * (a[k] - b[k]);
     return sum;
+}
+inline Lift scaled(double factor, Lift lift) {
+    for (double& each : lift)
+        each *= factor;
+    return lift;
+}
+/// Adds to a sum, which has no coordinates at first.
+inline void add_lift(Lift& sum, double weight, const Lift& lift) {
+    sum.resize(lift.size());
+    for (std::size_t k = 0; k < lift.size(); ++k)
+        sum[k] += weight * lift[k];
 }
 /// The product of a - b with a way.
 inline double along(const Lift& a, const Lift& b, const Lift& way) {

@@ -19,11 +19,6 @@ constexpr double kMostBend = 3;
 
 using Counts = std::array<int, 3>;
 
-std::size_t nodes_of(const Counts& counts) {
-    return static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
-           static_cast<std::size_t>(counts[2]);
-}
-
 /// Cubic interpolation at half of a step beyond sample i of n, at `step` from one to the next.
 double halfway(const double* samples, std::ptrdiff_t step, int i, int n) {
     if (i == 0) {
@@ -45,11 +40,12 @@ std::vector<double> refined(const std::vector<double>& from, Counts& counts, std
     assert(n >= 4 && (count == 2 * n - 1 || count == 2 * n - 2));
     const std::size_t run = step * static_cast<std::size_t>(n);
     const std::size_t to_run = step * static_cast<std::size_t>(count);
+    const std::size_t lines = from.size() / static_cast<std::size_t>(n);
     counts[axis] = count;
-    std::vector<double> to(nodes_of(counts));
+    std::vector<double> to(lines * static_cast<std::size_t>(count));
     // Lines along the axis: `step` of them begin in each run.
     parallel_ranges(
-        from.size() / static_cast<std::size_t>(n), 1024, execution,
+        lines, 1024, execution,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t line = begin; line < end; ++line) {
                 const double* const samples = &from[line / step * run + line % step];

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "realmodel/base/elementary.hpp"
 
@@ -47,9 +48,8 @@ RandomFunction::RandomFunction(const Smoothness& smoothness, double scale, doubl
     const std::size_t middle = steps_ / 2;
     for (std::size_t line = 0; line < lines_; ++line) {
         double* const direction = &directions_[line * dimensions_];
-        double squared = 0;
-        for (std::size_t k = 0; k < dimensions_; ++k)
-            squared += direction[k] * direction[k];
+        const double squared =
+            std::inner_product(direction, direction + dimensions_, direction, 0.0);
         for (std::size_t k = 0; k < dimensions_; ++k)
             direction[k] /= std::sqrt(squared);
         const double* const by = &drawn.steps[line * steps_];
@@ -86,10 +86,8 @@ void RandomFunction::wave(double size, const double* normal, std::span<double> r
 /// Where a place is on a line.
 double RandomFunction::along(std::size_t line, const Vec3& at, const Lift& lift) const {
     const double* const direction = &directions_[line * dimensions_];
-    double t = at[0] * direction[0] + at[1] * direction[1] + at[2] * direction[2];
-    for (std::size_t k = 0; k < lift.size(); ++k)
-        t += lift[k] * direction[3 + k];
-    return t;
+    const double t = at[0] * direction[0] + at[1] * direction[1] + at[2] * direction[2];
+    return std::inner_product(lift.begin(), lift.end(), direction + 3, t);
 }
 
 double RandomFunction::integral(std::size_t line, double t) const {

@@ -154,16 +154,12 @@ std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
     return place->second;
 }
 
-exact::SpacePointId RefinedLattice::exact(std::int64_t corner) {
-    return exact_.add(position(corner));
-}
-
 /// The corners of the vertex, edge, face or tetrahedron in which p lies; nothing if it is outside.
 std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedron& tetrahedron,
                                                                  exact::SpacePointId p) {
     std::array<exact::SpacePointId, 4> own;
     for (std::size_t i = 0; i < 4; ++i)
-        own[i] = exact(tetrahedron[i]);
+        own[i] = exact_.add(position(tetrahedron[i]));
     // the side of the volume of the tetrahedron itself, however orient3d counts
     const int inside = orient3d(exact_, own[0], own[1], own[2], own[3]);
     if (inside == 0) return std::nullopt;  // nodes at one place: coordinates are too coarse

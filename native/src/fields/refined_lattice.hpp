@@ -116,7 +116,6 @@ private:
     std::vector<Tetrahedron>& make_divided(const CellIndex& cell);
     std::optional<std::vector<std::int64_t>> carrier(const Tetrahedron& tetrahedron,
                                                      exact::SpacePointId p);
-    exact::SpacePointId exact(std::int64_t corner);
     Located in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra, const Vec3& p) const;
 
     std::array<double, 3> origin_, spacing_;

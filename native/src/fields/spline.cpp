@@ -188,11 +188,6 @@ void Spline::collect_centers() {
     lift_tilt_.clear();
     std::map<Place, double> values;
     std::map<Place, Place> slopes;
-    const auto add = [](Lift& sum, double weight, const Lift& lift) {
-        sum.resize(lift.size());
-        for (std::size_t k = 0; k < lift.size(); ++k)
-            sum[k] += weight * lift[k];
-    };
     for (std::size_t i = 0; i < known_.size(); ++i) {
         for (const ValueAtom& atom : known_[i].values) {
             values[{atom.at, atom.lift}] += forces_[i] * atom.weight;
@@ -203,21 +198,14 @@ void Spline::collect_centers() {
         for (const SlopeAtom& atom : known_[i].slopes) {
             auto& [along, up] = slopes[{atom.at, atom.lift}];
             along = moved(along, forces_[i], atom.along);
-            add(up, forces_[i], atom.along_lift);
+            add_lift(up, forces_[i], atom.along_lift);
         }
-        add(lift_tilt_, kProducts * forces_[i], known_[i].of_lift());
+        add_lift(lift_tilt_, kProducts * forces_[i], known_[i].of_lift());
     }
     for (const auto& [place, weight] : values)
         value_centers_.push_back({place.first, weight, false, place.second});
     for (const auto& [place, along] : slopes)
         slope_centers_.push_back({place.first, along.first, place.second, along.second});
-}
-
-Lift Spline::scaled(const Lift& lift) const {
-    Lift out = lift;
-    for (double& each : out)
-        each *= smoothness_.lift;
-    return out;
 }
 
 Vec3 Spline::place(const Vec3& at, std::span<const double> lift) const {
@@ -226,7 +214,7 @@ Vec3 Spline::place(const Vec3& at, std::span<const double> lift) const {
 
 double Spline::value(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);
-    const Lift q = scaled(lift);
+    const Lift q = scaled(smoothness_.lift, lift);
     const Kernel kernel = smoothness_.kernel();
     double sum = dot(tilt_, p) + product(q, lift_tilt_);
     for (const ValueAtom& atom : value_centers_) {
@@ -294,7 +282,7 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
 
 std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);
-    const Lift q = scaled(lift);
+    const Lift q = scaled(smoothness_.lift, lift);
     const Kernel kernel = smoothness_.kernel();
     Vec3 sum = tilt_;
     Lift rise = q.empty() ? Lift{} : lift_tilt_;
@@ -331,7 +319,7 @@ Vec3 Spline::gradient(const Vec3& at, const Lift& lift) const {
 
 /// By how much what was measured differs from the function.
 double Spline::error_at(const Vec3& at, const Lift& lift) const {
-    const auto found = measured_.find({place(at, lift), scaled(lift)});
+    const auto found = measured_.find({place(at, lift), scaled(smoothness_.lift, lift)});
     return found == measured_.end() ? 0 : smoothness_.errors.value * found->second;
 }
 
@@ -343,7 +331,8 @@ double Spline::of(const Functional& functional) const {
     }
     for (const SlopeAtom& atom : functional.slopes) {
         const auto [rise, up] = mapped_gradient(atom.at, atom.lift);
-        sum += dot(rise, place(atom.along, atom.along_lift)) + product(up, scaled(atom.along_lift));
+        sum += dot(rise, place(atom.along, atom.along_lift)) +
+               product(up, scaled(smoothness_.lift, atom.along_lift));
     }
     return sum;
 }

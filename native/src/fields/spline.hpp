@@ -84,7 +84,6 @@ private:
     void collect_centers();
     /// The gradient in the mapped coordinates, with the derivatives by the further ones.
     std::pair<Vec3, Lift> mapped_gradient(const Vec3& at, const Lift& lift) const;
-    Lift scaled(const Lift& lift) const;
     Vec3 place(const Vec3& at, std::span<const double> lift) const;
     double error_at(const Vec3& at, const Lift& lift) const;
 

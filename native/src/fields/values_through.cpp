@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 #include "base/index.hpp"
 #include "base/keep_single.hpp"
@@ -19,10 +20,7 @@ constexpr int kSteps = 200;         ///< of each solution
 constexpr double kReached = 1e-12;  ///< of what contacts miss their levels by at first: nothing
 
 double sum_of_squares(std::span<const double> values) {
-    double sum = 0;
-    for (const double value : values)
-        sum += value * value;
-    return sum;
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
 /// The matrix A of the weights of contacts, by those values alone that are corners.

@@ -34,6 +34,14 @@ bool usable(double number) {
     return std::abs(number) < 1e150;
 }
 
+void require_usable(std::span<const double> numbers, const char* what, std::size_t i) {
+    if (std::ranges::all_of(numbers, usable)) return;
+    throw InputError(
+        "not_finite",
+        std::string(what) + " " + std::to_string(i) + " is not a finite number below 1e150", -1,
+        {static_cast<std::int64_t>(i)});
+}
+
 std::vector<double> DataPoints::for_given(std::span<const double> found) const {
     std::vector<double> out(number_of.size());
     for (std::size_t i = 0; i < out.size(); ++i)
@@ -45,20 +53,15 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points,
                           std::span<const std::int32_t> sheets) {
     if (points.empty()) throw InputError("no_points", "there are no points to interpolate from");
     require_countable(points.size(), "points");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (std::all_of(points[i].begin(), points[i].end(), usable)) continue;
-        throw InputError("not_finite",
-                         "point " + std::to_string(i) + " is not a finite number below 1e150", -1,
-                         {static_cast<std::int64_t>(i)});
-    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+        require_usable(points[i], "point", i);
     std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
     const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
     const auto key = [&](std::int32_t i) {
         return std::tuple(points[i][0], points[i][1], sheet(i), i);
     };
-    std::sort(order.begin(), order.end(),
-              [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+    std::ranges::sort(order, {}, key);
     std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its position
     std::int32_t first = order[0];
     for (const std::int32_t i : order) {
@@ -94,12 +97,8 @@ std::vector<std::int32_t> even_part(std::size_t count, std::size_t most) {
 }
 
 void require_finite_nodes(std::span<const Position> nodes) {
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (usable(nodes[i][0]) && usable(nodes[i][1])) continue;
-        throw InputError("not_finite",
-                         "node " + std::to_string(i) + " is not a finite number below 1e150", -1,
-                         {static_cast<std::int64_t>(i)});
-    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        require_usable(nodes[i], "node", i);
 }
 
 void require_countable(std::size_t count, const char* what) {

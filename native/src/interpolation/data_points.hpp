@@ -38,6 +38,8 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points,
 
 /// Whether a number can be squared.
 bool usable(double number);
+/// @throws InputError kind "not_finite" (items: `i`, the number of what has the numbers)
+void require_usable(std::span<const double> numbers, const char* what, std::size_t i);
 
 /// A fixed, even part of the numbers below `count`: at most `most` of them, ascending.
 std::vector<std::int32_t> even_part(std::size_t count, std::size_t most);

@@ -35,15 +35,7 @@ void make_orthogonal(const Eigen::MatrixXd& basis, Eigen::Index count, Eigen::Ve
 }  // namespace
 
 Eigen::Index drift_terms(Drift drift) {
-    switch (drift) {
-        case Drift::kConstant:
-            return 1;
-        case Drift::kLinear:
-            return 3;
-        case Drift::kQuadratic:
-            return 6;
-    }
-    return 1;
+    return drift == Drift::kConstant ? 1 : drift == Drift::kLinear ? 3 : 6;
 }
 
 DriftFrame::DriftFrame(std::span<const Position> positions, Drift drift) : drift_(drift) {

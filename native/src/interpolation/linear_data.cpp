@@ -24,13 +24,8 @@ void check_dips(const Dips& dips) {
     if (dips.neighbors < 0)
         throw InputError("option", "the number of dips at a node is negative; 0 means all");
     for (std::size_t i = 0; i < count; ++i) {
-        for (const double number :
-             {dips.positions[i][0], dips.positions[i][1], dips.slopes[i][0], dips.slopes[i][1]}) {
-            if (usable(number)) continue;
-            throw InputError("not_finite",
-                             "dip " + std::to_string(i) + " is not a finite number below 1e150", -1,
-                             {static_cast<std::int64_t>(i)});
-        }
+        require_usable(dips.positions[i], "dip", i);
+        require_usable(dips.slopes[i], "dip", i);
     }
 }
 

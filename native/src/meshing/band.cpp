@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "meshing/constrained_delaunay.hpp"
 
 namespace realmodel::meshing {
@@ -11,11 +13,8 @@ namespace {
 
 /// Edges of lattices that wait for the triangle behind them, found by their ends.
 struct OpenEdge {
-    std::int32_t from, to;
+    Segment ends;
     HalfEdge edge;
-    bool operator<(const OpenEdge& other) const {
-        return from != other.from ? from < other.from : to < other.to;
-    }
 };
 
 /// Which faces lie in the band, by time stamp: crossing its border changes it, crossing an inner
@@ -29,9 +28,8 @@ std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment
     std::vector<signed char> parity(stamps, kUnknown);
     const auto is_inner = [&](Cdt::Face_handle face, int i) {
         if (inner.empty()) return false;
-        const auto [low, high] =
-            std::minmax(face->vertex(Cdt::ccw(i))->number, face->vertex(Cdt::cw(i))->number);
-        return std::binary_search(inner.begin(), inner.end(), Segment{low, high});
+        return std::ranges::binary_search(
+            inner, unordered(face->vertex(Cdt::ccw(i))->number, face->vertex(Cdt::cw(i))->number));
     };
     Ticker tick(check);
     std::vector<Cdt::Face_handle> open{cdt.infinite_face()};
@@ -82,17 +80,15 @@ void take_lattices(BandedMesh& out, std::vector<TriangleLattice>&& lattices,
         }
         for (const HalfEdge edge : lattice.rim) {
             const HalfEdge moved(edge.triangle() + triangles, edge.index());
-            rim.push_back({mesh.from(moved), mesh.to(moved), moved});
+            rim.push_back({{mesh.from(moved), mesh.to(moved)}, moved});
             out.rim_triangles.push_back(moved.triangle());
         }
         for (std::int32_t& loner : lattice.loners)
             loner += points;
     }
     out.first_of_band = static_cast<std::int32_t>(mesh.corners.size());
-    std::sort(rim.begin(), rim.end());
-    std::sort(out.rim_triangles.begin(), out.rim_triangles.end());
-    out.rim_triangles.erase(std::unique(out.rim_triangles.begin(), out.rim_triangles.end()),
-                            out.rim_triangles.end());
+    std::ranges::sort(rim, {}, &OpenEdge::ends);
+    sort_unique(out.rim_triangles);
 }
 
 /// The points that the band is made of, and their numbers in the whole mesh.
@@ -123,7 +119,7 @@ BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
     for (const std::int32_t loner : loners)
         band.add(mesh, loner);
     for (const OpenEdge& edge : rim)
-        band.add(mesh, edge.from);
+        band.add(mesh, edge.ends[0]);
     for (const TriangleLattice& lattice : lattices)
         for (const std::int32_t loner : lattice.loners)
             band.add(mesh, loner);
@@ -154,9 +150,9 @@ void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char
                 if (face->is_constrained(opposite)) mesh.fix(edge);
                 continue;
             }
-            const OpenEdge wanted{mesh.to(edge), mesh.from(edge), {}};
-            const auto at = std::lower_bound(rim.begin(), rim.end(), wanted);
-            if (at != rim.end() && at->from == wanted.from && at->to == wanted.to) {
+            const Segment wanted{mesh.to(edge), mesh.from(edge)};
+            const auto at = std::ranges::lower_bound(rim, wanted, {}, &OpenEdge::ends);
+            if (at != rim.end() && at->ends == wanted) {
                 mesh.join(edge, at->edge);
                 open.push_back(edge);
             } else {
@@ -192,10 +188,9 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     for (const Segment& piece : border.border)
         segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
     for (const OpenEdge& edge : rim)
-        segments.push_back({band.in_band[edge.from], band.in_band[edge.to]});
+        segments.push_back({band.in_band[edge.ends[0]], band.in_band[edge.ends[1]]});
     for (const Segment& piece : border.inner) {
-        const auto [low, high] = std::minmax(band.in_band[piece[0]], band.in_band[piece[1]]);
-        inner.push_back({low, high});
+        inner.push_back(unordered(band.in_band[piece[0]], band.in_band[piece[1]]));
         segments.push_back(inner.back());
     }
     std::sort(inner.begin(), inner.end());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -40,8 +41,7 @@ double length_at(const FlatMesh& mesh, HalfEdge edge, const std::vector<bool>& i
 /// No source finer than `finest`, and of those one in each square of that edge.
 void thin_out(std::vector<SizeSource>& sources, double finest) {
     std::vector<SizeSource> kept;
-    std::stable_sort(sources.begin(), sources.end(),
-                     [](const SizeSource& s, const SizeSource& t) { return s.least > t.least; });
+    std::ranges::stable_sort(sources, std::greater<>(), &SizeSource::least);
     std::vector<std::pair<std::array<double, 2>, std::size_t>> squares;
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (sources[i].least >= finest) {

@@ -29,6 +29,7 @@ std::vector<double> tip_lengths(const RegionGraph& graph, SizeField& size) {
         double direction;
         bool inside_left;  // the region is counter-clockwise of it
         double length;
+        auto operator<=>(const Spoke&) const = default;
     };
     std::vector<Spoke> spokes;
     spokes.reserve(2 * (graph.border.size() + graph.inner.size()));
@@ -42,11 +43,7 @@ std::vector<double> tip_lengths(const RegionGraph& graph, SizeField& size) {
         add(edge, false);
     for (const Segment& edge : graph.inner)
         add(edge, true);
-    std::sort(spokes.begin(), spokes.end(), [](const Spoke& s, const Spoke& t) {
-        if (s.corner != t.corner) return s.corner < t.corner;
-        return s.direction != t.direction ? s.direction < t.direction
-                                          : s.inside_left < t.inside_left;
-    });
+    std::sort(spokes.begin(), spokes.end());
     std::vector<double> lengths(graph.points.size(), 0.0);
     for (std::size_t begin = 0, end = 0; begin < spokes.size(); begin = end) {
         double shortest = std::numeric_limits<double>::infinity();

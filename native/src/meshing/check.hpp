@@ -7,11 +7,20 @@
 #include <cstdint>
 #include <functional>
 
+#include "realmodel/base/progress.hpp"
+
 namespace realmodel::meshing {
 
 /// Called now and then (at least every few milliseconds) with the share of a step that is done;
 /// throws to stop it.
 using Check = std::function<void(double)>;
+
+/// Asks whether the caller wants to stop; null: nobody does.
+inline Check stopped_by(const Progress* progress) {
+    return [progress](double) {
+        if (progress != nullptr) progress->check();
+    };
+}
 
 /// Passes on every so many calls to a check: for the innermost loops.
 class Ticker {

@@ -178,8 +178,7 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
                          first,
                          face});
     }
-    std::sort(faces.begin(), faces.end(),
-              [](const Face& a, const Face& b) { return a.corners < b.corners; });
+    std::ranges::sort(faces, {}, &Face::corners);
 
     // The time stamp leads from a face back to its number without a hash table.
     std::size_t stamps = 0;

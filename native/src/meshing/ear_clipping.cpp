@@ -9,7 +9,6 @@
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/rings.hpp"
 #include "spatial/corner_grid.hpp"
 
@@ -298,9 +297,7 @@ bool is_plain(std::span<const Ring> rings) {
 }  // namespace
 
 Triangles triangulate_polygon(std::span<const Ring> rings, Progress* progress) {
-    const Check check = [progress](double) {
-        if (progress != nullptr) progress->check();
-    };
+    const Check check = stopped_by(progress);
     if (is_plain(rings)) {
         EarRing ring(rings);
         if (ring.join_holes()) {

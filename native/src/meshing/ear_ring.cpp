@@ -91,9 +91,7 @@ bool EarRing::join_holes() {
         node = nodes[node].next;
     } while (node != outline_);
     // What lies left of a hole is joined before it.
-    std::sort(holes_.begin(), holes_.end(), [&](std::int32_t a, std::int32_t b) {
-        return place(a) != place(b) ? place(a) < place(b) : a < b;
-    });
+    std::ranges::sort(holes_, {}, [&](std::int32_t n) { return std::pair(place(n), n); });
     for (const std::int32_t hole : holes_) {
         const std::int32_t bridge = find_bridge(hole);
         if (bridge < 0) return false;

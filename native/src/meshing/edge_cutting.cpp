@@ -79,20 +79,11 @@ void EdgeCutting::add_points(std::span<const PlanPoint> points) {
 
 HalfEdge EdgeCutting::between(std::int32_t a, std::int32_t b) const {
     HalfEdge found = HalfEdge::none();
-    const auto is_found = [&](HalfEdge edge) {
+    mesh_.visit_star(at_[a], [&](HalfEdge edge) {
+        if (!found.is_none()) return;
         if (mesh_.to(edge) == b) found = edge;
         if (mesh_.apex(edge) == b) found = edge.prev();
-        return !found.is_none();
-    };
-    const HalfEdge start = at_[a];
-    HalfEdge edge = start;
-    do {
-        if (is_found(edge)) return found;
-        edge = mesh_.rotate_ccw(edge);
-    } while (!edge.is_none() && edge != start);
-    if (!edge.is_none()) return found;
-    for (edge = mesh_.rotate_cw(start); !edge.is_none(); edge = mesh_.rotate_cw(edge))
-        if (is_found(edge)) return found;
+    });
     return found;
 }
 

@@ -88,17 +88,6 @@ bool FlatMesh::should_flip(HalfEdge edge) const {
                0;
 }
 
-void FlatMesh::legalize(std::vector<HalfEdge>& open) {
-    while (!open.empty()) {
-        const HalfEdge edge = open.back();
-        open.pop_back();
-        if (!should_flip(edge)) continue;
-        const HalfEdge diagonal = flip(edge), other = twin(diagonal);
-        for (const HalfEdge e : {diagonal.next(), diagonal.prev(), other.next(), other.prev()})
-            open.push_back(e);
-    }
-}
-
 /// Of a new vertex only the edges opposite to it can be wrong; each flip brings two more of them.
 HalfEdge FlatMesh::legalize_around(std::int32_t vertex, std::int32_t triangle) {
     while (!open_.empty()) {

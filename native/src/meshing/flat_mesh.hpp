@@ -125,8 +125,22 @@ public:
     HalfEdge insert_on(HalfEdge edge, const PlanPoint& p);
     /// The same with a point that is there already and no triangle has yet.
     HalfEdge insert_on(HalfEdge edge, std::int32_t vertex);
-    /// Makes edges Delaunay, and those that flips make doubtful.
-    void legalize(std::vector<HalfEdge>& open);
+    /// Makes edges Delaunay, and those that flips make doubtful (Lawson 1977).
+    /// @param flip_edge  flips one of this mesh and returns the diagonal
+    template <class Flip>
+    void legalize(std::vector<HalfEdge>& open, const Flip& flip_edge) const {
+        while (!open.empty()) {
+            const HalfEdge edge = open.back();
+            open.pop_back();
+            if (!should_flip(edge)) continue;
+            const HalfEdge diagonal = flip_edge(edge), other = twin(diagonal);
+            for (const HalfEdge e : {diagonal.next(), diagonal.prev(), other.next(), other.prev()})
+                open.push_back(e);
+        }
+    }
+    void legalize(std::vector<HalfEdge>& open) {
+        legalize(open, [this](HalfEdge edge) { return flip(edge); });
+    }
 
     /// Moves the origin of an unfixed edge, which must be inside, to the edge's other end; the two
     /// triangles beside the edge die. Returns the two half-edges that are now where those triangles

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/keep_single.hpp"
 
 namespace realmodel::meshing {
@@ -91,8 +92,7 @@ void JudgedFlips::add_candidate(HalfEdge edge, int least_gain) {
         if (!may_change(mesh.from(e)) || !may_change(mesh.apex(e))) return;
     const int gain = valences_.gain_of_flip(edge);
     if (gain < least_gain) return;
-    const auto [a, b] = std::minmax({mesh.from(edge), mesh.to(edge)});
-    const Ends ends{a, b};
+    const Ends ends = unordered(mesh.from(edge), mesh.to(edge));
     for (const Flip& flip : way_)
         if (flip.after == ends) return;
     candidates_.push_back({gain, ends});
@@ -101,9 +101,8 @@ void JudgedFlips::add_candidate(HalfEdge edge, int least_gain) {
 /// Those that gain most first, each once.
 void JudgedFlips::sort_candidates(std::size_t begin) {
     const auto first = candidates_.begin() + static_cast<std::ptrdiff_t>(begin);
-    std::sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.gain != b.gain ? a.gain > b.gain : a.ends < b.ends;
-    });
+    std::ranges::sort(first, candidates_.end(), {},
+                      [](const Candidate& c) { return std::pair(-c.gain, c.ends); });
     const auto last =
         std::unique(first, candidates_.end(),
                     [](const Candidate& a, const Candidate& b) { return a.ends == b.ends; });
@@ -116,8 +115,7 @@ bool JudgedFlips::try_flip(const Ends& ends) {
     if (edge.is_none() || !valences_.can_flip(edge)) return false;
     const HalfEdge diagonal = valences_.flip(edge);
     const FlatMesh& mesh = valences_.mesh();
-    const auto [c, d] = std::minmax({mesh.from(diagonal), mesh.to(diagonal)});
-    way_.push_back({ends, {c, d}});
+    way_.push_back({ends, unordered(mesh.from(diagonal), mesh.to(diagonal))});
     return true;
 }
 

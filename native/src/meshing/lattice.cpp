@@ -19,10 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Interval {
     std::int64_t row;
     double from, to;
-    bool operator<(const Interval& other) const {
-        if (row != other.row) return row < other.row;
-        return from != other.from ? from < other.from : to < other.to;
-    }
+    auto operator<=>(const Interval&) const = default;
 };
 
 /// Takes in the part of the segment ab that lies on the line y.

@@ -23,9 +23,7 @@ struct BadTriangle {
     std::int32_t triangle;
     std::array<std::int32_t, 3> corners;
 
-    bool operator<(const BadTriangle& other) const {
-        return sine2 != other.sine2 ? sine2 > other.sine2 : order > other.order;
-    }
+    auto operator<=>(const BadTriangle&) const = default;
 };
 
 class Refinement {
@@ -122,7 +120,7 @@ private:
     double least_sine2_;
     const Check& check_;
     Encroachment encroachment_;
-    std::priority_queue<BadTriangle> queue_;
+    std::priority_queue<BadTriangle, std::vector<BadTriangle>, std::greater<>> queue_;
     std::uint64_t order_ = 0;
 };
 

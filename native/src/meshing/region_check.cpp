@@ -66,30 +66,11 @@ class Nesting {
 public:
     Nesting(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings, std::size_t ring_count)
         : parents(ring_count, kNone), rings_(rings), met_(ring_count, false) {
-        constexpr std::int32_t kUnknown = -2;
-        std::vector<std::int32_t> innermost(mesh.triangles.size(), kUnknown), open;
-        // From a triangle, or from outside, over its side i.
-        const auto reach = [&](std::int32_t to, std::int32_t from, int i, std::int32_t around) {
-            if (innermost[to] != kUnknown) return;
+        spread_inward(mesh, kNone, [&](std::int32_t from, int i, std::int32_t around) {
             const auto& corners = mesh.triangles[from];
-            if (mesh.constrained[from][i]) around = cross(corners[i], corners[(i + 1) % 3], around);
-            innermost[to] = around;
-            open.push_back(to);
-        };
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const auto first = static_cast<std::int32_t>(t);
-            for (int i = 0; i < 3; ++i) {
-                if (mesh.neighbors[t][i] < 0) reach(first, first, i, kNone);
-            }
-            while (!open.empty()) {
-                const std::int32_t from = open.back();
-                open.pop_back();
-                for (int i = 0; i < 3; ++i) {
-                    const std::int32_t to = mesh.neighbors[from][i];
-                    if (to >= 0) reach(to, from, i, innermost[from]);
-                }
-            }
-        }
+            return mesh.constrained[from][i] ? cross(corners[i], corners[(i + 1) % 3], around)
+                                             : around;
+        });
     }
 
     std::vector<std::int32_t> parents;

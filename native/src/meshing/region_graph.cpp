@@ -5,14 +5,15 @@
 #include <cmath>
 #include <string>
 
+#include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/edge_cutting.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
-#include "meshing/segment_crossings.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::meshing {
 
@@ -43,6 +44,61 @@ void require_finite(const PlanPoint& p, std::int64_t line, std::size_t corner) {
     throw InputError("constraint_not_finite",
                      "point " + std::to_string(corner) + " of " + what + " is not a finite number",
                      -1, {line, static_cast<std::int64_t>(corner)});
+}
+
+spatial::Box::Position in_space(const PlanPoint& p) {
+    return {p[0], p[1], 0};
+}
+
+/// For each segment the places at which it is to be cut, in order from its start: where it and
+/// another cross (rounded, the same for both), and where another ends on it. Pairs of the first
+/// `settled` segments are known to cross nowhere. Decisions are exact.
+std::vector<std::vector<PlanPoint>> crossings(std::span<const PlanPoint> points,
+                                              std::span<const Segment> segments,
+                                              std::size_t settled, const Check& check) {
+    std::vector<spatial::Box> boxes(segments.size());
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+        for (const std::int32_t end : segments[s])
+            boxes[s].include(in_space(points[end]));
+    }
+    std::vector<std::vector<PlanPoint>> cuts(segments.size());
+    const auto meet = [&](std::int32_t s, std::int32_t t) {
+        const PlanPoint &a = points[segments[s][0]], &b = points[segments[s][1]],
+                        &c = points[segments[t][0]], &d = points[segments[t][1]];
+        const int ac = orient2d(a, b, c), ad = orient2d(a, b, d), ca = orient2d(c, d, a),
+                  cb = orient2d(c, d, b);
+        if (ac * ad < 0 && ca * cb < 0) {
+            // From the same two names in the same order, so that both get the same place.
+            PlanPoint p = crossing_place(a, b, c, d);
+            for (const spatial::Box& box : {boxes[s], boxes[t]}) {
+                for (int k = 0; k < 2; ++k)
+                    p[k] = std::clamp(p[k], box.low[k], box.high[k]);
+            }
+            cuts[s].push_back(p);
+            cuts[t].push_back(p);
+            return;
+        }
+        if (ac == 0 && boxes[s].contains(in_space(c))) cuts[s].push_back(c);
+        if (ad == 0 && boxes[s].contains(in_space(d))) cuts[s].push_back(d);
+        if (ca == 0 && boxes[t].contains(in_space(a))) cuts[t].push_back(a);
+        if (cb == 0 && boxes[t].contains(in_space(b))) cuts[t].push_back(b);
+    };
+
+    const spatial::BoxTree tree(boxes);
+    for (std::size_t t = settled; t < segments.size(); ++t) {
+        if (t % 64 == 0) check(0);
+        tree.find(boxes[t], [&](std::int32_t s) {
+            const auto number = static_cast<std::int32_t>(t);
+            if (s < number) meet(s, number);
+        });
+    }
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+        const PlanPoint &a = points[segments[s][0]], &b = points[segments[s][1]];
+        const auto along = [&](const PlanPoint& p) { return dot(minus(p, a), minus(b, a)); };
+        std::ranges::sort(cuts[s], {}, [&](const PlanPoint& p) { return std::pair(along(p), p); });
+        cuts[s].erase(std::unique(cuts[s].begin(), cuts[s].end()), cuts[s].end());
+    }
+    return cuts;
 }
 
 /// Rings and constraints as one graph.
@@ -110,9 +166,7 @@ private:
         const auto vertices = insert_points(cdt, graph_.points, check_, Repeated::kJoin);
         insert_segments(cdt, vertices, ring_edges_, check_);
         std::vector<CoveredEdge> covered = covered_edges(cdt, vertices, ring_edges_);
-        std::stable_sort(
-            covered.begin(), covered.end(),
-            [](const CoveredEdge& a, const CoveredEdge& b) { return a.segment < b.segment; });
+        std::ranges::stable_sort(covered, {}, &CoveredEdge::segment);
         const std::vector<Segment> whole = std::move(ring_edges_);
         ring_edges_.clear();
         for (const auto& [from, to, segment] : covered) {
@@ -191,10 +245,9 @@ private:
     void take_triangulation() {
         ConstrainedTriangulation mesh = numbered_triangles(cdt_);
         const auto is_along = [&](const std::vector<Segment>& edges, std::size_t t, int i) {
-            const auto [low, high] =
-                std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
+            const auto& corners = mesh.triangles[t];
             return mesh.constrained[t][i] &&
-                   std::binary_search(edges.begin(), edges.end(), Segment{low, high});
+                   std::ranges::binary_search(edges, unordered(corners[i], corners[(i + 1) % 3]));
         };
         const std::vector<Segment> ring_edges = edges_along(ring_edges_),
                                    inner_edges = edges_along(inner_edges_);
@@ -249,9 +302,7 @@ private:
 
 RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constraints,
                          Progress* progress) {
-    const Check check = [progress](double) {
-        if (progress != nullptr) progress->check();
-    };
+    const Check check = stopped_by(progress);
     RingTriangulation region = triangulate_region(rings, progress);
     if (!constraints.lines.empty() || !constraints.points.empty())
         return ConstrainedGraph(std::move(region.graph), constraints, check).run();

@@ -78,6 +78,61 @@ void require_length(double edge_length) {
                                         "; it must be a positive finite number");
 }
 
+[[maybe_unused]] bool is_upright(const PlanarMesh& mesh) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+        return orient2d(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > 0;
+    });
+}
+
+/// The triangles that are not dead, and the points that they use, in their order.
+PlanarMesh collected(FlatMesh&& flat, const Check& check) {
+    Ticker tick(check);
+    PlanarMesh mesh{std::move(flat.points), std::move(flat.corners)};
+    flat.twins = {};
+    std::erase_if(mesh.triangles, [](const auto& t) { return t[0] < 0; });
+    std::vector<bool> used(mesh.vertices.size(), false);
+    for (const auto& t : mesh.triangles) {
+        tick(0.1);
+        for (const std::int32_t v : t)
+            used[v] = true;
+    }
+    if (std::find(used.begin(), used.end(), false) == used.end()) return mesh;
+    std::vector<std::int32_t> number(used.size());
+    std::int32_t kept = 0;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        number[i] = kept;
+        if (used[i]) mesh.vertices[kept++] = mesh.vertices[i];
+    }
+    mesh.vertices.resize(kept);
+    for (auto& t : mesh.triangles) {
+        tick(0.5);
+        for (std::int32_t& v : t)
+            v = number[v];
+    }
+    return mesh;
+}
+
+/// How near to points of constraints other vertices and fixed edges are: angles there are improved
+/// down to that, since these points were asked for, and not drawn with an outline.
+double room_at_loners(const RegionGraph& graph, const FlatMesh& flat) {
+    if (graph.loners.empty()) return HUGE_VAL;
+    std::vector<bool> is_loner(flat.points.size(), false);
+    for (const std::int32_t v : graph.loners)
+        is_loner[v] = true;
+    double least = HUGE_VAL;
+    flat.for_each_edge([&](HalfEdge edge) {
+        const PlanPoint &a = flat.origin_point(edge), &b = flat.target_point(edge),
+                        &c = flat.apex_point(edge);
+        if (is_loner[flat.from(edge)] || is_loner[flat.to(edge)])
+            least = std::min(least, squared_distance(a, b));
+        if (is_loner[flat.apex(edge)] && flat.is_fixed(edge)) {
+            const double area = twice_area(a, b, c);
+            least = std::min(least, area * area / squared_distance(a, b));
+        }
+    });
+    return std::sqrt(least);
+}
+
 /// A request at work: the region, and what to tell and to ask while it is meshed.
 class Meshing {
 public:
@@ -225,11 +280,103 @@ private:
                                           ": use longer ones, or shorter distances");
     }
 
+    /// Border, lattices and the band between them.
     BandedMesh first_mesh(SizeField& size, double finest, const Check& cutting,
-                          const Check& placing, const Check& joining) const;
-    double room_at_loners(const FlatMesh& flat) const;
-    PlanarMesh mesh(SizeField size, double begin, double end) const;
-    PlanarMesh run_for_count();
+                          const Check& placing, const Check& joining) const {
+        BorderPieces border;
+        std::vector<TriangleLattice> lattices;
+        if (request_.mesher == Mesher::kGrid) {
+            const double side = size.largest();
+            border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
+            lattices.push_back(lattice_inside(border, graph_.loners,
+                                              {extent_.low, {1, 0}, side, side, true}, size, side,
+                                              kGridClearance, placing));
+        } else {
+            border = cut_border(graph_, size, finest, cutting);
+            for (const double length : lattice_lengths(request_, size)) {
+                lattices.push_back(lattice_inside(border, graph_.loners,
+                                                  fitting_frame(graph_, length), size, length,
+                                                  kClearance, placing));
+            }
+        }
+        const bool has_lattice =
+            std::any_of(lattices.begin(), lattices.end(),
+                        [](const TriangleLattice& l) { return !l.points.empty(); });
+        if (request_.mesher == Mesher::kFrontal && !has_lattice)
+            return {mesh_without_lattice(graph_, border, finest, joining), 0, {}};
+        return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
+    }
+
+    PlanarMesh mesh(SizeField size, double begin, double end) const {
+        const auto part = [&](double from, double to, const char* text) {
+            return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
+        };
+        const bool is_grid = request_.mesher == Mesher::kGrid;
+        const bool is_frontal = request_.mesher == Mesher::kFrontal;
+        const double finest = kShortestEdge * size.largest();
+        BandedMesh banded =
+            first_mesh(size, finest, part(0, 0.05, "cutting the border"),
+                       part(0.05, 0.3, "placing the points"), part(0.3, 0.5, "triangulating"));
+        FlatMesh& flat = banded.mesh;
+        if (!size.is_uniform()) {
+            advance_front(flat, size, banded.first_of_band, most_vertices(),
+                          part(0.5, 0.75, "filling"));
+        }
+        // Nearer ones are left as they are: where lines come as close, all of these would be
+        // divided as finely.
+        const double room = room_at_loners(graph_, flat) / 2;
+        const double shortest = room < finest / kMostRefined ? finest : std::min(finest, room);
+        const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
+                                      is_grid ? kLongestGridEdge : kLongestEdge, shortest,
+                                      most_vertices()};
+        refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
+               part(0.75, 0.8, "improving the border"));
+        if (is_frontal) {
+            const Check check = part(0.8, 0.9, "smoothing");
+            smooth(flat, size, banded.first_of_band, banded.rim_triangles,
+                   static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
+            flat.compact();
+            refine(flat, target, size, 0, {}, check);
+        }
+        const Check finish = part(0.9, 1, "collecting the mesh");
+        PlanarMesh mesh = collected(std::move(flat), finish);
+        assert(is_upright(mesh));
+        return mesh;
+    }
+
+    PlanarMesh run_for_count() {
+        constexpr double kGoodEnough = 0.02;
+        constexpr int kMostRounds = 8;
+        // The area of a triangle of side 1, or half a square.
+        const double equilateral = request_.mesher == Mesher::kGrid ? 0.5 : std::numbers::sqrt3 / 4;
+        const double wanted = request_.triangles;
+        // With densities both bounds and points are scaled alike.
+        double scale = 1;
+        const double unit =
+            request_.density.empty() ? std::sqrt(graph_.area / (equilateral * wanted)) : longest();
+        PlanarMesh best;
+        double best_miss = std::numeric_limits<double>::infinity();
+        for (int round = 0; round < kMostRounds; ++round) {
+            const double begin = 1 - std::ldexp(1.0, -round), end = 1 - std::ldexp(1.0, -round - 1);
+            PlanarMesh made = mesh(field(scale * unit, scale), begin, end);
+            const auto count = static_cast<double>(made.triangles.size());
+            const double miss = std::abs(count / wanted - 1);
+            if (miss < best_miss) {
+                best = std::move(made);
+                best_miss = miss;
+            }
+            if (miss <= kGoodEnough) break;
+            scale *= std::sqrt(count / wanted);
+            if (scale * unit > 4 * extent_.width) break;
+        }
+        if (best_miss > 0.05) {
+            throw InputError("triangles", "this region cannot be meshed with about " +
+                                              number_text(wanted) +
+                                              " triangles; the nearest found is " +
+                                              std::to_string(best.triangles.size()));
+        }
+        return best;
+    }
 
     const MeshRequest& request_;
     Progress* progress_;
@@ -238,158 +385,6 @@ private:
     double fitting_ = 0;
 };
 
-[[maybe_unused]] bool is_upright(const PlanarMesh& mesh) {
-    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
-        return orient2d(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > 0;
-    });
-}
-
-/// The triangles that are not dead, and the points that they use, in their order.
-PlanarMesh collected(FlatMesh&& flat, const Check& check) {
-    Ticker tick(check);
-    PlanarMesh mesh{std::move(flat.points), std::move(flat.corners)};
-    flat.twins = {};
-    std::erase_if(mesh.triangles, [](const auto& t) { return t[0] < 0; });
-    std::vector<bool> used(mesh.vertices.size(), false);
-    for (const auto& t : mesh.triangles) {
-        tick(0.1);
-        for (const std::int32_t v : t)
-            used[v] = true;
-    }
-    if (std::find(used.begin(), used.end(), false) == used.end()) return mesh;
-    std::vector<std::int32_t> number(used.size());
-    std::int32_t kept = 0;
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        number[i] = kept;
-        if (used[i]) mesh.vertices[kept++] = mesh.vertices[i];
-    }
-    mesh.vertices.resize(kept);
-    for (auto& t : mesh.triangles) {
-        tick(0.5);
-        for (std::int32_t& v : t)
-            v = number[v];
-    }
-    return mesh;
-}
-
-/// Border, lattices and the band between them.
-BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutting,
-                               const Check& placing, const Check& joining) const {
-    BorderPieces border;
-    std::vector<TriangleLattice> lattices;
-    if (request_.mesher == Mesher::kGrid) {
-        const double side = size.largest();
-        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
-        lattices.push_back(lattice_inside(border, graph_.loners,
-                                          {extent_.low, {1, 0}, side, side, true}, size, side,
-                                          kGridClearance, placing));
-    } else {
-        border = cut_border(graph_, size, finest, cutting);
-        for (const double length : lattice_lengths(request_, size)) {
-            lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
-                                              size, length, kClearance, placing));
-        }
-    }
-    const bool has_lattice =
-        std::any_of(lattices.begin(), lattices.end(),
-                    [](const TriangleLattice& l) { return !l.points.empty(); });
-    if (request_.mesher == Mesher::kFrontal && !has_lattice)
-        return {mesh_without_lattice(graph_, border, finest, joining), 0, {}};
-    return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
-}
-
-/// How near to points of constraints other vertices and fixed edges are: angles there are improved
-/// down to that, since these points were asked for, and not drawn with an outline.
-double Meshing::room_at_loners(const FlatMesh& flat) const {
-    if (graph_.loners.empty()) return HUGE_VAL;
-    std::vector<bool> is_loner(flat.points.size(), false);
-    for (const std::int32_t v : graph_.loners)
-        is_loner[v] = true;
-    double least = HUGE_VAL;
-    flat.for_each_edge([&](HalfEdge edge) {
-        const PlanPoint &a = flat.origin_point(edge), &b = flat.target_point(edge),
-                        &c = flat.apex_point(edge);
-        if (is_loner[flat.from(edge)] || is_loner[flat.to(edge)])
-            least = std::min(least, squared_distance(a, b));
-        if (is_loner[flat.apex(edge)] && flat.is_fixed(edge)) {
-            const double area = twice_area(a, b, c);
-            least = std::min(least, area * area / squared_distance(a, b));
-        }
-    });
-    return std::sqrt(least);
-}
-
-PlanarMesh Meshing::mesh(SizeField size, double begin, double end) const {
-    const auto part = [&](double from, double to, const char* text) {
-        return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
-    };
-    const bool is_grid = request_.mesher == Mesher::kGrid;
-    const bool is_frontal = request_.mesher == Mesher::kFrontal;
-    const double finest = kShortestEdge * size.largest();
-    BandedMesh banded =
-        first_mesh(size, finest, part(0, 0.05, "cutting the border"),
-                   part(0.05, 0.3, "placing the points"), part(0.3, 0.5, "triangulating"));
-    FlatMesh& flat = banded.mesh;
-    if (!size.is_uniform()) {
-        advance_front(flat, size, banded.first_of_band, most_vertices(),
-                      part(0.5, 0.75, "filling"));
-    }
-    // Nearer ones are left as they are: where lines come as close, all of these would be divided as
-    // finely.
-    const double room = room_at_loners(flat) / 2;
-    const double shortest = room < finest / kMostRefined ? finest : std::min(finest, room);
-    const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
-                                  is_grid ? kLongestGridEdge : kLongestEdge, shortest,
-                                  most_vertices()};
-    refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
-           part(0.75, 0.8, "improving the border"));
-    if (is_frontal) {
-        const Check check = part(0.8, 0.9, "smoothing");
-        smooth(flat, size, banded.first_of_band, banded.rim_triangles,
-               static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
-        flat.compact();
-        refine(flat, target, size, 0, {}, check);
-    }
-    const Check finish = part(0.9, 1, "collecting the mesh");
-    PlanarMesh mesh = collected(std::move(flat), finish);
-    assert(is_upright(mesh));
-    return mesh;
-}
-
-PlanarMesh Meshing::run_for_count() {
-    constexpr double kGoodEnough = 0.02;
-    constexpr int kMostRounds = 8;
-    // The area of a triangle of side 1, or half a square.
-    const double equilateral = request_.mesher == Mesher::kGrid ? 0.5 : std::numbers::sqrt3 / 4;
-    const double wanted = request_.triangles;
-    // With densities both bounds and points are scaled alike.
-    double scale = 1;
-    const double unit =
-        request_.density.empty() ? std::sqrt(graph_.area / (equilateral * wanted)) : longest();
-    PlanarMesh best;
-    double best_miss = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < kMostRounds; ++round) {
-        const double begin = 1 - std::ldexp(1.0, -round), end = 1 - std::ldexp(1.0, -round - 1);
-        PlanarMesh made = mesh(field(scale * unit, scale), begin, end);
-        const auto count = static_cast<double>(made.triangles.size());
-        const double miss = std::abs(count / wanted - 1);
-        if (miss < best_miss) {
-            best = std::move(made);
-            best_miss = miss;
-        }
-        if (miss <= kGoodEnough) break;
-        scale *= std::sqrt(count / wanted);
-        if (scale * unit > 4 * extent_.width) break;
-    }
-    if (best_miss > 0.05) {
-        throw InputError("triangles", "this region cannot be meshed with about " +
-                                          number_text(wanted) +
-                                          " triangles; the nearest found is " +
-                                          std::to_string(best.triangles.size()));
-    }
-    return best;
-}
-
 }  // namespace
 
 MeshEstimate estimate_region_mesh(std::span<const Ring> rings, const MeshRequest& request,
@@ -397,21 +392,9 @@ MeshEstimate estimate_region_mesh(std::span<const Ring> rings, const MeshRequest
     return Meshing(rings, request, progress).estimate();
 }
 
-MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_length) {
-    MeshRequest request;
-    request.edge_length = edge_length;
-    return estimate_region_mesh(rings, request);
-}
-
 PlanarMesh mesh_region(std::span<const Ring> rings, const MeshRequest& request,
                        Progress* progress) {
     return Meshing(rings, request, progress).run();
-}
-
-PlanarMesh mesh_region(std::span<const Ring> rings, double edge_length, Progress* progress) {
-    MeshRequest request;
-    request.edge_length = edge_length;
-    return mesh_region(rings, request, progress);
 }
 
 }  // namespace realmodel::meshing

@@ -139,32 +139,27 @@ double triangles_in(const RegionGraph& graph, SizeField& size, const Check& chec
     }
     while (!open.empty()) {
         tick(0);
-        const auto [a, b, c] = open.back();
+        const std::array<PlanPoint, 3> corners = open.back();
         open.pop_back();
-        const double ab = squared_distance(a, b), bc = squared_distance(b, c),
-                     ca = squared_distance(c, a);
+        const auto& [a, b, c] = corners;
+        const std::array sides{squared_distance(a, b), squared_distance(b, c),
+                               squared_distance(c, a)};
         const double wanted = size.at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3});
-        const double longest = std::max({ab, bc, ca});
+        const auto longest =
+            static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
         const double area = 0.5 * twice_area(a, b, c);
         // Slivers, of which combs have many, are not cut as long as they hold next to nothing: all
         // of one lies within two thirds of its longest side from its center.
         const double finest =
-            std::max(size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(longest));
-        if (longest <= 9 * wanted * wanted || area <= kNextToNothing * finest * finest) {
+            std::max(size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(sides[longest]));
+        if (sides[longest] <= 9 * wanted * wanted || area <= kNextToNothing * finest * finest) {
             triangles += area / (kEquilateral * wanted * wanted);
-        } else if (longest == ab) {
-            const PlanPoint m = middle(a, b);
-            open.push_back({a, m, c});
-            open.push_back({m, b, c});
-        } else if (longest == bc) {
-            const PlanPoint m = middle(b, c);
-            open.push_back({b, m, a});
-            open.push_back({m, c, a});
-        } else {
-            const PlanPoint m = middle(c, a);
-            open.push_back({c, m, b});
-            open.push_back({m, a, b});
+            continue;
         }
+        const PlanPoint &from = corners[longest], &to = corners[(longest + 1) % 3],
+                        &apex = corners[(longest + 2) % 3], m = middle(from, to);
+        open.push_back({from, m, apex});
+        open.push_back({m, to, apex});
     }
     return triangles;
 }

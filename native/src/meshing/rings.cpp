@@ -11,7 +11,6 @@
 #include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
 
 namespace realmodel::meshing {
 
@@ -105,8 +104,7 @@ void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edg
                      std::array{place[0], place[1], 0.0});
 }
 
-}  // namespace
-
+/// Rings as points and segments.
 RingGraph ring_graph(std::span<const Ring> rings) {
     if (rings.empty()) throw InputError("no_outline", "the region has no outline");
     RingGraph graph;
@@ -132,12 +130,12 @@ RingGraph ring_graph(std::span<const Ring> rings) {
     return graph;
 }
 
+}  // namespace
+
 std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places) {
     std::vector<std::int32_t> order(places.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return places[a] != places[b] ? places[a] < places[b] : a < b;
-    });
+    std::ranges::sort(order, {}, [&](std::int32_t i) { return std::pair(places[i], i); });
     std::vector<std::int32_t> first(places.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const bool same = i > 0 && places[order[i]] == places[order[i - 1]];
@@ -154,9 +152,7 @@ void refuse_overlap(const RingGraph& graph, const CoveredEdge& first, const Cove
 ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress) {
     ConstrainedRings out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
-    const Check check = [progress](double) {
-        if (progress != nullptr) progress->check();
-    };
+    const Check check = stopped_by(progress);
     Cdt cdt;
     const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, graph.points, check);
     try {

@@ -186,15 +186,7 @@ private:
                 open.push_back(edge);
                 open.push_back(edge.next());
             });
-            while (!open.empty()) {
-                const HalfEdge edge = open.back();
-                open.pop_back();
-                if (!mesh_.should_flip(edge)) continue;
-                const HalfEdge diagonal = valences_.flip(edge), other = mesh_.twin(diagonal);
-                for (const HalfEdge s :
-                     {diagonal.next(), diagonal.prev(), other.next(), other.prev()})
-                    open.push_back(s);
-            }
+            mesh_.legalize(open, [this](HalfEdge edge) { return valences_.flip(edge); });
         }
     }
 

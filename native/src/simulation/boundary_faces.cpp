@@ -100,9 +100,7 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
         normals.push_back(
             times(kept.behind > kept.in_front ? -1 : 1, unit(polygon_normal(loop.size(), at))));
     }
-    std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
-        return std::tie(a.edge, a.face) < std::tie(b.edge, b.face);
-    });
+    std::ranges::sort(uses, {}, [](const Use& use) { return std::pair(use.edge, use.face); });
     std::vector<Edge> found;
     for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
         while (end < uses.size() && uses[end].edge == uses[i].edge)

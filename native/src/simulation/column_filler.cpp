@@ -66,8 +66,7 @@ private:
         }
         area_ = twice_area(plan_.point(node_[0]), plan_.point(node_[1]), plan_.point(node_[2])) / 2;
         order_ = {0, 1, 2};
-        std::sort(order_.begin(), order_.end(),
-                  [&](std::size_t a, std::size_t b) { return node_[a] < node_[b]; });
+        std::ranges::sort(order_, {}, [&](std::size_t corner) { return node_[corner]; });
         find_step();
         return true;
     }
@@ -339,9 +338,7 @@ FilledColumns fill_columns(const ColumnInput& input, const PostLevels& levels, P
 void add_step_faces(FilledColumns& columns, const VerticalFaults& faults) {
     using Face = FilledColumns::StepFace;
     std::vector<Face>& faces = columns.step_faces;
-    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-        return std::tie(a.key, a.number) < std::tie(b.key, b.number);
-    });
+    std::ranges::sort(faces, {}, [](const Face& face) { return std::pair(face.key, face.number); });
     std::vector<const Face*> kept;
     for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
         while (end < faces.size() && faces[end].key == faces[i].key)
@@ -352,8 +349,7 @@ void add_step_faces(FilledColumns& columns, const VerticalFaults& faults) {
             face.surface = faults.fault_at(face.edge[0], face.edge[1], face.height);
         if (end == i + 1 || face.surface != kWall) kept.push_back(&face);
     }
-    std::sort(kept.begin(), kept.end(),
-              [](const Face* a, const Face* b) { return a->number < b->number; });
+    std::ranges::sort(kept, {}, &Face::number);
     for (const Face* face : kept)
         add_face(columns.mesh, face->corners, face->surface);
 }

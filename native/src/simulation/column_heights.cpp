@@ -48,14 +48,10 @@ struct PlanShape {
 
 /// Whether a point lies in a polygon, exactly; on the border of two it lies in one of them.
 bool contains(const ComplexView& model, std::span<const std::int32_t> loop, const PlanPoint& p) {
-    const auto plan = [&](std::int32_t v) {
-        const auto at = model.vertex(v);
-        return PlanPoint{at[0], at[1]};
-    };
     int turns = 0;
-    PlanPoint a = plan(loop.back());
+    PlanPoint a = plan_of(model, loop.back());
     for (const std::int32_t v : loop) {
-        const PlanPoint b = plan(v);
+        const PlanPoint b = plan_of(model, v);
         if (a[1] <= p[1]) {
             if (b[1] > p[1] && exact::orient2d(a, b, p) > 0) ++turns;
         } else if (b[1] <= p[1] && exact::orient2d(a, b, p) < 0) {

@@ -13,6 +13,11 @@ namespace realmodel::simulation {
 
 using meshing::PlanPoint;
 
+inline PlanPoint plan_of(const ComplexView& model, std::int32_t vertex) {
+    const auto p = model.vertex(vertex);
+    return {p[0], p[1]};
+}
+
 /// Which blocks a rock mass has: those from first[rock] to first[rock + 1], oldest first.
 struct RockBlocks {
     std::vector<std::int32_t> first;

@@ -2,13 +2,14 @@
 #include "simulation/edge_lengths.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/parallel.hpp"
 #include "meshing/requested_sizes.hpp"
 #include "realmodel/base/errors.hpp"
+#include "simulation/column_heights.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::simulation {
 
@@ -37,31 +38,24 @@ meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& f
                              -1, {static_cast<std::int64_t>(i)});
         }
     }
-    const auto in_plan = [&](std::int32_t vertex) {
-        const auto p = model.vertex(vertex);
-        return meshing::PlanPoint{p[0], p[1]};
-    };
     meshing::RegionGraph graph;
     for (const auto& [a, b] : faces.sharp_edges) {
         const auto first = static_cast<std::int32_t>(graph.points.size());
-        graph.points.push_back(in_plan(a));
-        graph.points.push_back(in_plan(b));
+        graph.points.push_back(plan_of(model, a));
+        graph.points.push_back(plan_of(model, b));
         graph.border.push_back({first, first + 1});
     }
     meshing::MeshRequest request;
     request.sizes.assign(sizes.begin(), sizes.end());
     std::vector<meshing::SizeSource> sources =
         meshing::requested_sources(graph, request, edge_length, 1);
-    meshing::PlanPoint low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    spatial::PlanBox box = spatial::kNoBox;
     for (const BoundaryTriangle& t : faces.triangles) {
-        for (const std::int32_t v : t.corners) {
-            const meshing::PlanPoint p = in_plan(v);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                low[axis] = std::min(low[axis], p[axis]);
-                high[axis] = std::max(high[axis], p[axis]);
-            }
-        }
+        const auto [a, b, c] = t.corners;
+        box = box.united(spatial::box_around(
+            std::array{plan_of(model, a), plan_of(model, b), plan_of(model, c)}));
     }
+    const meshing::PlanPoint low{box.low_x, box.low_y}, high{box.high_x, box.high_y};
     if (meshing::pieces_along(sources, low, high) > kMostLeaves) refuse_lengths();
     return {edge_length, meshing::kGradation, std::move(sources), low, high, kMostLeaves};
 }

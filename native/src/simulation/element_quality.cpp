@@ -261,8 +261,7 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
         poll(progress_, t);
         const auto& nodes = plan_.corners(t);
         std::array<std::size_t, 3> order{0, 1, 2};
-        std::sort(order.begin(), order.end(),
-                  [&](std::size_t a, std::size_t b) { return nodes[a] > nodes[b]; });
+        std::ranges::sort(order, std::greater<>(), [&](std::size_t i) { return nodes[i]; });
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t + 1]; ++e) {
             Front front = columns_.fronts[e];
             made.fronts.push_back(front);

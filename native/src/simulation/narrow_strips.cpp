@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulation/narrow_strips.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "base/index.hpp"

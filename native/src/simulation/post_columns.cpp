@@ -9,7 +9,6 @@
 #include "base/index.hpp"
 #include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
-#include "realmodel/base/errors.hpp"
 #include "spatial/plan_tiles.hpp"
 
 namespace realmodel::simulation {

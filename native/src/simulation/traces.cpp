@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <tuple>
 #include <utility>
 
 #include "base/counting_sort.hpp"
@@ -62,9 +61,7 @@ std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress
     for (std::size_t v = 0; v < edges.size(); ++v) {
         poll(progress, v);
         own.assign(edges[v].begin(), edges[v].end());
-        std::sort(own.begin(), own.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
-            return std::tie(a.to, a.key) < std::tie(b.to, b.key);
-        });
+        std::ranges::sort(own, {}, [](const BoundaryEdge& e) { return std::pair(e.to, e.key); });
         BoundaryEdge open{-1, -1, 0};  // the last
         for (std::size_t i = 0, end = 0; i < own.size(); i = end) {
             std::int32_t sum = 0;
@@ -91,18 +88,15 @@ std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress
 Traces traces_of(const ComplexView& model, Progress* progress) {
     const std::vector<VertexTrace> found = open_edges(model, progress);
     Traces traces;
-    const auto plan = [&](std::int32_t v) {
-        const auto p = model.vertex(v);
-        return PlanPoint{p[0], p[1]};
-    };
     for (const VertexTrace& trace : found) {
-        traces.points.push_back(plan(trace.from));
-        traces.points.push_back(plan(trace.to));
+        traces.points.push_back(plan_of(model, trace.from));
+        traces.points.push_back(plan_of(model, trace.to));
     }
     sort_unique(traces.points);
     const auto number = [&](std::int32_t v) {
-        const auto at = std::lower_bound(traces.points.begin(), traces.points.end(), plan(v));
-        assert(at != traces.points.end() && *at == plan(v));
+        const auto at =
+            std::lower_bound(traces.points.begin(), traces.points.end(), plan_of(model, v));
+        assert(at != traces.points.end() && *at == plan_of(model, v));
         return static_cast<std::int32_t>(at - traces.points.begin());
     };
     for (const VertexTrace& trace : found) {

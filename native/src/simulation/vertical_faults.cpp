@@ -7,6 +7,7 @@
 #include "base/index.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
+#include "simulation/column_heights.hpp"
 
 namespace realmodel::simulation {
 
@@ -32,11 +33,6 @@ bool is_upright(const ComplexView& model, std::size_t face) {
     const Vec3 area =
         polygon_normal(loop.size(), [&](std::size_t i) { return model.vertex(loop[i]); });
     return std::abs(area[2]) < kUpright * elementary::hypot(area[0], area[1]);
-}
-
-PlanPoint plan_of(const ComplexView& model, std::int32_t vertex) {
-    const auto p = model.vertex(vertex);
-    return {p[0], p[1]};
 }
 
 PlanPoint farthest_from(const ComplexView& model, std::span<const std::int32_t> loop,

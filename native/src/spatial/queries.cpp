@@ -85,24 +85,20 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<co
     const std::vector<TrianglePlane> planes(triangles.begin(), triangles.end());
     Nearest found{std::vector<std::int32_t>(positions.size(), -1),
                   std::vector<double>(positions.size(), HUGE_VAL)};
-    parallel_ranges(
-        positions.size(), kPositionsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                std::int32_t& number = found.number[i];
-                double& least = found.distance[i];
-                const auto bound = [&] { return std::min(least, reach) * kRoundedDistance; };
-                tree.approach(
-                    positions[i], [&] { return bound() * bound(); },
-                    [&](std::int32_t t) {
-                        if (planes[index(t)].is_farther(positions[i], bound())) return;
-                        const double away = triangle_distance(positions[i], triangles[index(t)]);
-                        if (!(away < reach) || away > least || (away == least && t > number))
-                            return;
-                        least = away;
-                        number = t;
-                    });
-            }
-        });
+    parallel_each(positions.size(), execution, [&](std::size_t i) {
+        std::int32_t& number = found.number[i];
+        double& least = found.distance[i];
+        const auto bound = [&] { return std::min(least, reach) * kRoundedDistance; };
+        tree.approach(
+            positions[i], [&] { return bound() * bound(); },
+            [&](std::int32_t t) {
+                if (planes[index(t)].is_farther(positions[i], bound())) return;
+                const double away = triangle_distance(positions[i], triangles[index(t)]);
+                if (!(away < reach) || away > least || (away == least && t > number)) return;
+                least = away;
+                number = t;
+            });
+    });
     return found;
 }
 

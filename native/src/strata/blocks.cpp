@@ -20,17 +20,12 @@ namespace {
 /// So many triangles of a surface in a tile, on average. Fewer sort more and cost more.
 constexpr std::size_t kTrianglesInTile = 1;
 
-PlanBox around(const PlanBox& a, const PlanBox& b) {
-    return {std::min(a.low_x, b.low_x), std::min(a.low_y, b.low_y), std::max(a.high_x, b.high_x),
-            std::max(a.high_y, b.high_y)};
-}
-
 /// The surfaces of all rock masses, and how their triangles are connected.
 struct Surfaces {
     TriangleLinks links;
     std::vector<std::vector<BlockTiling>> of_rock;  ///< oldest first
     std::vector<Envelope> in_window;                ///< of the rock masses that have a window
-    PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    PlanBox box = spatial::kNoBox;
     double largest_height = 0;
     std::size_t tiles = 1;
 
@@ -42,7 +37,7 @@ struct Surfaces {
 void Surfaces::measure(const exact::PlanArrangement& geometry, const Execution& execution) {
     constexpr std::size_t kTriangles = 8192;
     struct Extent {
-        PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+        PlanBox box = spatial::kNoBox;
         double largest_height = 0;
     };
     std::size_t triangles = 0;
@@ -56,13 +51,13 @@ void Surfaces::measure(const exact::PlanArrangement& geometry, const Execution& 
                                 Extent& extent = extents[begin / kTriangles];
                                 for (std::size_t t = begin; t < end; ++t) {
                                     const auto b = bounds_of(geometry, tiling.whole[t]);
-                                    extent.box = around(extent.box, b.box);
+                                    extent.box = extent.box.united(b.box);
                                     extent.largest_height = std::max(
                                         {extent.largest_height, std::abs(b.low), std::abs(b.high)});
                                 }
                             });
             for (const Extent& extent : extents) {
-                box = around(box, extent.box);
+                box = box.united(extent.box);
                 largest_height = std::max(largest_height, extent.largest_height);
             }
         }

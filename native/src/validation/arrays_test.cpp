@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/arrays_test.hpp"
 
-#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "base/index.hpp"
+#include "base/parallel_counts.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "validation/chunked.hpp"
 
@@ -65,11 +66,8 @@ void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& 
         });
         return;
     }
-    // threads may say so at once; they all write the same
     for (const std::int32_t cell : {first, second}) {
-        if (cell < 0) continue;
-        std::atomic_ref<std::uint8_t>(has_face[static_cast<std::size_t>(cell)])
-            .store(1, std::memory_order_relaxed);
+        if (cell >= 0) mark(has_face[index(cell)]);
     }
     if (m.face_surface[f] < kCutFace || m.face_surface[f] >= m.surfaces) {
         fail(
@@ -109,21 +107,12 @@ Findings check_arrays(const ComplexView& m, const Execution& execution) {
     Findings found = check_lengths(m);
     if (!found.passed()) return found;
     std::vector<std::uint8_t> has_face(m.cell_count(), 0);
-    const auto faces = [&](std::size_t begin, std::size_t end, Findings& own) {
-        for (std::size_t f = begin; f < end; ++f)
-            check_face(m, f, has_face, own);
-    };
-    const auto cells = [&](std::size_t begin, std::size_t end, Findings& own) {
-        for (std::size_t c = begin; c < end; ++c)
-            check_cell(m, c, has_face, own);
-    };
-    const auto vertices = [&](std::size_t begin, std::size_t end, Findings& own) {
-        for (std::size_t v = begin; v < end; ++v)
-            check_vertex(m, v, own);
-    };
-    found = in_chunks(m.face_count(), execution, faces);
-    found.append(in_chunks(m.cell_count(), execution, cells));
-    found.append(in_chunks(m.vertex_count(), execution, vertices));
+    const auto face = [&](std::size_t f, Findings& own) { check_face(m, f, has_face, own); };
+    const auto cell = [&](std::size_t c, Findings& own) { check_cell(m, c, has_face, own); };
+    const auto vertex = [&](std::size_t v, Findings& own) { check_vertex(m, v, own); };
+    found = look_at_each(m.face_count(), execution, face);
+    found.append(look_at_each(m.cell_count(), execution, cell));
+    found.append(look_at_each(m.vertex_count(), execution, vertex));
     found.examined = static_cast<std::int64_t>(m.face_count());
     return found;
 }

@@ -18,11 +18,7 @@ SidesByCell::SidesByCell(const ComplexView& model, const Execution& execution) {
         }
     };
     const std::size_t chunks = (sides + kItemsOfChunk - 1) / kItemsOfChunk;
-    sides_ = bucketize_in_any_order<Side>(cells, chunks, produce, execution);
-    parallel_ranges(cells, kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            std::ranges::sort(sides_[c]);
-    });
+    Buckets<Side>::operator=(sorted_in_buckets<Side>(cells, chunks, produce, execution));
 }
 
 }  // namespace realmodel::validation

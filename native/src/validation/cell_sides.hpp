@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "base/counting_sort.hpp"
 #include "realmodel/base/execution.hpp"
@@ -21,17 +20,8 @@ inline bool is_reversed(Side side) {
 }
 
 /// The sides of every cell, ascending.
-class SidesByCell {
-public:
+struct SidesByCell : Buckets<Side> {
     SidesByCell(const ComplexView& model, const Execution& execution);
-
-    std::span<const Side> operator[](std::size_t cell) const { return sides_[cell]; }
-
-    /// Behind the last side of the last cell.
-    const Side* end() const { return sides_.values.end(); }
-
-private:
-    Buckets<Side> sides_;
 };
 
 }  // namespace realmodel::validation

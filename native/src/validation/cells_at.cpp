@@ -3,10 +3,9 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "exact/space_predicates.hpp"
 #include "spatial/point_bins.hpp"
-#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
@@ -28,8 +27,6 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
     for (const auto& p : positions)
         plan.push_back({p[0], p[1]});
     const spatial::PointBins bins(plan);
-    const std::size_t faces = model.face_count();
-    std::vector<std::vector<Passage>> found((faces + kItemsOfChunk - 1) / kItemsOfChunk);
     const auto look = [&](std::size_t face, std::vector<Passage>& passages) {
         const auto loop = model.face(face);
         spatial::PlanBox box = spatial::kNoBox;
@@ -54,14 +51,7 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
             }
         });
     };
-    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
-        for (std::size_t face = chunk * kItemsOfChunk;
-             face < std::min(faces, (chunk + 1) * kItemsOfChunk); ++face)
-            look(face, found[chunk]);
-    });
-    std::vector<Passage> all;
-    for (const auto& part : found)
-        all.insert(all.end(), part.begin(), part.end());
+    auto all = collect_in_order<Passage>(model.face_count(), execution, look);
     std::ranges::sort(all, {}, [](const Passage& p) { return std::pair{p.position, p.cell}; });
     std::vector<std::int32_t> cells(positions.size(), -1);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {

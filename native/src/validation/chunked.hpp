@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -12,19 +11,28 @@ namespace realmodel::validation {
 /// Items looked at by one thread at a time: fixed, so that findings do not depend on the threads.
 inline constexpr std::size_t kItemsOfChunk = 8192;
 
-/// Calls work(begin, end, findings) for chunks of 0 .. count on several threads; the findings of
-/// all chunks, in order.
-template <class Work>
-Findings in_chunks(std::size_t count, const Execution& execution, const Work& work) {
-    const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
-    std::vector<Findings> found(chunks);
-    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
-        work(chunk * kItemsOfChunk, std::min(count, (chunk + 1) * kItemsOfChunk), found[chunk]);
+/// Calls work(begin, end, found) for chunks of 0 .. count on several threads; what is found in all
+/// chunks, in order.
+template <class Found = Findings, class Work>
+Found in_chunks(std::size_t count, const Execution& execution, const Work& work,
+                std::size_t size = kItemsOfChunk) {
+    std::vector<Found> found((count + size - 1) / size);
+    parallel_ranges(count, size, execution, [&](std::size_t begin, std::size_t end) {
+        work(begin, end, found[begin / size]);
     });
-    Findings all;
-    for (const Findings& part : found)
+    Found all;
+    for (const Found& part : found)
         all.append(part);
     return all;
+}
+
+/// Calls look(item, findings) for all items in chunks.
+template <class Look>
+Findings look_at_each(std::size_t count, const Execution& execution, const Look& look) {
+    return in_chunks(count, execution, [&](std::size_t begin, std::size_t end, Findings& found) {
+        for (std::size_t i = begin; i < end; ++i)
+            look(i, found);
+    });
 }
 
 }  // namespace realmodel::validation

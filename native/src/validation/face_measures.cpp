@@ -17,9 +17,8 @@ using Position = std::array<double, 3>;
 std::vector<std::int32_t> cell_origins(const ComplexView& model, const SidesByCell& sides,
                                        const Execution& execution) {
     std::vector<std::int32_t> origin(model.cell_count());
-    in_chunks(origin.size(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
-        for (std::size_t c = begin; c < end; ++c)
-            origin[c] = model.face(face_of(sides[c].front())).front();
+    parallel_each(origin.size(), execution, [&](std::size_t c) {
+        origin[c] = model.face(face_of(sides[c].front())).front();
     });
     return origin;
 }

@@ -26,7 +26,6 @@ public:
     FaceMeasures(const ComplexView& model, const SidesByCell& sides, const Execution& execution);
 
     const FaceMeasure& operator[](std::size_t face) const { return measures_[face]; }
-    const FaceMeasure* data() const { return measures_.data(); }
     Findings& findings() { return findings_; }
 
 private:

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/index.hpp"
+#include "base/parallel_counts.hpp"
 #include "exact/orient2d.hpp"
 #include "spatial/point_bins.hpp"
-#include "validation/chunked.hpp"
 #include "validation/plan_tests.hpp"
 
 namespace realmodel::validation {
@@ -47,25 +48,20 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
     /// Calls visit(probe, triangle) for all triangles of a mesh that contain a probe.
     const auto look = [&](std::span<const double> vertices, std::size_t columns,
                           std::span<const std::int32_t> triangles, const auto& visit) {
-        in_chunks(
-            triangles.size() / 3, execution, [&](std::size_t begin, std::size_t end, Findings&) {
-                for (std::size_t t = begin; t < end; ++t) {
-                    std::array<PlanPosition, 3> p;
-                    for (std::size_t i = 0; i < 3; ++i) {
-                        const double* row =
-                            &vertices[static_cast<std::size_t>(triangles[3 * t + i]) * columns];
-                        p[i] = {row[0], row[1]};
-                    }
-                    const spatial::PlanBox box = spatial::box_around(p).widened(rounding.near);
-                    bins.within(box, [&](std::size_t i, const PlanPosition&) {
-                        for (std::size_t e = 0; e < 3; ++e) {
-                            if (!passes(p[e], p[(e + 1) % 3], places[i], rounding.near)) continue;
-                            mark(near_edge_[i]);
-                        }
-                        if (contains(p, places[i])) visit(i, static_cast<std::int32_t>(t));
-                    });
+        parallel_each(triangles.size() / 3, execution, [&](std::size_t t) {
+            std::array<PlanPosition, 3> p;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double* row = &vertices[index(triangles[3 * t + i]) * columns];
+                p[i] = {row[0], row[1]};
+            }
+            const spatial::PlanBox box = spatial::box_around(p).widened(rounding.near);
+            bins.within(box, [&](std::size_t i, const PlanPosition&) {
+                for (std::size_t e = 0; e < 3; ++e) {
+                    if (passes(p[e], p[(e + 1) % 3], places[i], rounding.near)) mark(near_edge_[i]);
                 }
+                if (contains(p, places[i])) visit(i, static_cast<std::int32_t>(t));
             });
+        });
     };
     std::size_t first = 0;
     for (const strata::StackInput& rock : input.rocks) {
@@ -78,10 +74,7 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
         if (rock.region) {
             std::vector<std::uint8_t> inside(places.size(), 0);
             look(rock.region->vertices, 2, rock.region->triangles,
-                 [&](std::size_t probe, std::int32_t) {
-                     std::atomic_ref<std::uint8_t>(inside[probe])
-                         .store(1, std::memory_order_relaxed);
-                 });
+                 [&](std::size_t probe, std::int32_t) { mark(inside[probe]); });
             for (std::size_t i = 0; i < places.size(); ++i) {
                 if (inside[i] != 0) continue;
                 std::fill_n(triangle_.begin() + static_cast<std::ptrdiff_t>(i * surfaces_ + first),

@@ -26,15 +26,9 @@ public:
         const auto loop = model_.face(face);
         corners.resize(loop.size());
         plan.resize(loop.size());
-        low = {HUGE_VAL, HUGE_VAL};
-        high = {-HUGE_VAL, -HUGE_VAL};
         for (std::size_t i = 0; i < loop.size(); ++i) {
             corners[i] = model_.vertex(loop[i]);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                plan[i][axis] = corners[i][axis];
-                low[axis] = std::min(low[axis], plan[i][axis]);
-                high[axis] = std::max(high[axis], plan[i][axis]);
-            }
+            plan[i] = {corners[i][0], corners[i][1]};
         }
     }
 
@@ -53,7 +47,6 @@ public:
 
     std::vector<std::array<double, 3>> corners;
     std::vector<PlanPosition> plan;
-    PlanPosition low{}, high{};
 
 private:
     // to twice the precision of doubles, for needles
@@ -90,40 +83,41 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
     const double beside = rounding.step + rounding.near;
     std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
                                              kItemsOfChunk);
-    in_chunks(model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
-        auto& own = found[begin / kItemsOfChunk];
-        FaceInPlan face(model);
-        const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
-            for (std::size_t k = 0; k < face.plan.size(); ++k) {
-                const PlanPosition& p = face.plan[k];
-                const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
-                if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach)) return true;
-            }
-            return false;
-        };
-        for (std::size_t f = begin; f < end; ++f) {
-            face.load(f);
-            const spatial::PlanBox box{face.low[0], face.low[1], face.high[0], face.high[1]};
-            bins.within(box.widened(beside), [&](std::size_t i, const PlanPosition&) {
-                if (i >= count) {
-                    const WallSample& wall = probes.walls[i - count];
-                    const auto its_own = [&](const auto& p, const auto& q) {
-                        return same_stretch(wall, p, q);
-                    };
-                    if (edge_passes(i, beside, its_own)) mark(coincident_[i - count]);
-                    return;
+    parallel_ranges(
+        model.face_count(), kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
+            auto& own = found[begin / kItemsOfChunk];
+            FaceInPlan face(model);
+            const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
+                for (std::size_t k = 0; k < face.plan.size(); ++k) {
+                    const PlanPosition& p = face.plan[k];
+                    const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
+                    if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach)) return true;
                 }
-                const auto none = [](const auto&, const auto&) { return false; };
-                if (edge_passes(i, rounding.near, none)) mark(near_edge_[i]);
-                const int turns = winding(face.plan, places[i]);
-                if (turns == 0) return;
-                const bool up = turns > 0;
-                own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
-                               model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
-                               face.height(places[i])});
-            });
-        }
-    });
+                return false;
+            };
+            for (std::size_t f = begin; f < end; ++f) {
+                face.load(f);
+                const spatial::PlanBox box = spatial::box_around(face.plan).widened(beside);
+                bins.within(box, [&](std::size_t i, const PlanPosition&) {
+                    if (i >= count) {
+                        const WallSample& wall = probes.walls[i - count];
+                        const auto its_own = [&](const auto& p, const auto& q) {
+                            return same_stretch(wall, p, q);
+                        };
+                        if (edge_passes(i, beside, its_own)) mark(coincident_[i - count]);
+                        return;
+                    }
+                    const auto none = [](const auto&, const auto&) { return false; };
+                    if (edge_passes(i, rounding.near, none)) mark(near_edge_[i]);
+                    const int turns = winding(face.plan, places[i]);
+                    if (turns == 0) return;
+                    const bool up = turns > 0;
+                    own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
+                                   model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
+                                   face.height(places[i])});
+                });
+            }
+        });
     crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
         for (const auto& part : found) {
             for (const Crossing& c : part)

@@ -8,8 +8,11 @@
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::validation {
+
+using spatial::PlanBox;
 
 namespace {
 
@@ -34,38 +37,25 @@ private:
     std::uint64_t state_;
 };
 
-struct Box {
-    PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    void include(const double* p) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    }
-    bool empty() const { return !(low[0] <= high[0]); }
-};
-
 const double* corner(std::span<const double> vertices, std::size_t columns, std::int32_t v) {
     return &vertices[static_cast<std::size_t>(v) * columns];
 }
 
 /// Around what a rock mass covers at most.
-Box rock_box(const strata::StackInput& rock) {
-    Box box;
-    for (const TriangleView& s : rock.surfaces) {
-        for (const std::int32_t v : s.triangles)
-            box.include(corner(s.vertices, 3, v));
-    }
-    if (rock.region && !box.empty()) {
-        Box region;
-        for (const std::int32_t v : rock.region->triangles)
-            region.include(corner(rock.region->vertices, 2, v));
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            box.low[axis] = std::max(box.low[axis], region.low[axis]);
-            box.high[axis] = std::min(box.high[axis], region.high[axis]);
+PlanBox rock_box(const strata::StackInput& rock) {
+    PlanBox box = spatial::kNoBox, region = spatial::kNoBox;
+    const auto include = [](const TriangleView& mesh, std::size_t columns, PlanBox& in) {
+        for (const std::int32_t v : mesh.triangles) {
+            const double* p = corner(mesh.vertices, columns, v);
+            in = in.united({p[0], p[1], p[0], p[1]});
         }
-    }
-    return box;
+    };
+    for (const TriangleView& s : rock.surfaces)
+        include(s, 3, box);
+    if (!rock.region) return box;
+    include(*rock.region, 2, region);
+    return {std::max(box.low_x, region.low_x), std::max(box.low_y, region.low_y),
+            std::min(box.high_x, region.high_x), std::min(box.high_y, region.high_y)};
 }
 
 PlanPosition place_in_triangle(const std::array<PlanPosition, 3>& p, double s, double t) {
@@ -174,15 +164,13 @@ public:
 
     void evenly(std::size_t count) {
         for (std::size_t r = 0; r < input_.rocks.size(); ++r) {
-            const Box box = rock_box(input_.rocks[r]);
-            if (box.empty()) continue;
+            const PlanBox box = rock_box(input_.rocks[r]);
+            if (!(box.low_x <= box.high_x)) continue;
             for (std::size_t i = 0; i < std::max<std::size_t>(count / input_.rocks.size(), 1);
                  ++i) {
                 Random random = draw(1 + r, i);
-                PlanPosition place;
-                for (std::size_t axis = 0; axis < 2; ++axis)
-                    place[axis] = box.low[axis] + random.share() * (box.high[axis] - box.low[axis]);
-                add(place);
+                const double x = box.low_x + random.share() * box.width();
+                add({x, box.low_y + random.share() * box.height()});
             }
         }
     }

@@ -279,16 +279,11 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
     report(0.7, "comparing with the closed form");
     const Comparison comparison(model, input, probes, rounding, model_columns, input_columns);
     constexpr std::size_t kProbesOfChunk = 64;
-    const std::size_t count = probes.probes.size();
-    std::vector<SampleFindings> found((count + kProbesOfChunk - 1) / kProbesOfChunk);
-    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
-        for (std::size_t i = chunk * kProbesOfChunk;
-             i < std::min(count, (chunk + 1) * kProbesOfChunk); ++i)
-            comparison.look(i, found[chunk]);
-    });
-    SampleFindings all;
-    for (const SampleFindings& part : found)
-        all.append(part);
+    const auto look = [&](std::size_t begin, std::size_t end, SampleFindings& found) {
+        for (std::size_t i = begin; i < end; ++i)
+            comparison.look(i, found);
+    };
+    auto all = in_chunks<SampleFindings>(probes.probes.size(), execution, look, kProbesOfChunk);
     all.walls.examined += 2 * probes.narrow_walls;
     all.walls.undecided += 2 * probes.narrow_walls;
     report(1.0, "comparing with the closed form");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/corrected_sum.hpp"
 #include "validation/arrays_test.hpp"
 #include "validation/cell_extent.hpp"
 #include "validation/cell_sides.hpp"
@@ -21,18 +22,6 @@ namespace {
 
 /// Cells with more faces than this are looked at one by one, on all threads.
 constexpr std::size_t kFacesOfLargeCell = 4096;
-
-/// Sum with a running correction (Neumaier 1974).
-struct Sum {
-    double total = 0, correction = 0;
-    void add(double value) {
-        const double next = total + value;
-        correction +=
-            std::abs(total) >= std::abs(value) ? (total - next) + value : (value - next) + total;
-        total = next;
-    }
-    double value() const { return total + correction; }
-};
 
 /// What is found cell by cell.
 struct CellFindings {
@@ -91,7 +80,7 @@ private:
     // one is looked at, first where their corners are, then the corners.
     void send_for(std::span<const Side> sides) const {
         constexpr std::size_t kNear = 24, kFar = 64;
-        const Side* const end = sides_.end();
+        const Side* const end = sides_.values.end();
         for (const Side& side : sides) {
             const Side* const ahead = &side;
             if (end - ahead > static_cast<std::ptrdiff_t>(kFar)) {
@@ -164,7 +153,7 @@ double volume_rounding(const ComplexView& model, const SidesByCell& sides, std::
 
 Findings check_block_volumes(const ComplexView& model, const SidesByCell& sides,
                              const std::vector<double>& cell_volume) {
-    std::vector<Sum> sums(model.block_volume.size());
+    std::vector<CorrectedSum> sums(model.block_volume.size());
     for (std::size_t c = 0; c < cell_volume.size(); ++c)
         sums[static_cast<std::size_t>(model.cell_block[c])].add(cell_volume[c]);
     Findings found;

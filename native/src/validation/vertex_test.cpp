@@ -35,17 +35,18 @@ std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
 /// How many vertices ascend before one does not.
 std::size_t count_ascending(const ComplexView& model, const Execution& execution) {
     std::atomic<std::size_t> ascending{model.vertex_count()};
-    in_chunks(model.vertex_count(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
-        for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
-            if (model.vertex(static_cast<std::int32_t>(v - 1)) <
-                model.vertex(static_cast<std::int32_t>(v)))
-                continue;
-            std::size_t least = ascending.load();
-            while (v < least && !ascending.compare_exchange_weak(least, v)) {
-            }
-            return;
-        }
-    });
+    parallel_ranges(model.vertex_count(), kItemsOfChunk, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
+                            if (model.vertex(static_cast<std::int32_t>(v - 1)) <
+                                model.vertex(static_cast<std::int32_t>(v)))
+                                continue;
+                            std::size_t least = ascending.load();
+                            while (v < least && !ascending.compare_exchange_weak(least, v)) {
+                            }
+                            return;
+                        }
+                    });
     return ascending;
 }
 
@@ -142,11 +143,8 @@ Findings check_distinct(const ComplexView& model, const Execution& execution) {
 
 Findings check_used(const ComplexView& model, const Execution& execution) {
     std::vector<std::uint8_t> used(model.vertex_count(), 0);
-    in_chunks(model.face_vertices.size(), execution,
-              [&](std::size_t begin, std::size_t end, Findings&) {
-                  for (std::size_t i = begin; i < end; ++i)
-                      mark(used[index(model.face_vertices[i])]);
-              });
+    parallel_each(model.face_vertices.size(), execution,
+                  [&](std::size_t i) { mark(used[index(model.face_vertices[i])]); });
     Findings found;
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (used[v] != 0) continue;
@@ -161,8 +159,7 @@ Findings check_used(const ComplexView& model, const Execution& execution) {
 }
 
 /// A vertex that a loop names twice, or -1.
-std::int32_t repeated_vertex(std::span<const std::int32_t> loop,
-                             std::vector<std::int32_t>& sorted) {
+std::int32_t repeated_vertex(std::span<const std::int32_t> loop) {
     constexpr std::size_t kFew = 12;
     if (loop.size() <= kFew) {
         for (std::size_t i = 1; i < loop.size(); ++i) {
@@ -172,7 +169,7 @@ std::int32_t repeated_vertex(std::span<const std::int32_t> loop,
         }
         return -1;
     }
-    sorted.assign(loop.begin(), loop.end());
+    std::vector<std::int32_t> sorted(loop.begin(), loop.end());
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     return twice == sorted.end() ? -1 : *twice;
@@ -188,22 +185,18 @@ Findings check_vertices(const ComplexView& model, const Execution& execution) {
 }
 
 Findings check_loops(const ComplexView& model, const Execution& execution) {
-    Findings found = in_chunks(
-        model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings& own) {
-            std::vector<std::int32_t> sorted;
-            for (std::size_t f = begin; f < end; ++f) {
-                const std::int32_t v = repeated_vertex(model.face(f), sorted);
-                if (v < 0) continue;
-                own.fail([&] {
-                    return Offender{.text = "face " + std::to_string(f) + " passes vertex " +
-                                            std::to_string(v) + " more than once",
-                                    .cell = model.cell(f, 0),
-                                    .face = static_cast<std::int64_t>(f),
-                                    .vertex = v,
-                                    .place = model.vertex(v)};
-                });
-            }
+    Findings found = look_at_each(model.face_count(), execution, [&](std::size_t f, Findings& own) {
+        const std::int32_t v = repeated_vertex(model.face(f));
+        if (v < 0) return;
+        own.fail([&] {
+            return Offender{.text = "face " + std::to_string(f) + " passes vertex " +
+                                    std::to_string(v) + " more than once",
+                            .cell = model.cell(f, 0),
+                            .face = static_cast<std::int64_t>(f),
+                            .vertex = v,
+                            .place = model.vertex(v)};
         });
+    });
     found.examined = static_cast<std::int64_t>(model.face_count());
     return found;
 }

@@ -95,7 +95,7 @@ void expect_border(const PlanarMesh& mesh, const std::vector<Ring>& rings) {
 }
 
 PlanarMesh meshed(const std::vector<Ring>& rings, double edge_length, double angle = 25) {
-    PlanarMesh mesh = mesh_region(rings, edge_length);
+    PlanarMesh mesh = mesh_region(rings, {.edge_length = edge_length});
     expect_valid(mesh);
     expect_border(mesh, rings);
     const double area = area_of(triangulate_rings(rings));
@@ -209,12 +209,12 @@ TEST(RegionMesh, RandomStars) {
 TEST(RegionMesh, SameBytesEveryTime) {
     const std::vector<Ring> rings{
         rectangle(0, 0, 64, 64), rectangle(16, 16, 32, 32), {{60, 60}, {50, 61}, {60, 62}}};
-    const PlanarMesh first = mesh_region(rings, 1);
+    const PlanarMesh first = mesh_region(rings, {.edge_length = 1});
     const std::vector<std::string> elsewhere(1000, "moves the heap about, so addresses differ");
 #if defined(_OPENMP)
     omp_set_num_threads(1);
 #endif
-    const PlanarMesh second = mesh_region(rings, 1);
+    const PlanarMesh second = mesh_region(rings, {.edge_length = 1});
     EXPECT_EQ(first.vertices, second.vertices);
     EXPECT_EQ(first.triangles, second.triangles);
 }
@@ -222,26 +222,27 @@ TEST(RegionMesh, SameBytesEveryTime) {
 TEST(RegionMesh, RefusesWhatDoesNotFit) {
     const std::vector<Ring> rings{rectangle(0, 0, 1000, 1000)};
     for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-        EXPECT_EQ(refusal([&] { mesh_region(rings, bad); }).kind, "edge_length");
+        EXPECT_EQ(refusal([&] { mesh_region(rings, {.edge_length = bad}); }).kind, "edge_length");
     }
-    const InputError large = refusal([&] { mesh_region(rings, 1e-3); });
+    const InputError large = refusal([&] { mesh_region(rings, {.edge_length = 1e-3}); });
     EXPECT_EQ(large.kind, "too_large");
     EXPECT_NE(std::string(large.what()).find("at least"), std::string::npos) << large.what();
-    EXPECT_EQ(refusal([&] { mesh_region(rings, 1e-300); }).kind, "too_large");
+    EXPECT_EQ(refusal([&] { mesh_region(rings, {.edge_length = 1e-300}); }).kind, "too_large");
     const std::vector<Ring> far{moved(rectangle(0, 0, 1e-6, 1e-6), 5e6, 5e6)};
-    EXPECT_EQ(refusal([&] { mesh_region(far, 1e-7); }).kind, "edge_length");
-    EXPECT_EQ(refusal([&] {
-                  mesh_region(std::vector<Ring>{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}, 1);
-              }).kind,
-              "outline_crosses");
+    EXPECT_EQ(refusal([&] { mesh_region(far, {.edge_length = 1e-7}); }).kind, "edge_length");
+    EXPECT_EQ(
+        refusal([&] {
+            mesh_region(std::vector<Ring>{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}, {.edge_length = 1});
+        }).kind,
+        "outline_crosses");
 }
 
 TEST(RegionMesh, TheEdgeLengthItNamesFits) {
     const std::vector<Ring> rings{rectangle(0, 0, 1000, 1000)};
-    const std::string text = refusal([&] { mesh_region(rings, 1e-3); }).what();
+    const std::string text = refusal([&] { mesh_region(rings, {.edge_length = 1e-3}); }).what();
     const double least = std::stod(text.substr(text.find("at least ") + 9));
-    const MeshEstimate fits = estimate_region_mesh(rings, 1.02 * least);
-    const MeshEstimate does_not = estimate_region_mesh(rings, 0.9 * least);
+    const MeshEstimate fits = estimate_region_mesh(rings, {.edge_length = 1.02 * least});
+    const MeshEstimate does_not = estimate_region_mesh(rings, {.edge_length = 0.9 * least});
     EXPECT_LT(fits.triangles, 2147483647.0);
     EXPECT_GT(does_not.triangles, 0.9 * fits.triangles);
 }
@@ -257,7 +258,7 @@ TEST(RegionMesh, StopsSoonAfterCancel) {
             progress.cancel();
             asked = progress.fraction();
         });
-        EXPECT_THROW(mesh_region(rings, 0.6, &progress), Cancelled);
+        EXPECT_THROW(mesh_region(rings, {.edge_length = 0.6}, &progress), Cancelled);
         watcher.join();
         // The step in hand may be told as done, which the fraction takes for up to a tenth; the
         // rest is left, however long that takes.

@@ -21,7 +21,7 @@ TEST(SidesByCell, EachCellHasItsFacesInOrderAndTheSharedOneFromItsOtherSide) {
     EXPECT_EQ(face_of(sides[1][0]), 1U);
     EXPECT_TRUE(is_reversed(sides[1][0]));
     EXPECT_FALSE(is_reversed(sides[0][1]));
-    EXPECT_EQ(sides.end(), sides[1].data() + 6);
+    EXPECT_EQ(sides.values.end(), sides[1].data() + 6);
 }
 
 TEST(SidesByCell, ACellWithoutFacesHasNone) {

@@ -26,11 +26,6 @@ inline constexpr std::array kRisingModels{VariogramModel::kSpherical, VariogramM
                                           VariogramModel::kGaussian,  VariogramModel::kCubic,
                                           VariogramModel::kMatern32,  VariogramModel::kMatern52};
 
-inline constexpr std::array kAllVariogramModels{
-    VariogramModel::kSpherical, VariogramModel::kExponential, VariogramModel::kGaussian,
-    VariogramModel::kCubic,     VariogramModel::kMatern32,    VariogramModel::kMatern52,
-    VariogramModel::kWave};
-
 /// "spherical" and so on.
 std::string_view name_of(VariogramModel model);
 
@@ -72,9 +67,6 @@ struct Variogram {
 
     /// Sill of the first structure alone.
     double first_sill() const;
-
-    /// Along the azimuth of each structure.
-    double gamma(double distance) const;
 };
 
 /// Ranges, sills and ratios must be positive, 0 <= nugget <= sill, nugget and further sills

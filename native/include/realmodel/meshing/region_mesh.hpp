@@ -40,13 +40,13 @@ struct LocalLength {
 
 struct MeshRequest {
     Mesher mesher = Mesher::kDelaunay;
-    double edge_length = 0;          ///< of most edges; not used where `triangles` is above 0
-    double triangles = 0;            ///< how many there should be, within 5 %
-    std::vector<LocalLength> sizes;  ///< where edges are shorter
+    double edge_length = 0;            ///< of most edges; not used where `triangles` is above 0
+    double triangles = 0;              ///< how many there should be, within 5 %
+    std::vector<LocalLength> sizes{};  ///< where edges are shorter
     std::vector<PlanPoint>
-        density;  ///< where there are any: edges half as long as these are apart,
-                  ///< and `edge_length` only bounds them where it is above 0
-    Constraints constraints;
+        density{};  ///< where there are any: edges half as long as these are apart,
+                    ///< and `edge_length` only bounds them where it is above 0
+    Constraints constraints{};
 };
 
 /// What a mesh will take, told before it is made.
@@ -59,7 +59,6 @@ struct MeshEstimate {
 /// does.
 MeshEstimate estimate_region_mesh(std::span<const Ring> rings, const MeshRequest& request,
                                   Progress* progress = nullptr);
-MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_length);
 
 /// Meshes what lies inside an odd number of rings.
 ///
@@ -92,8 +91,6 @@ MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_lengt
 ///   edge length that fits);
 /// Cancelled within 0.2 s of Progress::cancel.
 PlanarMesh mesh_region(std::span<const Ring> rings, const MeshRequest& request,
-                       Progress* progress = nullptr);
-PlanarMesh mesh_region(std::span<const Ring> rings, double edge_length,
                        Progress* progress = nullptr);
 
 }  // namespace realmodel::meshing

@@ -74,12 +74,8 @@ void check_constraints(const DsiConstraints& c, std::size_t nodes) {
 }
 
 void check_bounds(std::span<const std::array<double, 3>> bounds) {
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-        if (usable(bounds[i][0]) && usable(bounds[i][1]) && usable(bounds[i][2])) continue;
-        throw InputError("not_finite",
-                         "bound " + std::to_string(i) + " is not a finite number below 1e150", -1,
-                         {static_cast<std::int64_t>(i)});
-    }
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        require_usable(bounds[i], "bound", i);
 }
 
 /// Everything between input and heights.

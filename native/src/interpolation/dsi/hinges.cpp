@@ -6,7 +6,6 @@
 
 #include "base/counting_sort.hpp"
 #include "base/vectors.hpp"
-#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -78,8 +77,7 @@ std::vector<Hinge> hinges(std::span<const Position> nodes, std::span<const Trian
     std::vector<char> hinged(triangles.size(), 0);
     for (std::size_t v = 0; v < nodes.size(); ++v) {
         const std::span<Side> sides = by_low_end[v];
-        std::stable_sort(sides.begin(), sides.end(),
-                         [](const Side& a, const Side& b) { return a.high_end < b.high_end; });
+        std::ranges::stable_sort(sides, {}, &Side::high_end);
         for (std::size_t i = 1; i < sides.size(); ++i) {
             const Side &one = sides[i - 1], &other = sides[i];
             // Else a border, or one triangle given twice.

@@ -6,7 +6,6 @@
 
 #include "base/counting_sort.hpp"
 #include "base/vectors.hpp"
-#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 

@@ -28,8 +28,7 @@ void SparseRows::find_row(std::size_t row, std::span<const Hinge> hinges, const 
             }
         }
     }
-    std::sort(entries.begin(), entries.end(),
-              [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    std::ranges::sort(entries, {}, &Entry::column);
 }
 
 SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int threads)

@@ -221,10 +221,6 @@ void SplineLevels::factor_coarsest(double least) {
     coarsest_.compute(matrix);
 }
 
-void SplineLevels::solve() {
-    cycle(0);
-}
-
 /// x of a level from its right side.
 void SplineLevels::cycle(std::size_t at) {
     check_();

@@ -40,7 +40,7 @@ public:
     /// The right side, of grid().length(), to be set before solve(), and the solution after it.
     Vector& right() { return levels_.front().right; }
     const Vector& solution() const { return levels_.front().x; }
-    void solve();
+    void solve() { cycle(0); }
 
 private:
     struct Level {

@@ -19,13 +19,10 @@ std::vector<CovariancePart> parts_of(const Variogram& variogram) {
         const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
         const double ratio = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
         const double x = elementary::sin(azimuth), y = elementary::cos(azimuth);
-        if (model == VariogramModel::kWave) {
-            parts.push_back(
-                {model, x / range, y / range, y / range, -x / range, sill / variogram.sill, ratio});
-            return;
-        }
-        parts.push_back({model, x / range, y / range, ratio * y / range, -ratio * x / range,
-                         sill / variogram.sill, 0});
+        const bool is_wave = model == VariogramModel::kWave;
+        const double across = is_wave ? 1 : ratio;
+        parts.push_back({model, x / range, y / range, across * y / range, -across * x / range,
+                         sill / variogram.sill, is_wave ? ratio : 0});
     };
     add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy);
     for (const NestedStructure& nested : variogram.further)

@@ -9,7 +9,6 @@
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/kriging/unique_neighborhood.hpp"
 #include "interpolation/node_loop.hpp"
-#include "realmodel/base/errors.hpp"
 #include "spatial/hilbert_order.hpp"
 
 namespace realmodel::interpolation {

@@ -11,6 +11,7 @@
 #include "interpolation/kriging/estimate.hpp"
 #include "interpolation/kriging/lane_kernels.hpp"
 #include "interpolation/linear_data.hpp"
+#include "interpolation/neighbors/neighbor_search.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "spatial/block_neighbors.hpp"
 
@@ -38,11 +39,10 @@ public:
     static constexpr std::size_t kMostNeighbors = kMostLanePoints;
 
     struct Node {
-        Position position;                ///< in local coordinates
-        std::uint32_t number;             ///< given back with the estimate
-        std::int32_t left_out = kNobody;  ///< a point that is not used
+        Position position;                                ///< in local coordinates
+        std::uint32_t number;                             ///< given back with the estimate
+        std::int32_t left_out = NeighborSearch::kNobody;  ///< a point that is not used
     };
-    static constexpr std::int32_t kNobody = -1;
 
     /// @param neighbors   points of each system, from 1; with two slopes of each dip at a node at
     ///                    most kMostNeighbors
@@ -55,10 +55,6 @@ public:
     /// leave(number) gets nodes whose system is not well posed; never without a drift.
     template <class Set, class Leave>
     void krige(std::span<const Node> nodes, Set&& set, Leave&& leave);
-    template <class Set>
-    void krige(std::span<const Node> nodes, Set&& set) {
-        krige(nodes, set, [](std::uint32_t) {});
-    }
 
 private:
     static constexpr std::size_t kMostInBlock = 64;
@@ -111,7 +107,7 @@ void LaneKriging::krige(std::span<const Node> nodes, Set&& set, Leave&& leave) {
         prepare_covariances();
         for (const Node& node : nodes.first(count)) {
             nearest_ = block_.nearest(node.position);
-            if (node.left_out == kNobody && block_.squared_distance(0) == 0) {
+            if (node.left_out == NeighborSearch::kNobody && block_.squared_distance(0) == 0) {
                 const std::int32_t point = block_.candidates()[nearest_[0]];
                 set(node.number, Estimate{data_.points().values[point], 0});
             } else if (add(node)) {

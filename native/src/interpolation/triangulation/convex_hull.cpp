@@ -53,8 +53,7 @@ std::vector<std::int32_t> hull_border(std::span<const Position> positions) {
     std::vector<std::int32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0);
     const auto at = [&](std::int32_t i) { return positions[static_cast<std::size_t>(i)]; };
-    std::sort(order.begin(), order.end(),
-              [&](std::int32_t a, std::int32_t b) { return at(a) < at(b); });
+    std::ranges::sort(order, {}, at);
     if (order.size() < 3) return order;
     const auto turn = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
         return exact::orient2d(at(a), at(b), at(c));

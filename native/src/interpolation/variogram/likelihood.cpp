@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/vectors.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/linear_data.hpp"
@@ -32,9 +33,8 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
     std::vector<std::int32_t> part(points.size());
     std::iota(part.begin(), part.end(), 0);
     std::vector<Position> plan(points.size());
-    std::transform(points.begin(), points.end(), plan.begin(), [](const auto& point) {
-        return Position{point[0], point[1]};
-    });
+    for (std::size_t i = 0; i < plan.size(); ++i)
+        plan[i] = {points[i][0], points[i][1]};
     // Whole numbers with their bits reversed: the first ones are spread evenly, however many.
     std::vector<std::uint32_t> turn(points.size());
     std::uint32_t rank = 0;
@@ -46,9 +46,7 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
             turn[i] |= (rank >> bit & 1U) << (31 - bit);
     }
     const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
-    std::sort(part.begin(), part.end(), [&](std::int32_t a, std::int32_t b) {
-        return std::tuple(sheet(a), turn[a], a) < std::tuple(sheet(b), turn[b], b);
-    });
+    std::ranges::sort(part, {}, [&](std::int32_t i) { return std::tuple(sheet(i), turn[i], i); });
     std::vector<std::size_t> sizes;  // of the sheets with points, in the order of these
     for (std::size_t k = 0; k < part.size(); ++k) {
         if (k == 0 || sheet(part[k]) != sheet(part[k - 1])) sizes.push_back(0);
@@ -148,18 +146,13 @@ Likelihood::Likelihood(std::span<const std::array<double, 3>> points, const Dips
         slopes_.push_back(dips.slopes[dip]);
         if (has_sheets()) of_dips_.push_back(sheets.of_dips[dip]);
     }
-    Position low = points_.local[0], high = low;
-    const auto add = [&](const Position& position) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], position[axis]);
-            high[axis] = std::max(high[axis], position[axis]);
-        }
-    };
-    std::for_each(points_.local.begin(), points_.local.end(), add);
-    for (const Position& dip : dips_)
-        add(points_.to_local(dip));
-    const double x = high[0] - low[0], y = high[1] - low[1];
-    diagonal_ = std::sqrt(x * x + y * y);
+    spatial::PlanBox box = spatial::box_around(points_.local);
+    for (const Position& dip : dips_) {
+        const auto [x, y] = points_.to_local(dip);
+        box = box.united({x, y, x, y});
+    }
+    diagonal_ = length(Vec2{box.width(), box.height()});
+
     std::int32_t constants = 0;
     for (const std::int32_t sheet : points_.sheets)
         column_of_[sheet] = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interpolation/variogram/likelihood.hpp"
+#include "interpolation/variogram/weighted_fit.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -55,14 +56,6 @@ double needed_gain(double few, double more, std::size_t data) {
         return parameters + parameters * (parameters + 1) / (count - parameters - 1);
     };
     return penalty(more) - penalty(few);
-}
-
-/// Multiplies all that is in units of height squared.
-void scale(Variogram& variogram, double factor) {
-    variogram.sill *= factor;
-    variogram.nugget *= factor;
-    for (NestedStructure& part : variogram.further)
-        part.sill *= factor;
 }
 
 class LikelihoodSearch {
@@ -171,19 +164,19 @@ public:
             const double before = best_->logarithm();
             for (const double up : {1.0, -1.0}) {
                 const double by = up * step;
-                attempt_wave([&](Shape& shape) { stretch(shape.variogram.range, by); });
-                attempt_wave([&](Shape& shape) {  // the length alone
+                attempt_changed([&](Shape& shape) { stretch(shape.variogram.range, by); });
+                attempt_changed([&](Shape& shape) {  // the length alone
                     shape.variogram.further[0].anisotropy.ratio *= elementary::exp(by / 4);
                 });
-                attempt_wave(
+                attempt_changed(
                     [&](Shape& shape) { turn(shape.variogram.further[0].anisotropy, by); });
-                attempt_wave([&](Shape& shape) {  // the range alone
+                attempt_changed([&](Shape& shape) {  // the range alone
                     NestedStructure& wave = shape.variogram.further[0];
                     const double before_it = wave.range;
                     stretch(wave.range, 2 * by);
                     wave.anisotropy.ratio *= wave.range / before_it;
                 });
-                attempt_wave([&](Shape& shape) {  // odds of the share
+                attempt_changed([&](Shape& shape) {  // odds of the share
                     const double whole = 1 - shape.variogram.nugget;
                     double& sill = shape.variogram.further[0].sill;
                     const double odds = sill / (whole - sill) * elementary::exp(4 * by);
@@ -200,31 +193,28 @@ public:
         for (int round = 0; round < 24 && step > 0.02; ++round) {
             const double before = best_->logarithm();
             for (const double up : {1.0, -1.0}) {
-                Shape shape = shape_;
-                stretch(shape.variogram.range, up * step);
-                attempt(shape);
+                const double by = up * step;
+                attempt_changed([&](Shape& shape) { stretch(shape.variogram.range, by); });
                 if (has_sheets_) {
-                    shape = shape_;
-                    shape.thickness = std::clamp(shape.thickness * elementary::exp(4 * up * step),
-                                                 kThicknesses[0], *(std::end(kThicknesses) - 1));
-                    attempt(shape);
+                    attempt_changed([&](Shape& shape) {
+                        shape.thickness =
+                            std::clamp(shape.thickness * elementary::exp(4 * by), kThicknesses[0],
+                                       *(std::end(kThicknesses) - 1));
+                    });
                 }
                 if (error_ > 0) {
-                    shape = shape_;
-                    shape.variogram.nugget =
-                        std::clamp(shape.variogram.nugget * elementary::exp(4 * up * step),
-                                   kNuggetsOfErrors[0], kMostOfErrors);
-                    attempt(shape);
+                    attempt_changed([&](Shape& shape) {
+                        double& nugget = shape.variogram.nugget;
+                        nugget = std::clamp(nugget * elementary::exp(4 * by), kNuggetsOfErrors[0],
+                                            kMostOfErrors);
+                    });
                 }
                 if (!turns) continue;
-                shape = shape_;
-                Anisotropy& anisotropy = shape.variogram.anisotropy;
-                anisotropy.ratio = std::clamp(anisotropy.ratio * elementary::exp(up * step), 1.0,
-                                              kMostAnisotropic);
-                attempt(shape);
-                shape = shape_;
-                turn(anisotropy, up * step);
-                attempt(shape);
+                attempt_changed([&](Shape& shape) {
+                    double& ratio = shape.variogram.anisotropy.ratio;
+                    ratio = std::clamp(ratio * elementary::exp(by), 1.0, kMostAnisotropic);
+                });
+                attempt_changed([&](Shape& shape) { turn(shape.variogram.anisotropy, by); });
             }
             if (best_->logarithm() - before < kLittle) step /= 2;
         }
@@ -232,7 +222,7 @@ public:
 
     void thicknesses_of(const Variogram& given) {
         Variogram shape = given;
-        scale(shape, 1 / given.sill);
+        multiply_sills(shape, 1 / given.sill);
         for (const double thickness : kThicknesses)
             attempt({shape, thickness});
     }
@@ -250,7 +240,7 @@ public:
 
     Variogram variogram() const {
         Variogram out = shape_.variogram;
-        scale(out, best_->sill());
+        multiply_sills(out, best_->sill());
         return out;
     }
 
@@ -294,7 +284,7 @@ private:
     }
 
     template <class Change>
-    void attempt_wave(const Change& change) {
+    void attempt_changed(const Change& change) {
         Shape shape = shape_;
         change(shape);
         attempt(shape);
@@ -386,7 +376,7 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
     std::vector<FittedVariogram> found;
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         Variogram own = shared;
-        scale(own, search.sill_of(all[k]) / shared.sill);
+        multiply_sills(own, search.sill_of(all[k]) / shared.sill);
         found.push_back({own, experimental_variogram(surfaces[k].points, own.anisotropy)});
     }
     return found;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "interpolation/kriging/decay.hpp"
 #include "realmodel/base/elementary.hpp"
@@ -12,17 +13,14 @@ namespace realmodel::interpolation {
 
 namespace {
 
-struct NamedModel {
-    VariogramModel model;
-    std::string_view name;
-};
-constexpr NamedModel kNamedModels[] = {{VariogramModel::kSpherical, "spherical"},
-                                       {VariogramModel::kExponential, "exponential"},
-                                       {VariogramModel::kGaussian, "gaussian"},
-                                       {VariogramModel::kCubic, "cubic"},
-                                       {VariogramModel::kMatern32, "matern32"},
-                                       {VariogramModel::kMatern52, "matern52"},
-                                       {VariogramModel::kWave, "wave"}};
+constexpr std::pair<VariogramModel, std::string_view> kNamedModels[] = {
+    {VariogramModel::kSpherical, "spherical"},
+    {VariogramModel::kExponential, "exponential"},
+    {VariogramModel::kGaussian, "gaussian"},
+    {VariogramModel::kCubic, "cubic"},
+    {VariogramModel::kMatern32, "matern32"},
+    {VariogramModel::kMatern52, "matern52"},
+    {VariogramModel::kWave, "wave"}};
 
 std::string number_text(double number) {
     char text[40];
@@ -37,17 +35,17 @@ bool is_positive(double number) {
 }  // namespace
 
 std::string_view name_of(VariogramModel model) {
-    for (const NamedModel& named : kNamedModels) {
-        if (named.model == model) return named.name;
+    for (const auto& [own, name] : kNamedModels) {
+        if (own == model) return name;
     }
     return {};
 }
 
 VariogramModel variogram_model(std::string_view name) {
     std::string known;
-    for (const NamedModel& named : kNamedModels) {
-        if (named.name == name) return named.model;
-        known += (known.empty() ? "" : ", ") + std::string(named.name);
+    for (const auto& [model, own] : kNamedModels) {
+        if (own == name) return model;
+        known += (known.empty() ? "" : ", ") + std::string(own);
     }
     throw InputError("variogram", "variogram model \"" + std::string(name) +
                                       "\" is not known; there are " + known);
@@ -78,14 +76,6 @@ double Variogram::first_sill() const {
     for (const NestedStructure& nested : further)
         left -= nested.sill;
     return left;
-}
-
-double Variogram::gamma(double distance) const {
-    if (distance == 0) return 0;
-    double sum = nugget + first_sill() * structure(model, distance / range);
-    for (const NestedStructure& nested : further)
-        sum += nested.sill * structure(nested.model, distance / nested.range);
-    return sum;
 }
 
 void check_variogram(const Variogram& variogram) {

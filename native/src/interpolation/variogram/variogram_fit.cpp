@@ -109,9 +109,7 @@ private:
     /// By all the points, among the best by a part of them. Of equally good ones one without a
     /// rough part, and of these the one that fits the experimental values best.
     Candidate last_choice(std::vector<Candidate> all, const Anisotropy& anisotropy) const {
-        std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-            return a.square < b.square;
-        });
+        std::ranges::stable_sort(all, {}, &Candidate::square);
         const double enough = kNearlyBest * all.front().square;
         while (all.size() > 1 && (all.size() > kFinalists || all.back().square > enough))
             all.pop_back();
@@ -175,11 +173,7 @@ private:
             variogram = moved;
             scale = with_range;
         }
-        scale = std::max(scale, kLeastScale);
-        variogram.sill *= scale;
-        variogram.nugget *= scale;
-        for (NestedStructure& part : variogram.further)
-            part.sill *= scale;
+        multiply_sills(variogram, std::max(scale, kLeastScale));
     }
 
     /// The kriging variance grows as this power of short distances; that of a sum of structures as

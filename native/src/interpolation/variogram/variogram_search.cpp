@@ -81,16 +81,12 @@ bool Candidate::contradicts() const {
 }
 
 void keep_agreeing(std::vector<Candidate>& candidates) {
-    const auto last =
-        std::stable_partition(candidates.begin(), candidates.end(),
-                              [](const Candidate& candidate) { return !candidate.contradicts(); });
-    if (last != candidates.begin()) candidates.erase(last, candidates.end());
+    if (std::ranges::all_of(candidates, &Candidate::contradicts)) return;
+    std::erase_if(candidates, std::mem_fn(&Candidate::contradicts));
 }
 
 const Candidate& best_of(const std::vector<Candidate>& candidates) {
-    return *std::min_element(
-        candidates.begin(), candidates.end(),
-        [](const Candidate& a, const Candidate& b) { return a.square < b.square; });
+    return *std::ranges::min_element(candidates, {}, &Candidate::square);
 }
 
 std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates) {

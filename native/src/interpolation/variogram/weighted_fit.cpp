@@ -108,4 +108,11 @@ Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy) {
     return out;
 }
 
+void multiply_sills(Variogram& variogram, double factor) {
+    variogram.sill *= factor;
+    variogram.nugget *= factor;
+    for (NestedStructure& part : variogram.further)
+        part.sill *= factor;
+}
+
 }  // namespace realmodel::interpolation

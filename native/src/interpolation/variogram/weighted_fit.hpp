@@ -40,5 +40,7 @@ CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool wi
 CurveFit fit_sill(const ExperimentalVariogram& e, const VariogramCurve& curve, double nugget);
 
 Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy);
+/// Multiplies all that is in units of height squared.
+void multiply_sills(Variogram& variogram, double factor);
 
 }  // namespace realmodel::interpolation

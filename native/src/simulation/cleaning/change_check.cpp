@@ -35,20 +35,15 @@ bool same_ring(std::span<const std::int32_t> a, std::span<const std::int32_t> b,
 
 }  // namespace
 
-ChangeCheck::Loop ChangeCheck::loop_of(const Change& change, std::int32_t face) const {
-    return face >= 0 ? complex_.corners(face) : change.loop(change.added[index(-1 - face)]);
-}
-
-std::array<std::int32_t, 2> ChangeCheck::cells_of(const Change& change, std::int32_t face) const {
-    return face >= 0 ? complex_.cells(face) : change.added[index(-1 - face)].cells;
-}
-
-std::int32_t ChangeCheck::surface_of(const Change& change, std::int32_t face) const {
-    return face >= 0 ? complex_.surface(face) : change.added[index(-1 - face)].surface;
-}
-
-const FaceVectors& ChangeCheck::shape_of(const Change& change, std::int32_t face) const {
-    return face >= 0 ? complex_.shape(face) : change.added[index(-1 - face)].shape;
+/// Calls visit(face) for what the change leaves of the faces at a vertex, and for those it adds.
+template <class Visit>
+void ChangeCheck::for_faces_after(const Change& change, std::int32_t vertex,
+                                  const Visit& visit) const {
+    for (const std::int32_t f : complex_.vertex_faces(vertex)) {
+        if (!is_removed(f)) visit(f);
+    }
+    for (std::size_t i = 0; i < change.added.size(); ++i)
+        visit(-1 - static_cast<std::int32_t>(i));
 }
 
 bool ChangeCheck::settle(Change& change, std::int32_t vertex) {
@@ -74,13 +69,8 @@ bool ChangeCheck::join_equal_faces(Change& change, std::int32_t vertex) {
         }
         entries_.push_back(entry);
     };
-    for (const std::int32_t f : complex_.vertex_faces(vertex)) {
-        if (!is_removed(f)) add(f);
-    }
-    for (std::size_t i = 0; i < change.added.size(); ++i)
-        add(-1 - static_cast<std::int32_t>(i));
-    std::stable_sort(entries_.begin(), entries_.end(),
-                     [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    for_faces_after(change, vertex, add);
+    std::ranges::stable_sort(entries_, {}, &Entry::key);
     std::vector<std::int32_t> equal;
     for (std::size_t i = 0; i < entries_.size(); i += equal.size()) {
         equal.assign(1, entries_[i].face);
@@ -169,9 +159,7 @@ bool ChangeCheck::keeps_cells(const Change& change) {
         for (const std::int32_t c : change.added[i].cells)
             beside_.push_back({c, -1 - static_cast<std::int32_t>(i)});
     }
-    std::sort(beside_.begin(), beside_.end(), [](const Beside& a, const Beside& b) {
-        return a.cell != b.cell ? a.cell < b.cell : a.face < b.face;
-    });
+    std::sort(beside_.begin(), beside_.end());
     block_change_.clear();
     for (std::size_t i = 0; i < beside_.size();) {
         std::size_t end = i;
@@ -313,13 +301,8 @@ bool ChangeCheck::keeps_edges(const Change& change, std::int32_t vertex) {
         for (const std::int32_t v : *found)
             around_.push_back({v, cells_of(change, face)});
     };
-    for (const std::int32_t f : complex_.vertex_faces(vertex)) {
-        if (!is_removed(f)) add(f);
-    }
-    for (std::size_t i = 0; i < change.added.size(); ++i)
-        add(-1 - static_cast<std::int32_t>(i));
-    std::stable_sort(around_.begin(), around_.end(),
-                     [](const Around& a, const Around& b) { return a.vertex < b.vertex; });
+    for_faces_after(change, vertex, add);
+    std::ranges::stable_sort(around_, {}, &Around::vertex);
     for (std::size_t i = 0; i < around_.size();) {
         std::size_t end = i + 1;
         while (end < around_.size() && around_[end].vertex == around_[i].vertex)

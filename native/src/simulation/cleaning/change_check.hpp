@@ -41,18 +41,29 @@ private:
     };
     struct Beside {
         std::int32_t cell, face;  ///< as of Entry
+        auto operator<=>(const Beside&) const = default;
     };
     struct Around {
         std::int32_t vertex;
         std::array<std::int32_t, 2> cells;
     };
 
-    const FaceVectors& shape_of(const Change& change, std::int32_t face) const;
+    template <class Visit>
+    void for_faces_after(const Change& change, std::int32_t vertex, const Visit& visit) const;
     bool join_equal_faces(Change& change, std::int32_t vertex);
     bool join_pair(Change& change, std::vector<std::int32_t>& equal) const;
-    Loop loop_of(const Change& change, std::int32_t face) const;
-    std::array<std::int32_t, 2> cells_of(const Change& change, std::int32_t face) const;
-    std::int32_t surface_of(const Change& change, std::int32_t face) const;
+    Loop loop_of(const Change& change, std::int32_t face) const {
+        return face >= 0 ? complex_.corners(face) : change.loop(change.added[index(-1 - face)]);
+    }
+    std::array<std::int32_t, 2> cells_of(const Change& change, std::int32_t face) const {
+        return face >= 0 ? complex_.cells(face) : change.added[index(-1 - face)].cells;
+    }
+    std::int32_t surface_of(const Change& change, std::int32_t face) const {
+        return face >= 0 ? complex_.surface(face) : change.added[index(-1 - face)].surface;
+    }
+    const FaceVectors& shape_of(const Change& change, std::int32_t face) const {
+        return face >= 0 ? complex_.shape(face) : change.added[index(-1 - face)].shape;
+    }
 
     bool keeps_faces(Change& change) const;
     bool keeps_cells(const Change& change);

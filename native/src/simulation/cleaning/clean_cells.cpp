@@ -352,8 +352,7 @@ private:
             const bool is_own = complex_.block(n.cell) == complex_.block(cell);
             return std::tuple(!(is_own && n.area > most / 2), -n.area, n.cell);
         };
-        std::sort(neighbors.begin(), neighbors.end(),
-                  [&](const Neighbor& a, const Neighbor& b) { return rank(a) < rank(b); });
+        std::ranges::sort(neighbors, {}, rank);
         for (const Neighbor& n : neighbors) {
             if (n.has_fault || n.area < most / 4) continue;
             change_.clear();

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::simulation {
 
@@ -137,20 +138,13 @@ EditableComplex::EditableComplex(const ComplexView& model, const Execution& exec
               for (const std::int32_t v : model.face(f))
                   see(v);
           })) {
-    std::array<double, 3> low{}, high{};
-    for (std::size_t v = 0; v < model.vertex_count(); ++v) {
-        const auto p = model.vertex(static_cast<std::int32_t>(v));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            low[axis] = v == 0 ? p[axis] : std::min(low[axis], p[axis]);
-            high[axis] = v == 0 ? p[axis] : std::max(high[axis], p[axis]);
-        }
-    }
+    spatial::Box box;
+    for (std::size_t v = 0; v < model.vertex_count(); ++v)
+        box.include(model.vertex(static_cast<std::int32_t>(v)));
+    const Vec3 ends = plus(box.low, box.high), middle{ends[0] / 2, ends[1] / 2, ends[2] / 2};
     points_.reserve(model.vertex_count());
-    for (std::size_t v = 0; v < model.vertex_count(); ++v) {
-        const auto p = model.vertex(static_cast<std::int32_t>(v));
-        points_.push_back({p[0] - (low[0] + high[0]) / 2, p[1] - (low[1] + high[1]) / 2,
-                           p[2] - (low[2] + high[2]) / 2});
-    }
+    for (std::size_t v = 0; v < model.vertex_count(); ++v)
+        points_.push_back(minus(model.vertex(static_cast<std::int32_t>(v)), middle));
     for (std::size_t f = 0; f < cells_.size(); ++f)
         cells_[f] = {model.cell(f, 0), model.cell(f, 1)};
     parallel_ranges(cells_.size(), kAtOnce, execution, [&](std::size_t begin, std::size_t end) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/cell_volumes.hpp"
 
-#include <algorithm>
 #include <string>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
@@ -12,22 +12,6 @@ namespace realmodel::strata {
 
 namespace {
 
-using Position = std::array<double, 3>;
-
-constexpr std::size_t kFacesOfChunk = 1 << 13;
-
-/// A face as the divergence theorem sees it: its first corner, and twice its area vector.
-struct FaceArea {
-    Position first, area;
-};
-
-FaceArea area_of(std::span<const Position> vertices, std::span<const std::int32_t> loop) {
-    const auto at = [&](std::size_t i) -> const Position& {
-        return vertices[static_cast<std::size_t>(loop[i])];
-    };
-    return {at(0), polygon_normal(loop.size(), at)};
-}
-
 [[noreturn]] void refuse(std::size_t face, const char* what) {
     throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
                      {static_cast<std::int64_t>(face)});
@@ -35,7 +19,7 @@ FaceArea area_of(std::span<const Position> vertices, std::span<const std::int32_
 
 }  // namespace
 
-std::vector<double> cell_volumes(std::span<const Position> vertices,
+std::vector<double> cell_volumes(std::span<const Vec3> vertices,
                                  std::span<const std::int64_t> face_offsets,
                                  std::span<const std::int32_t> face_vertices,
                                  std::span<const std::array<std::int32_t, 2>> face_cells,
@@ -66,19 +50,16 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
     }
     // the shares of the faces on several threads; then in order, so that sums do not depend on them
     std::vector<std::array<double, 2>> share(faces);
-    parallel_chunks((faces + kFacesOfChunk - 1) / kFacesOfChunk, execution, [&](std::size_t chunk) {
-        const std::size_t end = std::min(faces, (chunk + 1) * kFacesOfChunk);
-        for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
-            const FaceArea face = area_of(vertices, loop_of(f));
-            for (std::size_t side = 0; side < 2; ++side) {
-                const std::int32_t cell = face_cells[f][side];
-                if (cell < 0) continue;
-                const auto corner =
-                    static_cast<std::size_t>(origin[static_cast<std::size_t>(cell)]);
-                const Position& o = vertices[corner];
-                const double volume = dot(minus(face.first, o), face.area) / 6;
-                share[f][side] = side == 0 ? volume : -volume;
-            }
+    parallel_each(faces, execution, [&](std::size_t f) {
+        const auto loop = loop_of(f);
+        const auto at = [&](std::size_t i) -> const Vec3& { return vertices[index(loop[i])]; };
+        const Vec3 area = polygon_normal(loop.size(), at);  // twice as long
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t cell = face_cells[f][side];
+            if (cell < 0) continue;
+            const Vec3& o = vertices[index(origin[index(cell)])];
+            const double volume = dot(minus(at(0), o), area) / 6;
+            share[f][side] = side == 0 ? volume : -volume;
         }
     });
     std::vector<double> volume(cells, 0.0);

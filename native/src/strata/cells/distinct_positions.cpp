@@ -2,7 +2,6 @@
 #include "strata/cells/distinct_positions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -89,16 +88,9 @@ private:
     std::set<PlanPosition> taken_;  ///< besides the plan vertices' own positions
 };
 
-struct Extent {
-    PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    void include(const std::array<double, 3>& p) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    }
-    bool is_flat(std::size_t axis) const { return low[axis] == high[axis]; }
-};
+bool is_flat(const PlanBox& box, std::size_t axis) {
+    return axis == 0 ? box.low_x == box.high_x : box.low_y == box.high_y;
+}
 
 /// Finds cells whose plan vertices all have one x, or one y, and spreads them.
 class FlatCells {
@@ -113,12 +105,13 @@ public:
         if (cells_.empty()) return false;
         // Few, and all of their faces must be flat.
         find_faces();
-        extents_.assign(cells_.size(), {});
+        extents_.assign(cells_.size(), spatial::kNoBox);
         for_each_corner([&](std::size_t i, std::int32_t vertex) {
-            extents_[i].include(conformed_.positions[index(vertex)]);
+            const auto& [x, y, z] = conformed_.positions[index(vertex)];
+            extents_[i] = extents_[i].united({x, y, x, y});
         });
         return std::any_of(extents_.begin(), extents_.end(),
-                           [](const Extent& e) { return e.is_flat(0) || e.is_flat(1); });
+                           [](const PlanBox& b) { return is_flat(b, 0) || is_flat(b, 1); });
     }
     /// Spreads those found last; false where none of their plan vertices may move.
     bool spread() {
@@ -127,7 +120,7 @@ public:
         for_each_corner([&](std::size_t i, std::int32_t corner) {
             const std::size_t vertex = conformed_.plan_vertex_of(corner);
             for (std::size_t axis = 0; axis < 2; ++axis) {
-                if (!extents_[i].is_flat(axis) || !spreader_.movable(vertex)) continue;
+                if (!is_flat(extents_[i], axis) || !spreader_.movable(vertex)) continue;
                 to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(vertex));
                 any = true;
             }
@@ -144,8 +137,9 @@ public:
     std::vector<FlatCell> found() const {
         std::vector<FlatCell> flat;
         for (std::size_t i = 0; i < cells_.size(); ++i) {
-            if (extents_[i].is_flat(0) || extents_[i].is_flat(1))
-                flat.push_back({cells_[i], extents_[i].low});
+            const PlanBox& box = extents_[i];
+            if (is_flat(box, 0) || is_flat(box, 1))
+                flat.push_back({cells_[i], {box.low_x, box.low_y}});
         }
         return flat;
     }
@@ -172,7 +166,7 @@ private:
             prefetch(&conformed_.positions[index(std::max(conformed_.vertices[e], 0))]);
     }
 
-    bool is_flat(std::size_t face) const {
+    bool is_flat_in_plan(std::size_t face) const {
         const std::array<double, 3>* first = nullptr;
         bool same_x = true, same_y = true;
         visit_corners(face, [&](std::int32_t vertex) {
@@ -185,42 +179,29 @@ private:
         return same_x || same_y;
     }
 
-    /// Appends what collect(face, found) finds of all faces, in their order.
-    template <class Found, class Collect>
-    std::vector<Found> collected(const Collect& collect) const {
-        constexpr std::size_t kFaces = 1 << 13;
-        std::vector<std::vector<Found>> found((faces_.size() + kFaces - 1) / kFaces);
-        parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f)
-                collect(f, found[begin / kFaces]);
-        });
-        std::vector<Found> all;
-        for (const auto& some : found)
-            all.insert(all.end(), some.begin(), some.end());
-        return all;
-    }
-
     /// The cells above and below faces that are flat themselves, ascending.
     std::vector<std::int32_t> cells_of_flat_faces() const {
-        auto cells = collected<std::int32_t>([&](std::size_t f, auto& found) {
-            prefetch_face(f);
-            if (!is_flat(f)) return;
-            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                if (cell != kOutsideCell) found.push_back(cell);
-            }
-        });
+        auto cells = collect_in_order<std::int32_t>(
+            faces_.size(), execution_, [&](std::size_t f, auto& found) {
+                prefetch_face(f);
+                if (!is_flat_in_plan(f)) return;
+                for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                    if (cell != kOutsideCell) found.push_back(cell);
+                }
+            });
         sort_unique(cells);
         return cells;
     }
 
     void find_faces() {
-        of_cells_ = collected<std::pair<std::size_t, std::size_t>>([&](std::size_t f, auto& found) {
-            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
-                if (at != cells_.end() && *at == cell)
-                    found.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
-            }
-        });
+        of_cells_ = collect_in_order<std::pair<std::size_t, std::size_t>>(
+            faces_.size(), execution_, [&](std::size_t f, auto& found) {
+                for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                    const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
+                    if (at != cells_.end() && *at == cell)
+                        found.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
+                }
+            });
     }
 
     /// Calls visit(i, vertex) for every corner of every face of the i-th of the cells.
@@ -239,7 +220,7 @@ private:
     Spreader& spreader_;
     Execution execution_;
     std::vector<std::int32_t> cells_;                            ///< with a flat face, ascending
-    std::vector<Extent> extents_;                                ///< of each of them
+    std::vector<PlanBox> extents_;                               ///< of each of them
     std::vector<std::pair<std::size_t, std::size_t>> of_cells_;  ///< which of them, and a face
 };
 

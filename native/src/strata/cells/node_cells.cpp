@@ -13,8 +13,6 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kTriangles = 1 << 13, kLinks = 1 << 14, kEntries = 1 << 15;
-
 /// Whether walls beside each other at a vertical edge make one face: where the edge is much longer
 /// than what rounding moves positions by, for rounded ones are not quite on one line.
 bool is_high(const std::array<double, 3>& lower, const std::array<double, 3>& upper) {
@@ -107,11 +105,9 @@ std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_need
         number[v] = count++;
     }
     conformed.positions.resize(static_cast<std::size_t>(count));
-    parallel_ranges(
-        conformed.vertices.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e)
-                conformed.vertices[e] = number[static_cast<std::size_t>(conformed.vertices[e])];
-        });
+    parallel_each(conformed.vertices.size(), execution, [&](std::size_t e) {
+        conformed.vertices[e] = number[static_cast<std::size_t>(conformed.vertices[e])];
+    });
     return number;
 }
 
@@ -125,30 +121,23 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
         return construction.node_block[static_cast<std::size_t>(node)];
     };
     DisjointSets sets(construction.node_block.size());
-    parallel_ranges(construction.links.size(), kLinks, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                            const auto [a, b] = construction.links[i];
-                            assert(block(a) == block(b));
-                            sets.join(a, b);
-                        }
-                    });
+    parallel_each(construction.links.size(), execution, [&](std::size_t i) {
+        const auto [a, b] = construction.links[i];
+        assert(block(a) == block(b));
+        sets.join(a, b);
+    });
     const auto join = [&](std::int32_t a, std::int32_t b) {
         if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
     };
-    parallel_ranges(links.neighbor.size(), kTriangles, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (auto plane = static_cast<PlaneId>(begin);
-                             plane < static_cast<PlaneId>(end); ++plane) {
-                            const WholeFace& face = wholes.of(plane);
-                            if (!face.is_set()) continue;
-                            for (const PlaneId n : links.of(plane)) {
-                                if (n <= plane || !wholes.of(n).is_set()) continue;
-                                join(face.above, wholes.of(n).above);
-                                join(face.below, wholes.of(n).below);
-                            }
-                        }
-                    });
+    parallel_each(links.neighbor.size(), execution, [&](std::size_t p) {
+        const WholeFace& face = wholes.face[p];
+        if (!face.is_set()) return;
+        for (const PlaneId n : links.neighbor[p]) {
+            if (n <= static_cast<PlaneId>(p) || !wholes.of(n).is_set()) continue;
+            join(face.above, wholes.of(n).above);
+            join(face.below, wholes.of(n).below);
+        }
+    });
     std::vector<std::int32_t> cell_of_node(construction.node_block.size());
     for (std::size_t n = 0; n < cell_of_node.size(); ++n) {
         poll(execution.progress, n);
@@ -190,11 +179,8 @@ JoinedWalls join_stretches(std::span<const WallStretch> stretches,
     });
     WallBatch walls;
     for_all([&](const OpenWall& wall) {
-        const std::size_t first = walls.vertices.size();
-        add_wall_loop(wall.lower, wall.upper, walls.vertices,
-                      [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
-        walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
-        walls.cells.push_back({wall.left, wall.right});
+        walls.add(wall.lower, wall.upper, {wall.left, wall.right},
+                  [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
     });
     auto number = keep_vertices(is_needed, conformed, execution);
     for (std::int32_t& v : walls.vertices)

@@ -2,7 +2,6 @@
 #include "strata/cells/plan_offsets.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
@@ -17,19 +16,11 @@ constexpr std::size_t kOffsets = 1 << 12;
 /// Whether a unit in the last place of the coordinates is so large a part of the model's extent
 /// that a volume may be off by as much: some 1e-13.
 bool is_far_from_origin(const PlanVertices& plan_vertices) {
-    PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    for (const PlanPosition& p : plan_vertices.position) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    }
-    double unit = 0, extent = HUGE_VAL;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        unit = std::max({unit, ulp(low[axis]), ulp(high[axis])});
-        extent = std::min(extent, high[axis] - low[axis]);
-    }
-    return unit > extent * 0x1p-43;
+    const auto& positions = plan_vertices.position;
+    const PlanBox box = spatial::box_around({positions.begin(), positions.end()});
+    const double unit =
+        std::max({ulp(box.low_x), ulp(box.low_y), ulp(box.high_x), ulp(box.high_y)});
+    return unit > std::min(box.width(), box.height()) * 0x1p-43;
 }
 
 /// Whether an offset from a coordinate is known to a small part of it.
@@ -77,15 +68,13 @@ Array<PlanOffset> vertex_offsets(const Array<PlanOffset>& offsets,
     Array<PlanOffset> result;
     if (offsets.empty()) return result;
     result.resize(conformed.positions.size());
-    parallel_ranges(offsets.size(), kOffsets, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-            const auto [x, y] = plan_vertices.position[p];
-            for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v) {
-                const auto& moved = conformed.positions[static_cast<std::size_t>(v)];
-                result[static_cast<std::size_t>(v)] = {
-                    offsets[p][0] + static_cast<float>(x - moved[0]),
-                    offsets[p][1] + static_cast<float>(y - moved[1])};
-            }
+    parallel_each(offsets.size(), execution, [&](std::size_t p) {
+        const auto [x, y] = plan_vertices.position[p];
+        for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v) {
+            const auto& moved = conformed.positions[static_cast<std::size_t>(v)];
+            result[static_cast<std::size_t>(v)] = {
+                offsets[p][0] + static_cast<float>(x - moved[0]),
+                offsets[p][1] + static_cast<float>(y - moved[1])};
         }
     });
     return result;

@@ -4,23 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/corrected_sum.hpp"
 #include "base/parallel_counts.hpp"
 
 namespace realmodel::strata {
 
 namespace {
-
-/// Sum with a running correction (Knuth's exact sum of two doubles, added up).
-struct Sum {
-    double total = 0, correction = 0;
-    void add(double value) {
-        const double next = total + value;
-        const double added = next - total;
-        correction += (total - (next - added)) + (value - added);
-        total = next;
-    }
-    double value() const { return total + correction; }
-};
 
 /// The area of a face in plan, and the volume between the face and the height of its first corner.
 struct Projection {
@@ -71,7 +60,7 @@ Projection project(const CellComplex& complex, std::size_t face,
 /// rounding leaves of the areas of long faces is not multiplied by the height of a spike.
 struct BlockSum {
     double anchor = 0, largest = -1;  // of no face yet
-    Sum volume, area;
+    CorrectedSum volume, area;
 
     void add(const Projection& face, double height, double sign) {
         see_from(height, std::abs(face.area));

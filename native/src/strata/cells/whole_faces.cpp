@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 
 #include "base/parallel_counts.hpp"
 #include "strata/tiling/triangle_outlines.hpp"
@@ -13,8 +14,6 @@ using exact::PlanArrangement;
 using exact::SpaceId;
 
 namespace {
-
-constexpr std::size_t kFacesAtOnce = 1 << 13;
 
 std::int32_t cell(const std::vector<std::int32_t>& cell_of_node, std::int32_t node) {
     return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
@@ -33,17 +32,14 @@ std::array<std::int32_t, 2> turn_outwards(std::int32_t* first, std::int32_t* las
 void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links,
                            WholeTriangles& wholes, FaceList& faces, const Execution& execution) {
     std::vector<std::uint8_t> is_touched(links.neighbor.size(), 0);
-    parallel_ranges(
-        is_touched.size(), kFacesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) continue;
-                const auto& neighbors = links.neighbor[p];
-                is_touched[p] = wholes.is_exact[p] != 0 ||
-                                std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
-                                    return n != kNone && wholes.is_in_parts[index(n)] != 0;
-                                });
-            }
-        });
+    parallel_each(is_touched.size(), execution, [&](std::size_t p) {
+        if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) return;
+        const auto& neighbors = links.neighbor[p];
+        is_touched[p] = wholes.is_exact[p] != 0 ||
+                        std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
+                            return n != kNone && wholes.is_in_parts[index(n)] != 0;
+                        });
+    });
     std::vector<PlaneId> planes;
     for (std::size_t p = 0; p < is_touched.size(); ++p) {
         poll(execution.progress, p);
@@ -82,20 +78,18 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     const auto set = [](std::int32_t& number, std::int32_t to) {
         std::atomic_ref(number).store(to, std::memory_order_relaxed);
     };
-    parallel_ranges(faces.size(), kFacesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
-            for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
-                const PointId point = faces.polygons.points[c];
-                if (!geometry.is_vertex(point)) continue;
-                const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
-                if (is_base) {
-                    if (!of_base_.empty()) set(of_base_[index(point)], number);
-                    continue;
-                }
-                const SpaceId s = geometry.plane(faces.plane[f]).above(geometry.vertex(point));
-                if (s != kNone) set(of_space_[index(s)], number);
+    parallel_each(faces.size(), execution, [&](std::size_t f) {
+        const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
+        for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
+            const PointId point = faces.polygons.points[c];
+            if (!geometry.is_vertex(point)) continue;
+            const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
+            if (is_base) {
+                if (!of_base_.empty()) set(of_base_[index(point)], number);
+                continue;
             }
+            const SpaceId s = geometry.plane(faces.plane[f]).above(geometry.vertex(point));
+            if (s != kNone) set(of_space_[index(s)], number);
         }
     });
 }
@@ -110,14 +104,11 @@ void UntouchedTriangles::add_to(CellComplex& complex,
 /// Numbers the input vertices that only untouched triangles have, in their order.
 void UntouchedTriangles::number_vertices(CellComplex& complex) {
     auto is_new = zeros<std::uint8_t>(of_space_.size(), execution_);
-    parallel_ranges(wholes_.face.size(), kFacesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t p = begin; p < end; ++p) {
-                            if (!is_face(p)) continue;
-                            for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
-                                mark(is_new[index(s)]);
-                        }
-                    });
+    parallel_each(wholes_.face.size(), execution_, [&](std::size_t p) {
+        if (!is_face(p)) return;
+        for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
+            mark(is_new[index(s)]);
+    });
     const std::size_t before = complex.vertices.size();
     number_in_order(
         of_space_.size(), execution_,

@@ -40,11 +40,8 @@ Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces
                           const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
     const auto& of_edges = faces.polygons.lines;
-    parallel_ranges(of_edges.size(), kLinesAtOnce, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(of_edges[c].id())]);
-                    });
+    parallel_each(of_edges.size(), execution,
+                  [&](std::size_t c) { mark(used[index(of_edges[c].id())]); });
     Array<Keyed> lines;
     number_in_order(
         used.size(), execution, [&](std::size_t l) { return used[l] != 0; },

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/parallel_counts.hpp"
@@ -249,9 +251,8 @@ private:
 /// What follows asks for faces, not for their corners.
 void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execution& execution) {
     conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
-    parallel_ranges(faces.size() + 1, kFaces, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f)
-            conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
+    parallel_each(faces.size() + 1, execution, [&](std::size_t f) {
+        conformed.face_offsets[f] = conformed.entries.first(faces.polygons.offsets[f]);
     });
 }
 
@@ -259,11 +260,9 @@ void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execut
 /// a corner.
 void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
                   const Execution& execution) {
-    parallel_ranges(
-        collinear.edges.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e)
-                collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
-        });
+    parallel_each(collinear.edges.size(), execution, [&](std::size_t e) {
+        collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
+    });
 }
 
 /// The vertices that the left edge of a pair took up, for the right one.

@@ -2,7 +2,6 @@
 #include "strata/conform/corner_offsets.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 namespace realmodel::strata {
 
@@ -10,35 +9,17 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
                              const Execution& execution)
     : corners_(corners) {
     const std::size_t blocks = corners / kBlock + 1;  // the number of corners itself has one, too
-    passing_of_block_ = zeros<std::uint32_t>(blocks + 1, execution);
-    std::vector<std::vector<std::uint32_t>> number(passed.size());  // of each edge in its block
-    parallel_chunks(passed.size(), execution, [&](std::size_t chunk) {
-        for (const PassedVertices::Edge& edge : passed[chunk].edges) {
-            assert(edge.corner < corners);
-            number[chunk].push_back(count_one(passing_of_block_[edge.corner / kBlock]));
-        }
-    });
-    running_totals(passing_of_block_, UINT32_MAX, execution);
-    passing_ = Array<Passing>(passing_of_block_[blocks]);
-    parallel_chunks(passed.size(), execution, [&](std::size_t chunk) {
-        auto next = number[chunk].begin();
-        for (const PassedVertices::Edge& edge : passed[chunk].edges) {
-            const std::uint32_t first = passing_of_block_[edge.corner / kBlock];
-            passing_[first + *next++] = {edge.corner, edge.count};
-        }
-    });
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        for (const PassedVertices::Edge& edge : passed[chunk].edges)
+            put(edge.corner / kBlock, Passing{edge.corner, edge.count});
+    };
+    passing_ = sorted_in_buckets<Passing>(blocks, passed.size(), produce, execution);
     entry_of_block_ = Array<std::uint32_t>(blocks + 1);
-    parallel_ranges(blocks, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-            const auto first = passing_.begin() + passing_of_block_[block];
-            const auto last = passing_.begin() + passing_of_block_[block + 1];
-            std::sort(first, last,
-                      [](const Passing& a, const Passing& b) { return a.corner < b.corner; });
-            std::size_t entries = std::min(kBlock, corners - block * kBlock);
-            for (auto passing = first; passing != last; ++passing)
-                entries += passing->vertices;
-            entry_of_block_[block] = static_cast<std::uint32_t>(entries);
-        }
+    parallel_each(blocks, execution, [&](std::size_t block) {
+        std::size_t entries = std::min(kBlock, corners - block * kBlock);
+        for (const Passing& passing : passing_[block])
+            entries += passing.vertices;
+        entry_of_block_[block] = static_cast<std::uint32_t>(entries);
     });
     running_totals(entry_of_block_, UINT32_MAX, execution);
 }

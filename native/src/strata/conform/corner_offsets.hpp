@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
-#include "base/parallel_counts.hpp"
+#include "base/counting_sort.hpp"
 
 namespace realmodel::strata {
 
@@ -36,12 +37,12 @@ public:
     std::array<std::uint32_t, 2> entries(std::size_t corner) const {
         std::uint32_t entry = near(corner);
         const std::size_t block = corner / kBlock;
-        std::uint32_t i = passing_of_block_[block];
-        const std::uint32_t end = passing_of_block_[block + 1];
-        for (; i < end && passing_[i].corner < corner; ++i)
-            entry += passing_[i].vertices;
-        const bool passes = i < end && passing_[i].corner == corner;
-        return {entry, entry + 1 + (passes ? passing_[i].vertices : 0)};
+        const Passing* at = passing_.values.begin() + passing_.offsets[block];
+        const Passing* const end = passing_.values.begin() + passing_.offsets[block + 1];
+        for (; at != end && at->corner < corner; ++at)
+            entry += at->vertices;
+        const bool passes = at != end && at->corner == corner;
+        return {entry, entry + 1 + (passes ? at->vertices : 0)};
     }
     /// An entry somewhat before those of a corner, of which memory may be asked for.
     std::uint32_t near(std::size_t corner) const {
@@ -50,20 +51,20 @@ public:
     /// Calls visit(corner, first entry) for a range of corners.
     template <class Visit>
     void for_each(std::size_t begin, std::size_t end, const Visit& visit) const {
-        std::uint32_t next = passing_of_block_[begin / kBlock];
-        while (next < passing_.size() && passing_[next].corner < begin)
+        const Passing* next = passing_.values.begin() + passing_.offsets[begin / kBlock];
+        while (next != passing_.values.end() && next->corner < begin)
             ++next;
         std::uint32_t entry = first(begin);
         for (std::size_t corner = begin; corner < end; ++corner) {
             visit(corner, entry++);
-            if (next < passing_.size() && passing_[next].corner == corner)
-                entry += passing_[next++].vertices;
+            if (next != passing_.values.end() && next->corner == corner)
+                entry += (next++)->vertices;
         }
     }
     /// To be called some time before first(): the memory is fetched meanwhile.
     [[gnu::always_inline]] void prefetch(std::size_t corner) const {
         realmodel::prefetch(&entry_of_block_[corner / kBlock]);
-        realmodel::prefetch(&passing_of_block_[corner / kBlock]);
+        realmodel::prefetch(&passing_.offsets[corner / kBlock]);
     }
     std::size_t corners() const { return corners_; }
 
@@ -72,11 +73,12 @@ private:
     /// An edge that passes plan vertices.
     struct Passing {
         std::uint32_t corner, vertices;
+        friend auto operator<=>(const Passing&, const Passing&) = default;
     };
 
     std::size_t corners_ = 0;
-    Array<std::uint32_t> entry_of_block_, passing_of_block_;  ///< the first of each block
-    Array<Passing> passing_;                                  ///< in order of corners
+    Array<std::uint32_t> entry_of_block_;  ///< the first of each block
+    Buckets<Passing> passing_;             ///< of each block, in order of corners
 };
 
 }  // namespace realmodel::strata

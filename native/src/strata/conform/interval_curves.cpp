@@ -45,11 +45,8 @@ void IntervalCurves::collect(std::size_t number) {
             ++begins_[static_cast<std::size_t>(i)];
     }
     std::uint32_t total = 0;
-    for (std::uint32_t& begin : begins_) {
-        const std::uint32_t own = begin;
-        begin = total;
-        total += own;
-    }
+    for (std::uint32_t& begin : begins_)
+        total += std::exchange(begin, total);
     curves_.resize(total);
     free_.assign(begins_.begin(), begins_.end());
     for (auto edge = first; edge != last; ++edge) {

@@ -76,24 +76,4 @@ void for_each_gap(std::span<const IntervalCurve> curves, bool are_columns, const
     }
 }
 
-/// Adds a wall face: along its lower vertices, up the far vertical, back along the upper ones and
-/// down the near vertical, through every vertex on them that is to be kept.
-template <class Keep>
-void add_wall_loop(std::span<const std::int32_t> lower, std::span<const std::int32_t> upper,
-                   std::vector<std::int32_t>& loop, const Keep& is_kept) {
-    const auto add = [&](std::int32_t v) {
-        if (is_kept(v)) loop.push_back(v);
-    };
-    for (const std::int32_t v : lower)
-        add(v);
-    for (std::int32_t v = lower.back() + 1; v < upper.back(); ++v)
-        add(v);
-    const std::size_t last = upper.back() == lower.back() ? upper.size() - 1 : upper.size();
-    const std::size_t first = upper.front() == lower.front() ? 1 : 0;
-    for (std::size_t i = last; i-- > first;)
-        add(upper[i]);
-    for (std::int32_t v = upper.front() - 1; v > lower.front(); --v)
-        add(v);
-}
-
 }  // namespace realmodel::strata

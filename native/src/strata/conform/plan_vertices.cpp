@@ -65,11 +65,7 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
                              const std::vector<ExtraPoint>& extra, const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
     const auto& points = faces.polygons.points;
-    parallel_ranges(points.size(), kVerticesAtOnce, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(points[c])]);
-                    });
+    parallel_each(points.size(), execution, [&](std::size_t c) { mark(used[index(points[c])]); });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;
     const XRange range = range_of_vertices(geometry, used, execution);
@@ -200,13 +196,10 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
 void set_plan_positions(const PlanArrangement& geometry, PlanVertices& plan_vertices,
                         const Execution& execution) {
     plan_vertices.position = Array<PlanPosition>(plan_vertices.size());
-    parallel_ranges(plan_vertices.size(), kVerticesAtOnce, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t p = begin; p < end; ++p) {
-                            const auto& point = geometry.point(plan_vertices.representative[p]);
-                            plan_vertices.position[p] = {point.x, point.y};
-                        }
-                    });
+    parallel_each(plan_vertices.size(), execution, [&](std::size_t p) {
+        const auto& point = geometry.point(plan_vertices.representative[p]);
+        plan_vertices.position[p] = {point.x, point.y};
+    });
 }
 
 }  // namespace realmodel::strata

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "strata/overlay/envelope.hpp"
@@ -16,6 +17,29 @@ struct WallBatch {
     std::vector<std::int32_t> sizes;  ///< corners of each wall
     std::vector<std::int32_t> vertices;
     std::vector<std::array<std::int32_t, 2>> cells;  ///< left and right of the line, -1 outside
+
+    /// Adds a wall: along its lower vertices, up the far vertical, back along the upper ones and
+    /// down the near vertical, through every vertex on them that is to be kept.
+    template <class Keep>
+    void add(std::span<const std::int32_t> lower, std::span<const std::int32_t> upper,
+             const std::array<std::int32_t, 2>& beside, const Keep& is_kept) {
+        const std::size_t before = vertices.size();
+        const auto pass = [&](std::int32_t v) {
+            if (is_kept(v)) vertices.push_back(v);
+        };
+        for (const std::int32_t v : lower)
+            pass(v);
+        for (std::int32_t v = lower.back() + 1; v < upper.back(); ++v)
+            pass(v);
+        const std::size_t last = upper.back() == lower.back() ? upper.size() - 1 : upper.size();
+        const std::size_t first = upper.front() == lower.front() ? 1 : 0;
+        for (std::size_t i = last; i-- > first;)
+            pass(upper[i]);
+        for (std::int32_t v = upper.front() - 1; v > lower.front(); --v)
+            pass(v);
+        sizes.push_back(static_cast<std::int32_t>(vertices.size() - before));
+        cells.push_back(beside);
+    }
 };
 
 /// A wall that may go on in the next interval of its line.

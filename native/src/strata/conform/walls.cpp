@@ -17,6 +17,9 @@ namespace {
 
 constexpr std::size_t kLines = 1 << 10;  // worked on at a time
 
+/// Of the vertices on a wall, where none is left out.
+constexpr auto keep_all = [](std::int32_t) { return true; };
+
 /// What the walls of some lines are found in.
 struct Batch {
     explicit Batch(const PlanArrangement& geometry) : scope(geometry) {}
@@ -37,11 +40,7 @@ public:
 
     void process(std::size_t line) {
         const auto emit = [&](const OpenWall& wall) {
-            auto& loop = batch_.walls.vertices;
-            const std::size_t first = loop.size();
-            add_wall_loop(wall.lower, wall.upper, loop, [](std::int32_t) { return true; });
-            batch_.walls.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
-            batch_.walls.cells.push_back({wall.left, wall.right});
+            batch_.walls.add(wall.lower, wall.upper, {wall.left, wall.right}, keep_all);
         };
         curves_.collect(line);
         for (std::size_t i = 0; i < curves_.intervals(); ++i) {
@@ -191,13 +190,8 @@ private:
             const bool is_flat = next_u == u + 1 && next_l == l + 1 && upper_[u] == lower_[l] &&
                                  upper_[next_u] == lower_[next_l];
             if (!is_flat) {
-                auto& loop = walls_.vertices;
-                const std::size_t first = loop.size();
-                add_wall_loop(std::span(lower_).subspan(l, next_l - l + 1),
-                              std::span(upper_).subspan(u, next_u - u + 1), loop,
-                              [](std::int32_t) { return true; });
-                walls_.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
-                walls_.cells.push_back(cells);
+                walls_.add(std::span(lower_).subspan(l, next_l - l + 1),
+                           std::span(upper_).subspan(u, next_u - u + 1), cells, keep_all);
             }
             u = next_u;
             l = next_l;

@@ -2,7 +2,6 @@
 #include "strata/overlay/border_edges.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/keep_single.hpp"
 #include "exact/orient2d.hpp"
@@ -12,37 +11,31 @@ namespace realmodel::strata {
 using exact::PlanArrangement;
 
 BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std::vector<Edge> edges)
-    : tiles_(tiles), offsets_(tiles.size() + 1, 0) {
+    : tiles_(tiles) {
     for (auto& [from, to] : edges) {
         if (from > to) std::swap(from, to);
     }
     sort_unique(edges);
     segments_.reserve(edges.size());
-    for (const auto& [from, to] : edges)
-        segments_.push_back({from, to, geometry.add_edge(from, to).id()});
-    const auto for_all = [&](const auto& visit) {
+    for (const auto& [from, to] : edges) {
+        const auto &p = geometry.point(from), &q = geometry.point(to);
+        const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
+                          std::max(p.y, q.y)};
+        segments_.push_back({from, to, geometry.add_edge(from, to).id(), box});
+    }
+    in_tiles_ = bucketize<std::uint32_t>(tiles.size(), [&](const auto& put) {
         for (std::size_t s = 0; s < segments_.size(); ++s) {
-            const auto &p = geometry.point(segments_[s].from), &q = geometry.point(segments_[s].to);
-            const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
-                              std::max(p.y, q.y)};
-            tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { visit(tile, s); });
+            tiles_.for_each(tiles_.span(segments_[s].box),
+                            [&](std::size_t tile) { put(tile, static_cast<std::uint32_t>(s)); });
         }
-    };
-    for_all([&](std::size_t tile, std::size_t) { ++offsets_[tile + 1]; });
-    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    in_tiles_.resize(offsets_.back());
-    auto free = offsets_;
-    for_all([&](std::size_t tile, std::size_t s) {
-        in_tiles_[free[tile]++] = static_cast<std::uint32_t>(s);
     });
 }
 
 template <class Holds>
 bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
     return tiles_.any(span, [&](std::size_t tile) {
-        return std::any_of(in_tiles_.begin() + offsets_[tile],
-                           in_tiles_.begin() + offsets_[tile + 1],
-                           [&](std::uint32_t s) { return holds(segments_[s]); });
+        return std::ranges::any_of(in_tiles_[tile],
+                                   [&](std::uint32_t s) { return holds(segments_[s]); });
     });
 }
 
@@ -79,23 +72,17 @@ bool BorderEdges::divide(LocalArrangement& scope, PolygonView polygon, const Til
 
 bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& triangle,
                          const TileSpan& span) const {
-    using Position = std::array<double, 2>;
-    const auto position = [&](exact::VertexId v) -> Position {
+    const auto position = [&](exact::VertexId v) -> spatial::PlanPosition {
         return {geometry.point(v).x, geometry.point(v).y};
     };
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
-    Position low = corners[0], high = corners[0];
-    for (const Position& p : corners) {
-        low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
-        high = {std::max(high[0], p[0]), std::max(high[1], p[1])};
-    }
+    const PlanBox box = spatial::box_around(corners);
     return any_in(span, [&](const Segment& segment) {
-        const Position from = position(segment.from), to = position(segment.to);
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            if (std::max(from[axis], to[axis]) <= low[axis] ||
-                std::min(from[axis], to[axis]) >= high[axis])
-                return false;
-        }
+        const PlanBox& own = segment.box;
+        if (own.high_x <= box.low_x || own.low_x >= box.high_x || own.high_y <= box.low_y ||
+            own.low_y >= box.high_y)
+            return false;
+        const auto from = position(segment.from), to = position(segment.to);
         return reaches_inside(
             segment, corners.size(),
             [&](std::size_t i) { return exact::orient2d(from, to, corners[i]); },

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/counting_sort.hpp"
 #include "spatial/plan_tiles.hpp"
 #include "strata/tiling/plan_links.hpp"
 #include "strata/tiling/polygon.hpp"
@@ -25,7 +26,7 @@ public:
     BorderEdges(exact::PlanArrangement& geometry, const PlanTiles& tiles, std::vector<Edge> edges);
 
     const PlanTiles& tiles() const { return tiles_; }
-    bool in_tile(std::size_t tile) const { return offsets_[tile] < offsets_[tile + 1]; }
+    bool in_tile(std::size_t tile) const { return !in_tiles_[tile].empty(); }
     /// Whether one runs through any of these tiles.
     bool near(const TileSpan& span) const {
         return tiles_.any(span, [&](std::size_t tile) { return in_tile(tile); });
@@ -44,6 +45,7 @@ private:
     struct Segment {
         exact::VertexId from, to;
         LineId line;
+        PlanBox box;
     };
     template <class Holds>
     bool any_in(const TileSpan& span, const Holds& holds) const;
@@ -54,8 +56,7 @@ private:
 
     PlanTiles tiles_;
     std::vector<Segment> segments_;
-    std::vector<std::uint32_t> offsets_;   ///< of each tile
-    std::vector<std::uint32_t> in_tiles_;  ///< segments
+    Buckets<std::uint32_t> in_tiles_;  ///< segments
 };
 
 }  // namespace realmodel::strata

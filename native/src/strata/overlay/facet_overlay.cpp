@@ -43,7 +43,7 @@ public:
         const PlaneId plane = envelope_.plane[facet];
         if (plane == kOutside) {
             for (const std::int32_t polygon : finder_.overlapping(outline))
-                mark_polygon(overlaid_.is_divided, polygon);
+                mark(overlaid_.is_divided[index(polygon)]);
             result_.kept.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
             return;
         }
@@ -52,7 +52,7 @@ public:
         for (const Piece& piece : pieces.list) {
             below += piece.side == Side::kBelow;
             not_below += piece.side == Side::kNotBelow;
-            if (piece.side == Side::kNotBelow) mark_polygon(overlaid_.is_divided, piece.polygon);
+            if (piece.side == Side::kNotBelow) mark(overlaid_.is_divided[index(piece.polygon)]);
         }
         const bool is_complete = blocks_ == nullptr || blocks_->is_complete[facet] != 0;
         const bool all_below = below == pieces.list.size();
@@ -112,18 +112,13 @@ private:
         return nodes;
     }
 
-    // Several threads may say so of one polygon at once; they all write the same.
-    static void mark_polygon(std::vector<std::uint8_t>& flags, std::int32_t polygon) {
-        mark(flags[static_cast<std::size_t>(polygon)]);
-    }
-
     void add_below(const Pieces& pieces, const Piece& piece, std::int32_t node) {
         result_.below.push_back({piece.polygon, node});
         result_.below_outlines.add(pieces.outline(piece));
         if (blocks_ == nullptr) return;
         const auto touches = pieces.touches.begin();
         if (std::find(touches + piece.first, touches + piece.last, 1) != touches + piece.last)
-            mark_polygon(overlaid_.is_touched, piece.polygon);
+            mark(overlaid_.is_touched[index(piece.polygon)]);
     }
 
     void split_sky(std::size_t facet, const Pieces& pieces) {

@@ -2,11 +2,10 @@
 #include "strata/overlay/rules.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <memory>
 
-#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "strata/overlay/pieces.hpp"
 
 namespace realmodel::strata {
@@ -21,7 +20,7 @@ constexpr std::size_t kFacetsAtOnce = 256;
 struct FoundFacets {
     explicit FoundFacets(const PlanArrangement& geometry) : scope(geometry) {}
 
-    void add(PolygonView outline, PlaneId in_plane, std::int32_t of_polygon) {
+    void add(PolygonView outline, PlaneId in_plane, std::int32_t of_polygon = -1) {
         outlines.add(outline);
         plane.push_back(in_plane);
         polygon.push_back(of_polygon);
@@ -34,25 +33,15 @@ struct FoundFacets {
         polygon;  ///< of the surface that was laid over, -1 for the older tiling
 };
 
-void append(FoundFacets& found, std::size_t i, SurfaceTiling& tiling) {
-    Polygon outline(found.outlines[i].begin(), found.outlines[i].end());
-    for (Corner& corner : outline) {
-        corner = {found.scope.shared_point(corner.point), found.scope.shared_directed(corner.line)};
-    }
-    tiling.polygons.add(outline);
-    tiling.plane.push_back(found.plane[i]);
-}
+using AllFound = std::vector<std::unique_ptr<FoundFacets>>;
 
 /// Calls work(facet of `older`, finder, found) for every facet, in parallel; results in order.
 template <class Work>
-std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
-                                                      const SurfaceTiling& older,
-                                                      const SurfaceTiling& surface,
-                                                      const Execution& execution,
-                                                      const Work& work) {
+AllFound over_facets(PlanArrangement& geometry, const SurfaceTiling& older,
+                     const SurfaceTiling& surface, const Execution& execution, const Work& work) {
     const std::size_t count = older.plane.size(),
                       chunks = (count + kFacetsAtOnce - 1) / kFacetsAtOnce;
-    std::vector<std::unique_ptr<FoundFacets>> found(chunks);
+    AllFound found(chunks);
     parallel_chunks(chunks, execution, [&](std::size_t c) {
         found[c] = std::make_unique<FoundFacets>(geometry);
         PieceFinder finder(found[c]->scope, surface);
@@ -65,6 +54,27 @@ std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
     return found;
 }
 
+/// Adds those facets found of which is_wanted(polygon) holds, in shared ids.
+template <class IsWanted>
+void append(const AllFound& found, SurfaceTiling& tiling, const IsWanted& is_wanted) {
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
+            if (!is_wanted(chunk->polygon[i])) continue;
+            Polygon outline(chunk->outlines[i].begin(), chunk->outlines[i].end());
+            for (Corner& corner : outline)
+                corner = {chunk->scope.shared_point(corner.point),
+                          chunk->scope.shared_directed(corner.line)};
+            tiling.polygons.add(outline);
+            tiling.plane.push_back(chunk->plane[i]);
+        }
+    }
+}
+SurfaceTiling tiling_of(const AllFound& found) {
+    SurfaceTiling tiling;
+    append(found, tiling, [](std::int32_t) { return true; });
+    return tiling;
+}
+
 }  // namespace
 
 SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surface,
@@ -72,7 +82,7 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
                            const Execution& execution) {
     assert(given.empty() || given.size() == surface.plane.size());
     const auto is_given = [&](std::size_t p) { return !given.empty() && given[p] != 0; };
-    std::vector<std::uint8_t> whole(surface.plane.size(), 1);
+    std::vector<std::uint8_t> is_covered(surface.plane.size(), 0);  // somewhere, by the bound
     const auto found = over_facets(
         geometry, bound, surface, execution,
         [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
@@ -82,14 +92,12 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
                 plane.has_value() &&
                 std::all_of(pieces.list.begin(), pieces.list.end(),
                             [](const Piece& p) { return p.side == Side::kBelow; });
-            if (all_below) out.add(bound.polygons[f], plane, -1);
+            if (all_below) out.add(bound.polygons[f], plane);
             for (const Piece& piece : pieces.list) {
                 const auto polygon = static_cast<std::size_t>(piece.polygon);
                 if (piece.side == Side::kBelow) {
-                    // threads may say so at once; they all write the same
-                    std::atomic_ref<std::uint8_t>(whole[polygon])
-                        .store(0, std::memory_order_relaxed);
-                    if (!all_below) out.add(pieces.outline(piece), plane, -1);
+                    mark(is_covered[polygon]);
+                    if (!all_below) out.add(pieces.outline(piece), plane);
                 } else if (piece.side == Side::kNotBelow) {
                     out.add(pieces.outline(piece), surface.plane[polygon], piece.polygon);
                 }
@@ -97,77 +105,58 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
         });
     SurfaceTiling raised;
     for (std::size_t p = 0; p < surface.plane.size(); ++p) {
-        if (is_given(p) || (surface.plane[p].has_value() && whole[p] == 0)) continue;
+        if (is_given(p) || (surface.plane[p].has_value() && is_covered[p] != 0)) continue;
         raised.polygons.add(surface.polygons[p]);
         raised.plane.push_back(surface.plane[p]);
     }
-    for (const auto& chunk : found) {
-        for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
-            const auto of = static_cast<std::size_t>(chunk->polygon[i]);
-            if (chunk->polygon[i] < 0 || (whole[of] == 0 && !is_given(of)))
-                append(*chunk, i, raised);
-        }
-    }
+    append(found, raised, [&](std::int32_t polygon) {
+        return polygon < 0 || (is_covered[index(polygon)] != 0 && !is_given(index(polygon)));
+    });
     return raised;
 }
 
 SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
                              const SurfaceTiling& surface, const Execution& execution) {
-    const auto found = over_facets(geometry, older, surface, execution,
-                                   [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
-                                       // as a void, so that heights are not asked for
-                                       const Pieces& pieces = finder.find(older.polygons[f], kVoid);
-                                       const bool all_absent = std::all_of(
-                                           pieces.list.begin(), pieces.list.end(),
-                                           [](const Piece& p) { return p.side == Side::kAbsent; });
-                                       if (all_absent) {
-                                           out.add(older.polygons[f], older.plane[f], -1);
-                                           return;
-                                       }
-                                       for (const Piece& piece : pieces.list) {
-                                           if (piece.side == Side::kAbsent)
-                                               out.add(pieces.outline(piece), older.plane[f], -1);
-                                       }
-                                   });
-    SurfaceTiling uncovered;
-    for (const auto& chunk : found) {
-        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
-            append(*chunk, i, uncovered);
-    }
-    return uncovered;
+    const auto is_absent = [](const Piece& piece) { return piece.side == Side::kAbsent; };
+    const auto look = [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        // as a void, so that heights are not asked for
+        const Pieces& pieces = finder.find(older.polygons[f], kVoid);
+        if (std::ranges::all_of(pieces.list, is_absent)) {
+            out.add(older.polygons[f], older.plane[f]);
+            return;
+        }
+        for (const Piece& piece : pieces.list) {
+            if (is_absent(piece)) out.add(pieces.outline(piece), older.plane[f]);
+        }
+    };
+    return tiling_of(over_facets(geometry, older, surface, execution, look));
 }
 
 SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, SurfaceTiling other,
                            const Execution& execution) {
     other.index(geometry, execution);
-    const auto found = over_facets(
+    return tiling_of(over_facets(
         geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = one.plane[f];
             if (!plane.has_value()) {
-                out.add(one.polygons[f], kVoid, -1);
+                out.add(one.polygons[f], kVoid);
                 return;
             }
             const Pieces& pieces = finder.find(one.polygons[f], plane);
             for (const Piece& piece : pieces.list) {
                 const PlaneId below = other.plane[static_cast<std::size_t>(piece.polygon)];
-                out.add(pieces.outline(piece), piece.side == Side::kNotBelow ? plane : below, -1);
+                out.add(pieces.outline(piece), piece.side == Side::kNotBelow ? plane : below);
             }
-        });
-    SurfaceTiling lower;
-    for (const auto& chunk : found) {
-        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
-            append(*chunk, i, lower);
-    }
-    return lower;
+        }));
 }
 
 SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
                             const SurfaceTiling& other, bool fills, const Execution& execution) {
-    const auto found = over_facets(
+    return tiling_of(over_facets(
         geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = one.plane[f];
             if (plane == kSky || (plane.has_value() && fills)) {
-                out.add(one.polygons[f], plane, -1);
+                out.add(one.polygons[f], plane);
                 return;
             }
             // beneath a void nothing is below: what there is lies where `one` is not
@@ -175,21 +164,15 @@ SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
             const Side changed = plane.has_value() ? Side::kBelow : Side::kNotBelow;
             if (std::none_of(pieces.list.begin(), pieces.list.end(),
                              [&](const Piece& p) { return p.side == changed; })) {
-                out.add(one.polygons[f], plane, -1);
+                out.add(one.polygons[f], plane);
                 return;
             }
             for (const Piece& piece : pieces.list) {
                 const PlaneId in_other = other.plane[static_cast<std::size_t>(piece.polygon)];
                 out.add(pieces.outline(piece),
-                        piece.side != changed ? plane : (fills ? kSky : in_other), -1);
+                        piece.side != changed ? plane : (fills ? kSky : in_other));
             }
-        });
-    SurfaceTiling lowest;
-    for (const auto& chunk : found) {
-        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
-            append(*chunk, i, lowest);
-    }
-    return lowest;
+        }));
 }
 
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {

@@ -14,8 +14,6 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kFacets = 1024, kTriangles = 1024;
-
 /// Finds what of a surface lies beneath some positions.
 class SheetLinks {
 public:
@@ -41,8 +39,7 @@ public:
             i < sealed_.wholes.size()
                 ? middle_of(geometry_, sealed_.wholes[i])
                 : middle_of(parts_.outlines[sealed_.parts[i - sealed_.wholes.size()]], point);
-        const TileSpan span = tiles().span({middle[0], middle[1], middle[0], middle[1]});
-        searched_.push_back({tiles().tile(span.left, span.low), middle, node, kNothing});
+        searched_.push_back({tiles().tile_at(middle), middle, node, kNothing});
     }
 
     /// Calls link(node, triangle) with what lies beneath each facet.
@@ -50,21 +47,15 @@ public:
     void find(const Link& link) {
         if (searched_.empty()) return;
         sort_by_tile();
-        std::vector<std::vector<std::pair<std::uint32_t, std::int32_t>>> near(
-            (tiling_.whole.size() + kTriangles - 1) / kTriangles);
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
-        parallel_ranges(tiling_.whole.size(), kTriangles, execution_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t t = begin; t < end; ++t)
-                                if (filter_.surface[t] == Standing::kBelow)
-                                    look(t, near[begin / kTriangles]);
-                        });
-        for (const auto& pairs : near) {
-            for (const auto& [s, t] : pairs) {
-                if (searched_[s].beneath == kNothing && lies_over(searched_[s].node, t))
-                    searched_[s].beneath = t;
-            }
+        const auto near = collect_in_order<std::pair<std::uint32_t, std::int32_t>>(
+            tiling_.whole.size(), execution_, [&](std::size_t t, auto& found) {
+                if (filter_.surface[t] == Standing::kBelow) look(t, found);
+            });
+        for (const auto& [s, t] : near) {
+            if (searched_[s].beneath == kNothing && lies_over(searched_[s].node, t))
+                searched_[s].beneath = t;
         }
         const auto triangles = static_cast<std::int32_t>(tiling_.whole.size());
         for (Searched& s : searched_) {
@@ -150,20 +141,17 @@ void join_neighbors(const TriangleLinks& links, const SealedFacets& sealed,
     const auto block = [&](std::int32_t node) {
         return construction.node_block[static_cast<std::size_t>(node)];
     };
-    parallel_ranges(
-        sealed.wholes.size(), kFacets, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const PlaneId plane = sealed.wholes[i];
-                const std::int32_t node = sealed.first_node + static_cast<std::int32_t>(i);
-                for (const PlaneId other : links.of(plane)) {
-                    if (other <= plane) continue;
-                    const std::int32_t below = wholes.of(other).below;
-                    const std::int32_t j = below - sealed.first_node;
-                    if (j >= 0 && j < count && block(below) == block(node))
-                        sets.join(static_cast<std::int32_t>(i), j);
-                }
-            }
-        });
+    parallel_each(sealed.wholes.size(), execution, [&](std::size_t i) {
+        const PlaneId plane = sealed.wholes[i];
+        const std::int32_t node = sealed.first_node + static_cast<std::int32_t>(i);
+        for (const PlaneId other : links.of(plane)) {
+            if (other <= plane) continue;
+            const std::int32_t below = wholes.of(other).below;
+            const std::int32_t j = below - sealed.first_node;
+            if (j >= 0 && j < count && block(below) == block(node))
+                sets.join(static_cast<std::int32_t>(i), j);
+        }
+    });
 }
 
 }  // namespace

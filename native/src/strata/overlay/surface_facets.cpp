@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "base/parallel_counts.hpp"
 
@@ -10,8 +11,8 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
-constexpr std::size_t kAhead = 16;                             // pieces
+constexpr std::size_t kPolygons = 1 << 12;  // worked on at a time
+constexpr std::size_t kAhead = 16;          // pieces
 
 /// How much of an envelope there is up to somewhere.
 struct EnvelopeSize {
@@ -81,26 +82,22 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
                                  const Execution& execution) {
+    // Not by sorted_in_buckets, which counts twice: each piece keeps its number among those of its
+    // polygon, which is read faster than it is counted again.
     const std::size_t count = below.polygon.size();
     PiecesOfPolygons of;
     of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
     Array<std::uint32_t> number(count);
-    const auto for_all = [&](const auto& visit) {
-        parallel_ranges(count, kPieces, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                visit(i, static_cast<std::size_t>(below.polygon[i]));
-        });
-    };
-    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
+    parallel_each(count, execution, [&](std::size_t i) {
+        number[i] = count_one(of.offsets[index(below.polygon[i])]);
+    });
     running_totals(of.offsets, UINT32_MAX, execution);
-    of.pieces = Array<std::uint32_t>(count);
-    for_all([&](std::size_t i, std::size_t p) {
-        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
+    of.values.resize(count);
+    parallel_each(count, execution, [&](std::size_t i) {
+        of.values[of.offsets[index(below.polygon[i])] + number[i]] = static_cast<std::uint32_t>(i);
     });
-    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-            std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
-    });
+    parallel_each(polygons, execution,
+                  [&](std::size_t p) { std::sort(of[p].begin(), of[p].end()); });
     return of;
 }
 
@@ -143,11 +140,8 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
     });
     EnvelopeSize total{next.size(), next.outlines.corners.size(), next.face_polygons.size(),
                        next.face_polygons.corners.size()};
-    for (EnvelopeSize& size : start) {
-        const EnvelopeSize own = size;
-        size = total;
-        total += own;
-    }
+    for (EnvelopeSize& size : start)
+        total += std::exchange(size, total);
     check_total(std::max(total.corners, total.face_corners), UINT32_MAX);
     resize(next, total);
     parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
@@ -159,9 +153,9 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
                              to = of_polygon.offsets[p + 1] + kAhead;
                  k < to && k + kAhead < last_piece; ++k) {
                 prefetch(below.outlines.corners.begin() +
-                         below.outlines.offsets[of_polygon.pieces[k]]);
-                prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
-                prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
+                         below.outlines.offsets[of_polygon.values[k]]);
+                prefetch(below.outlines.offsets.begin() + of_polygon.values[k + kAhead]);
+                prefetch(below.node_above.begin() + of_polygon.values[k + kAhead]);
             }
             visit(
                 p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },

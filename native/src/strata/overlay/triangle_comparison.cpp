@@ -97,12 +97,11 @@ int side_of_border(const PlanArrangement& geometry, const PlanTriangle& triangle
 }
 
 TriangleBounds bounds_of(const PlanArrangement& geometry, PlaneId plane) {
-    TriangleBounds b{{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL};
+    TriangleBounds b{spatial::kNoBox, HUGE_VAL, -HUGE_VAL};
     for (const exact::SpaceId s : geometry.plane(plane).corner) {
         const auto& vertex = geometry.space(s);
         const auto& p = geometry.point(vertex.plan);
-        b.box = {std::min(b.box.low_x, p.x), std::min(b.box.low_y, p.y),
-                 std::max(b.box.high_x, p.x), std::max(b.box.high_y, p.y)};
+        b.box = b.box.united({p.x, p.y, p.x, p.y});
         b.low = std::min(b.low, vertex.z);
         b.high = std::max(b.high, vertex.z);
     }

@@ -149,13 +149,10 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
         }
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_ranges(tiling_->whole.size(), kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            classify(t);
-                            if (is_to_compare(t)) mark_tiles(surface_at[t].span, is_wanted);
-                        }
-                    });
+    parallel_each(tiling_->whole.size(), execution_, [&](std::size_t t) {
+        classify(t);
+        if (is_to_compare(t)) mark_tiles(surface_at[t].span, is_wanted);
+    });
     compare_surface(facets, is_wanted);
 }
 
@@ -167,14 +164,10 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
         [&](std::size_t f) { return !facets.plane(f).has_value() ? nullptr : &facet_at[f].span; },
         execution_);
     is_unclear_.assign(tiles().size(), 0);
-    parallel_ranges(tiling_->size(), kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            if (is_to_compare(t)) compare_triangle(facets, bins, t);
-                            if (surface[t] == Standing::kExact)
-                                mark_tiles(surface_at[t].span, is_unclear_);
-                        }
-                    });
+    parallel_each(tiling_->size(), execution_, [&](std::size_t t) {
+        if (is_to_compare(t)) compare_triangle(facets, bins, t);
+        if (surface[t] == Standing::kExact) mark_tiles(surface_at[t].span, is_unclear_);
+    });
 }
 
 void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatial::TileBins& bins,
@@ -245,14 +238,10 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
         return is_exact ? Standing::kExact : Standing::kToCompare;
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_ranges(facets.size(), kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            facet[f] = classify(f);
-                            if (facet[f] == Standing::kToCompare)
-                                mark_tiles(facet_at[f].span, is_wanted);
-                        }
-                    });
+    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+        facet[f] = classify(f);
+        if (facet[f] == Standing::kToCompare) mark_tiles(facet_at[f].span, is_wanted);
+    });
     compare_facets(facets, is_wanted);
 }
 
@@ -263,13 +252,10 @@ void WholeTriangleFilter::compare_facets(const FacetView& facets,
     const spatial::TileBins bins(
         tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
         execution_);
-    parallel_ranges(facets.size(), kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            if (facet[f] == Standing::kToCompare)
-                                facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
-                        }
-                    });
+    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+        if (facet[f] == Standing::kToCompare)
+            facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
+    });
 }
 
 Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
@@ -301,19 +287,16 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
     locate(facets, false);
     surface.assign(tiling_->size(), Standing::kBelow);
     facet.assign(facets.size(), Standing::kExact);
-    parallel_ranges(facets.size(), kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            const TileSpan& span = facet_at[f].span;
-                            if (!facets.plane(f).has_value() || borders_.near(span)) continue;
-                            bool any_empty = false, any_surface = false;
-                            tiles().for_each(span, [&](std::size_t tile) {
-                                (is_empty[tile] != 0 ? any_empty : any_surface) = true;
-                            });
-                            if (any_empty && any_surface) continue;
-                            facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
-                        }
-                    });
+    parallel_each(facets.size(), execution_, [&](std::size_t f) {
+        const TileSpan& span = facet_at[f].span;
+        if (!facets.plane(f).has_value() || borders_.near(span)) return;
+        bool any_empty = false, any_surface = false;
+        tiles().for_each(span, [&](std::size_t tile) {
+            (is_empty[tile] != 0 ? any_empty : any_surface) = true;
+        });
+        if (any_empty && any_surface) return;
+        facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
+    });
 }
 
 SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const TriangleLinks& links,
@@ -333,15 +316,11 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
         }
     }
     polygon.assign(tiling.size(), -1);
-    parallel_ranges(triangles, 2 * kTrianglesAtOnce, execution_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            if (surface[t] == Standing::kExact ||
-                                tiles().any(surface_at[t].span,
-                                            [&](std::size_t tile) { return is_needed[tile] != 0; }))
-                                polygon[t] = 0;
-                        }
-                    });
+    parallel_each(triangles, execution_, [&](std::size_t t) {
+        if (surface[t] == Standing::kExact ||
+            tiles().any(surface_at[t].span, [&](std::size_t tile) { return is_needed[tile] != 0; }))
+            polygon[t] = 0;
+    });
     SurfaceTiling part;
     for (std::size_t t = 0; t < triangles; ++t) {
         poll(execution_.progress, t);

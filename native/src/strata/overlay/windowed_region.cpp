@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "strata/overlay/facet_overlay.hpp"
+#include "strata/overlay/shared_polygons.hpp"
 #include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
@@ -16,15 +17,11 @@ namespace {
 
 /// The window of a tile: its own, or the region that a rock mass without one has there.
 std::array<Corner, 4> window_outline(Site& site, const EnteredRock& rock) {
-    const auto plan_of = [&](std::size_t t) {
-        if (!rock.window) return (*rock.region)[t];
-        PlanTriangle v;
-        for (std::size_t i = 0; i < 3; ++i)
-            v[i] = site.geometry.space(rock.window->triangles[t].corner[i]).plan;
-        return v;
+    const auto half = [&](std::size_t t) {
+        return rock.window ? plan_of(site.geometry, rock.window->triangles[t]) : (*rock.region)[t];
     };
-    const PlanTriangle half = plan_of(0);
-    const std::array corners{half[0], half[1], half[2], plan_of(1)[2]};
+    const auto [a, b, c] = half(0);
+    const std::array corners{a, b, c, half(1)[2]};
     std::array<Corner, 4> outline;
     for (std::size_t i = 0; i < 4; ++i)
         outline[i] = {corners[i], site.geometry.add_edge(corners[i], corners[(i + 1) % 4])};
@@ -36,8 +33,7 @@ std::array<Corner, 4> window_outline(Site& site, const EnteredRock& rock) {
 bool may_cross(const PlanBox& box, const Window& window) {
     const double margin = 0x1p-40 * std::max({std::abs(box.low_x), std::abs(box.high_x),
                                               std::abs(box.low_y), std::abs(box.high_y)});
-    const PlanBox wide{box.low_x - margin, box.low_y - margin, box.high_x + margin,
-                       box.high_y + margin};
+    const PlanBox wide = box.widened(margin);
     const bool is_inside = wide.low_x > window.low_x && wide.high_x < window.high_x &&
                            wide.low_y > window.low_y && wide.high_y < window.high_y;
     return !is_inside && wide.meets({window.low_x, window.low_y, window.high_x, window.high_y});
@@ -93,6 +89,7 @@ void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
         which.push_back(p);
     }
     scope.commit(site.geometry);
+    share(scope, clipped);
     PolygonPool polygons;
     std::size_t next = 0;
     for (std::size_t p = 0; p < tiling.plane.size(); ++p) {
@@ -100,12 +97,8 @@ void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
             polygons.add(tiling.polygons[p]);
             continue;
         }
-        Polygon outline(clipped[next].begin(), clipped[next].end());
-        for (Corner& corner : outline)
-            corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
-        polygons.add(outline);
+        polygons.add(clipped[next++]);
         unlink(tiling, p);
-        ++next;
     }
     tiling.polygons = std::move(polygons);
 }

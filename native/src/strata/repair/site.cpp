@@ -56,23 +56,21 @@ std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const Triangle
 }
 
 Frame enter_frame(PlanArrangement& geometry) {
-    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    PlanBox box = spatial::kNoBox;
     for (VertexId v{0}; index(v) < geometry.point_count(); ++v) {
-        const std::array<double, 2> p{geometry.point(v).x, geometry.point(v).y};
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
+        const exact::Point& p = geometry.point(v);
+        box = box.united({p.x, p.y, p.x, p.y});
     }
     // A power of two keeps the exact numbers short where the input is a lattice.
-    const double extent = std::max({high[0] - low[0], high[1] - low[1], std::abs(high[0]) * 0x1p-30,
-                                    std::abs(high[1]) * 0x1p-30, std::abs(low[0]) * 0x1p-30,
-                                    std::abs(low[1]) * 0x1p-30, 1e-30});
+    const double extent = std::max({box.width(), box.height(), std::abs(box.high_x) * 0x1p-30,
+                                    std::abs(box.high_y) * 0x1p-30, std::abs(box.low_x) * 0x1p-30,
+                                    std::abs(box.low_y) * 0x1p-30, 1e-30});
     double step = std::ldexp(1.0, std::ilogb(extent));
     if (step < extent) step *= 2;
     const auto down = [&](double v) { return (std::floor(v / step) - 1.0) * step; };
     const auto up = [&](double v) { return (std::ceil(v / step) + 1.0) * step; };
-    const double x0 = down(low[0]), y0 = down(low[1]), x1 = up(high[0]), y1 = up(high[1]);
+    const double x0 = down(box.low_x), y0 = down(box.low_y), x1 = up(box.high_x),
+                 y1 = up(box.high_y);
     Frame frame{geometry.add_vertex(x0, y0), geometry.add_vertex(x1, y0),
                 geometry.add_vertex(x1, y1), geometry.add_vertex(x0, y1)};
     // What fills the frame around long borders would all run to its corners and be near everything
@@ -124,11 +122,8 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
 
 SurfacePlan plan_window(const Site& site, const EnteredSurface& window, Progress* progress) {
     std::vector<PlanTriangle> triangles;
-    for (const UsedTriangle& triangle : window.triangles) {
-        PlanTriangle& plan = triangles.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-            plan[i] = site.geometry.space(triangle.corner[i]).plan;
-    }
+    for (const UsedTriangle& triangle : window.triangles)
+        triangles.push_back(plan_of(site.geometry, triangle));
     SurfacePlan result{link_triangles(triangles, progress), {}};
     result.filling = fill_frame(site.geometry, result.links.border, site.frame);
     return result;

@@ -31,7 +31,6 @@ namespace {
 BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                               SurfacePlan plan, std::int32_t number, TriangleLinks& links,
                               const Execution& execution) {
-    constexpr std::size_t kTriangles = 8192;
     if (!plan.filling)
         make_surface_tiling(geometry, triangles, plan, {}, number, execution);  // refuses
     const PlaneId first = make_planes(geometry, triangles, execution);
@@ -41,28 +40,23 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     BlockTiling tiling;
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);
-    std::vector<std::vector<std::pair<exact::VertexId, exact::VertexId>>> border(
-        (triangles.size() + kTriangles - 1) / kTriangles);
-    parallel_ranges(
-        triangles.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                const PlaneId plane = tiling.whole[t];
-                const PlanTriangle& corner = geometry.plane(plane).plan;
-                auto& neighbors = links.neighbor[index(plane)];
-                for (std::size_t i = 0; i < 3; ++i) {
-                    const std::int32_t n = plan.links.neighbor[t][i];
-                    if (n >= 0 && meet_in_height(geometry, plane, i, first + n)) {
-                        neighbors[i] = first + n;
-                        continue;
-                    }
-                    neighbors[i] = kNone;
-                    border[begin / kTriangles].emplace_back(corner[i], corner[(i + 1) % 3]);
+    const auto border = collect_in_order<std::pair<exact::VertexId, exact::VertexId>>(
+        triangles.size(), execution, [&](std::size_t t, auto& found) {
+            const PlaneId plane = tiling.whole[t];
+            const PlanTriangle& corner = geometry.plane(plane).plan;
+            auto& neighbors = links.neighbor[index(plane)];
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::int32_t n = plan.links.neighbor[t][i];
+                if (n >= 0 && meet_in_height(geometry, plane, i, first + n)) {
+                    neighbors[i] = first + n;
+                    continue;
                 }
+                neighbors[i] = kNone;
+                found.emplace_back(corner[i], corner[(i + 1) % 3]);
             }
         });
     assert(are_symmetric(links, first));
-    for (const auto& some : border)
-        links.border.insert(links.border.end(), some.begin(), some.end());
+    links.border.insert(links.border.end(), border.begin(), border.end());
     for (std::size_t t = 0; t < plan.filling->triangles.size(); ++t) {
         if (plan.filling->covered[t] == 0) tiling.empty.push_back(plan.filling->triangles[t]);
     }

@@ -20,13 +20,10 @@ bool is_narrow(const TileSpan& span) {
 }  // namespace
 
 PlanBox box_of(const LocalArrangement& scope, PolygonView polygon) {
-    PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    PlanBox box = spatial::kNoBox;
     for (const Corner& corner : polygon) {
         const auto& p = scope.point(corner.point);
-        box.low_x = std::min(box.low_x, p.x);
-        box.high_x = std::max(box.high_x, p.x);
-        box.low_y = std::min(box.low_y, p.y);
-        box.high_y = std::max(box.high_y, p.y);
+        box = box.united({p.x, p.y, p.x, p.y});
     }
     return box;
 }

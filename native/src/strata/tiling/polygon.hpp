@@ -67,12 +67,6 @@ struct PolygonPool {
         copy_corners(polygon, corners.begin() + before);
         offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
-    void append(const PolygonPool& other) {
-        const auto before = static_cast<std::uint32_t>(corners.size());
-        corners.append(other.corners.begin(), other.corners.end());
-        for (std::size_t i = 1; i < other.offsets.size(); ++i)
-            offsets.push_back(before + other.offsets[i]);
-    }
 };
 
 /// The part of a convex polygon to the left of a line; empty where it has no area.

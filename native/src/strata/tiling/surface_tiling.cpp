@@ -19,25 +19,12 @@ using exact::VertexId;
 
 namespace {
 
-constexpr std::size_t kRange = 8192;
-
-void add_triangle(PlanArrangement& geometry, PolygonPool& pool, const PlanTriangle& triangle) {
-    pool.add(triangle_outline(geometry, triangle));
-}
-
-PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triangle) {
-    PlanTriangle v;
-    for (std::size_t i = 0; i < 3; ++i)
-        v[i] = geometry.space(triangle.corner[i]).plan;
-    return v;
-}
-
 /// Void triangles (plane `empty`) where nothing is covered.
 void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTriangles& filling,
                PlaneId empty) {
     for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
         if (filling.covered[t] != 0) continue;
-        add_triangle(geometry, tiling.polygons, filling.triangles[t]);
+        tiling.polygons.add(triangle_outline(geometry, filling.triangles[t]));
         tiling.plane.push_back(empty);
     }
 }
@@ -67,12 +54,11 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTria
                                  const std::vector<UsedTriangle>& triangles, int index,
                                  const Execution& execution) {
     constexpr std::size_t kChunk = 1024;
-    parallel_chunks((triangles.size() + kChunk - 1) / kChunk, execution, [&](std::size_t chunk) {
+    parallel_ranges(triangles.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
         LocalArrangement scope(geometry);
         Clipper clipper(scope);
         Array<std::int32_t> candidates;
-        const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
-        for (std::size_t t = chunk * kChunk; t < end; ++t) {
+        for (std::size_t t = begin; t < end; ++t) {
             tiling.grid.candidates(scope, tiling.polygons[t], candidates);
             for (const std::int32_t c : candidates) {
                 const auto other = static_cast<std::size_t>(c);
@@ -101,6 +87,13 @@ std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
 
 }  // namespace
 
+PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triangle) {
+    PlanTriangle v;
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = geometry.space(triangle.corner[i]).plan;
+    return v;
+}
+
 std::array<Corner, 3> triangle_outline(PlanArrangement& geometry, const PlanTriangle& v) {
     return {{{v[0], geometry.add_edge(v[0], v[1])},
              {v[1], geometry.add_edge(v[1], v[2])},
@@ -122,9 +115,8 @@ void SurfaceTiling::index(const PlanArrangement& geometry, const Execution& exec
     runs_on.assign(plane.size(), 0);
     grid = PlanGrid(geometry, polygons, is_surface, cells, execution);
     heights = Array<HeightRange>(plane.size());
-    parallel_ranges(plane.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-            heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
+    parallel_each(plane.size(), execution, [&](std::size_t p) {
+        heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
     });
 }
 
@@ -174,10 +166,8 @@ std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
 PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     const Execution& execution) {
     const PlaneId first = geometry.make_planes(triangles.size());
-    parallel_ranges(triangles.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            geometry.set_plane(first + t, triangles[t].corner);
-    });
+    parallel_each(triangles.size(), execution,
+                  [&](std::size_t t) { geometry.set_plane(first + t, triangles[t].corner); });
     return first;
 }
 
@@ -205,17 +195,15 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
     tiling.neighbor = std::move(plan.links.neighbor);
     tiling.index(geometry, execution);
     tiling.link(geometry, execution.progress);
-    parallel_ranges(triangles.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            bool runs_on = true;
-            for (std::size_t i = 0; i < 3 && runs_on; ++i) {
-                const std::int32_t n = tiling.neighbor[t][i];
-                runs_on = n >= 0 && static_cast<std::size_t>(n) < triangles.size() &&
-                          meet_in_height(geometry, tiling.plane[t], i,
-                                         tiling.plane[static_cast<std::size_t>(n)]);
-            }
-            tiling.runs_on[t] = runs_on ? 1 : 0;
+    parallel_each(triangles.size(), execution, [&](std::size_t t) {
+        bool runs_on = true;
+        for (std::size_t i = 0; i < 3 && runs_on; ++i) {
+            const std::int32_t n = tiling.neighbor[t][i];
+            runs_on = n >= 0 && static_cast<std::size_t>(n) < triangles.size() &&
+                      meet_in_height(geometry, tiling.plane[t], i,
+                                     tiling.plane[static_cast<std::size_t>(n)]);
         }
+        tiling.runs_on[t] = runs_on ? 1 : 0;
     });
     return tiling;
 }
@@ -225,7 +213,7 @@ SurfaceTiling make_region_tiling(PlanArrangement& geometry,
                                  const FrameTriangles& filling) {
     SurfaceTiling tiling;
     for (const PlanTriangle& triangle : triangles) {
-        add_triangle(geometry, tiling.polygons, triangle);
+        tiling.polygons.add(triangle_outline(geometry, triangle));
         tiling.plane.push_back(kSky);
     }
     add_empty(geometry, tiling, filling, kOutside);

@@ -60,6 +60,9 @@ struct UsedTriangle {
     std::array<exact::SpaceId, 3> corner;  ///< counter-clockwise in plan
 };
 
+/// Its plan vertices.
+PlanTriangle plan_of(const exact::PlanArrangement& geometry, const UsedTriangle& triangle);
+
 /// A checked surface, and how its triangles are connected in plan.
 struct EnteredSurface {
     std::vector<UsedTriangle> triangles;

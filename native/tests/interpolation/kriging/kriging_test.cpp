@@ -11,6 +11,7 @@
 
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
+#include "../variogram_models.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
+#include "../variogram_models.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/neighbors/data_search.hpp"
 
@@ -94,7 +95,8 @@ void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram
         LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbors), leave_out,
                             kernels);
         std::vector<Estimate> found(all.size(), Estimate{-1, -1});
-        kriging.krige(all, [&](std::uint32_t i, const Estimate& e) { found[i] = e; });
+        kriging.krige(
+            all, [&](std::uint32_t i, const Estimate& e) { found[i] = e; }, [](std::uint32_t) {});
         for (std::size_t i = 0; i < all.size(); ++i) {
             ASSERT_EQ(std::memcmp(&found[i], &expected[i], sizeof(Estimate)), 0)
                 << "node " << i << ": " << found[i].value << " " << expected[i].value << "; "

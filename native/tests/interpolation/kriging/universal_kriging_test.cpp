@@ -6,6 +6,7 @@
 
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
+#include "../variogram_models.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "realmodel/base/errors.hpp"
@@ -133,7 +134,7 @@ TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {
         VariogramModel::kSpherical, 40, 4, 0.5, {}, {{VariogramModel::kSpherical, 40, 1.25, {}}}};
     check_variogram(nested);
     EXPECT_DOUBLE_EQ(nested.first_sill(), 2.25);
-    EXPECT_DOUBLE_EQ(nested.gamma(13), kVariogram.gamma(13));
+    EXPECT_DOUBLE_EQ(gamma_of(nested, 13), gamma_of(kVariogram, 13));
     for (const int neighbors : {0, 16}) {
         const Kriged a = krige(points, nodes, nested, {{neighbors}});
         const Kriged b = krige(points, nodes, kVariogram, {{neighbors}});
