@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+
 #include "exact/local_arrangement.hpp"
 
 // The formulas of plan lines, crossings and heights, written once for every kind of number. An

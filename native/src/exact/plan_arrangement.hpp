@@ -7,6 +7,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "base/index.hpp"
 #include "base/key_table.hpp"

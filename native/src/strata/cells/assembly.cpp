@@ -2,6 +2,7 @@
 #include "strata/cells/assembly.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/memory.hpp"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "strata/cells/exact_places.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/joins.hpp"
 
+#include <utility>
+
 #include "strata/repair/border_joining.hpp"
 #include "strata/repair/plan_snapping.hpp"
 #include "strata/repair/site.hpp"
