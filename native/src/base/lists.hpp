@@ -41,4 +41,14 @@ std::vector<Item> found_in_ranges(std::size_t count, std::size_t size, const Exe
     return joined(found);
 }
 
+/// The same of work(i, found) for every item, many of them in a chunk, as parallel_each() does.
+template <class Item, class Work>
+std::vector<Item> found_in_each(std::size_t count, const Execution& execution, const Work& work) {
+    return found_in_ranges<Item>(count, 1 << 12, execution,
+                                 [&](std::size_t begin, std::size_t end, auto& found) {
+                                     for (std::size_t i = begin; i < end; ++i)
+                                         work(i, found);
+                                 });
+}
+
 }  // namespace realmodel

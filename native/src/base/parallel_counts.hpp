@@ -42,22 +42,6 @@ void number_in_order(std::size_t items, const Execution& execution, const IsOne&
     });
 }
 
-/// What look(item, found) appends to `found` for items, on several threads, in their order.
-template <class Found, class Look>
-std::vector<Found> collect_in_order(std::size_t items, const Execution& execution,
-                                    const Look& look) {
-    constexpr std::size_t kChunk = 1 << 12;
-    std::vector<std::vector<Found>> of_chunks((items + kChunk - 1) / kChunk);
-    parallel_ranges(items, kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            look(i, of_chunks[begin / kChunk]);
-    });
-    std::vector<Found> all;
-    for (const auto& found : of_chunks)
-        all.insert(all.end(), found.begin(), found.end());
-    return all;
-}
-
 /// @throws InputError kind too_large, where there are more vertices than so many
 inline void check_total(std::size_t vertices, std::uint64_t largest) {
     if (vertices > largest) {

@@ -46,9 +46,11 @@ void cancel_folds(std::vector<TrianglePiece>& pieces) {
         for (auto even = begin, back = odd; even != odd && back != end; ++even, ++back)
             goes[even->piece] = goes[back->piece] = 1;
     }
-    std::erase_if(pieces, [&](const TrianglePiece& piece) {
-        return goes[static_cast<std::size_t>(&piece - pieces.data())] != 0;
-    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (goes[i] == 0) pieces[kept++] = pieces[i];
+    }
+    pieces.resize(kept);
 }
 
 }  // namespace
@@ -436,7 +438,7 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
             sort_unique(found);
         });
     parallel_sort(inputs, std::less<>(), execution_);
-    sort_unique(inputs);
+    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
     return inputs;
 }
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel_counts.hpp"
+#include "base/lists.hpp"
 #include "exact/space_predicates.hpp"
 #include "spatial/point_bins.hpp"
 
@@ -51,7 +51,7 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
             }
         });
     };
-    auto all = collect_in_order<Passage>(model.face_count(), execution, look);
+    auto all = found_in_each<Passage>(model.face_count(), execution, look);
     std::ranges::sort(all, {}, [](const Passage& p) { return std::pair{p.position, p.cell}; });
     std::vector<std::int32_t> cells(positions.size(), -1);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/keep_single.hpp"
-#include "base/parallel_counts.hpp"
+#include "base/lists.hpp"
 #include "base/ulp.hpp"
 
 namespace realmodel::strata {
@@ -181,8 +181,8 @@ private:
 
     /// The cells above and below faces that are flat themselves, ascending.
     std::vector<std::int32_t> cells_of_flat_faces() const {
-        auto cells = collect_in_order<std::int32_t>(
-            faces_.size(), execution_, [&](std::size_t f, auto& found) {
+        auto cells =
+            found_in_each<std::int32_t>(faces_.size(), execution_, [&](std::size_t f, auto& found) {
                 prefetch_face(f);
                 if (!is_flat_in_plan(f)) return;
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
@@ -194,7 +194,7 @@ private:
     }
 
     void find_faces() {
-        of_cells_ = collect_in_order<std::pair<std::size_t, std::size_t>>(
+        of_cells_ = found_in_each<std::pair<std::size_t, std::size_t>>(
             faces_.size(), execution_, [&](std::size_t f, auto& found) {
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                     const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
-#include "base/parallel_counts.hpp"
+#include "base/lists.hpp"
 
 namespace realmodel::strata {
 
@@ -49,7 +49,7 @@ public:
         sort_by_tile();
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
-        const auto near = collect_in_order<std::pair<std::uint32_t, std::int32_t>>(
+        const auto near = found_in_each<std::pair<std::uint32_t, std::int32_t>>(
             tiling_.whole.size(), execution_, [&](std::size_t t, auto& found) {
                 if (filter_.surface[t] == Standing::kBelow) look(t, found);
             });

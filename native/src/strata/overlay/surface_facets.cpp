@@ -11,8 +11,8 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kPolygons = 1 << 12;  // worked on at a time
-constexpr std::size_t kAhead = 16;          // pieces
+constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
+constexpr std::size_t kAhead = 16;                             // pieces
 
 /// How much of an envelope there is up to somewhere.
 struct EnvelopeSize {
@@ -82,22 +82,26 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
                                  const Execution& execution) {
-    // Not by sorted_in_buckets, which counts twice: each piece keeps its number among those of its
-    // polygon, which is read faster than it is counted again.
     const std::size_t count = below.polygon.size();
     PiecesOfPolygons of;
     of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
     Array<std::uint32_t> number(count);
-    parallel_each(count, execution, [&](std::size_t i) {
-        number[i] = count_one(of.offsets[index(below.polygon[i])]);
-    });
+    const auto for_all = [&](const auto& visit) {
+        parallel_ranges(count, kPieces, execution, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                visit(i, static_cast<std::size_t>(below.polygon[i]));
+        });
+    };
+    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
     running_totals(of.offsets, UINT32_MAX, execution);
-    of.values.resize(count);
-    parallel_each(count, execution, [&](std::size_t i) {
-        of.values[of.offsets[index(below.polygon[i])] + number[i]] = static_cast<std::uint32_t>(i);
+    of.pieces = Array<std::uint32_t>(count);
+    for_all([&](std::size_t i, std::size_t p) {
+        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
     });
-    parallel_each(polygons, execution,
-                  [&](std::size_t p) { std::sort(of[p].begin(), of[p].end()); });
+    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
+    });
     return of;
 }
 
@@ -153,9 +157,9 @@ void add_surface_facets(const NumberedTiling& surface, const std::vector<std::ui
                              to = of_polygon.offsets[p + 1] + kAhead;
                  k < to && k + kAhead < last_piece; ++k) {
                 prefetch(below.outlines.corners.begin() +
-                         below.outlines.offsets[of_polygon.values[k]]);
-                prefetch(below.outlines.offsets.begin() + of_polygon.values[k + kAhead]);
-                prefetch(below.node_above.begin() + of_polygon.values[k + kAhead]);
+                         below.outlines.offsets[of_polygon.pieces[k]]);
+                prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
+                prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
             }
             visit(
                 p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "base/counting_sort.hpp"
+#include "realmodel/base/array.hpp"
 #include "strata/overlay/envelope.hpp"
 
 namespace realmodel::strata {
@@ -16,8 +17,15 @@ struct PiecesBelow {
     Array<std::int32_t> node_above;  ///< node, kOutsideCell or kLeftOut
 };
 
-/// The pieces of each polygon, ascending.
-using PiecesOfPolygons = Buckets<std::uint32_t>;
+/// The pieces of each polygon.
+struct PiecesOfPolygons {
+    Array<std::uint32_t> offsets;
+    Array<std::uint32_t> pieces;  ///< ascending for each polygon
+
+    std::span<const std::uint32_t> operator[](std::size_t polygon) const {
+        return {pieces.begin() + offsets[polygon], pieces.begin() + offsets[polygon + 1]};
+    }
+};
 /// @throws InputError kind too_large, where there are more pieces than numbers for them
 PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
                                  const Execution& execution);

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "base/parallel_counts.hpp"
+#include "base/lists.hpp"
 
 namespace realmodel::strata {
 
@@ -40,7 +40,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     BlockTiling tiling;
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);
-    const auto border = collect_in_order<std::pair<exact::VertexId, exact::VertexId>>(
+    const auto border = found_in_each<std::pair<exact::VertexId, exact::VertexId>>(
         triangles.size(), execution, [&](std::size_t t, auto& found) {
             const PlaneId plane = tiling.whole[t];
             const PlanTriangle& corner = geometry.plane(plane).plan;
