@@ -62,11 +62,11 @@ public:
             for (const std::size_t n : thinned(known, std::min(most, kFirstCenters)))
                 is_center_[n] = 1;
         }
-        begin(0.0, 0.3, "anisotropy of the field");
+        begin_phase(execution_.progress, 0.0, 0.3, "anisotropy of the field");
         LikelyField found = likely_field(known, execution);
         likely_ = found.likely;
         gaps_ = std::move(found.gaps);
-        begin(0.3, 0.7, "field through the data");
+        begin_phase(execution_.progress, 0.3, 0.7, "field through the data");
     }
 
     /// Rounds until all data are met, but for those that contradict others.
@@ -92,7 +92,7 @@ public:
 
     Field field() {
         Field out;
-        begin(0.7, 1.0, "values of the field");
+        begin_phase(execution_.progress, 0.7, 1.0, "values of the field");
         const double unit = known_.frame().unit;
         for (std::size_t side = 0; side < known_.data().slits.sides; ++side) {
             std::vector<double> at_nodes = function().at_nodes(known_.lattice(), side, execution_);
@@ -140,7 +140,7 @@ private:
         const double most = *std::ranges::max_element(kind.anisotropy.ratios);
         const double reach = std::max(most, 1.0) + 2 * rough + farthest_lift();
         drawn_.emplace(likely_.smoothness(), kind.scale, reach, rough, numbers);
-        begin(0.0, 0.7, "field through the data");
+        begin_phase(execution_.progress, 0.0, 0.7, "field through the data");
     }
 
     /// How far further coordinates are from 0 at most, as they are scaled.
@@ -196,10 +196,6 @@ private:
             if (!more_contacts && !more_bounds && !fewer) break;
             fit();
         }
-    }
-
-    void begin(double from, double to, const char* text) const {
-        if (execution_.progress != nullptr) execution_.progress->begin(from, to, text);
     }
 
     FrameFunction function() const { return {known_, *spline_, drawn_ ? &*drawn_ : nullptr}; }

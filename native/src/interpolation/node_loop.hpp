@@ -29,8 +29,7 @@ struct NodeLoop {
     template <class Make, class Work>
     void over_chunks(const Make& make, const Work& work) const {
         assert(chunk > 0);
-        if (execution.progress != nullptr && begin < end)
-            execution.progress->begin(begin, end, text);
+        if (begin < end) begin_phase(execution.progress, begin, end, text);
         const auto worker = [&] {
             return [&, own = make()](std::size_t number) mutable {
                 work(own, number * chunk, std::min(count, (number + 1) * chunk));
