@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // krige, krige_left_out, fit_variogram, fit_alike, fit_sheets, idw, idw_left_out, spline,
-// mean_spacing, buffer_of_clusters, nearest_distance, line_sums.
+// mean_spacing, nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -145,12 +145,6 @@ Array<double> spline(const Array<double>& points, const Array<double>& nodes, do
                                                   dips_of(dips)};
     return to_array(
         unlocked([&] { return interpolation::thin_plate(from, to, options, run(execution)); }));
-}
-
-double buffer_of_clusters(const Array<double>& points, WatchedExecution* execution) {
-    const auto from = rows<3>(points, "points");
-    const py::gil_scoped_release release;
-    return interpolation::buffer_of_clusters(from, run(execution));
 }
 
 double mean_spacing(const Array<double>& points, bool are_apart) {
@@ -418,12 +412,6 @@ Raises InputError as krige does for points.)");
         R"(The baseline of slopes with which they say most of heights under a variogram, as krige takes it.
 
 spacing     the mean spacing of points and dips together)");
-    module.def(
-        "buffer_of_clusters", &buffer_of_clusters, arg("points"), arg("execution") = py::none(),
-        R"(How far others should be from one of clustered points (P, 3) that is left out; else 0.
-
-It is then predicted from as far as the places between the points are. Raises InputError as krige does
-for points; Cancelled.)");
     module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
                arg("execution") = py::none(),
                R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.

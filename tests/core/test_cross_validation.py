@@ -43,6 +43,44 @@ def test_inverse_distance_leaves_one_out():
     assert everything.z[0] == pytest.approx(interpolate(others, POINTS[:1, :2], "idw", neighbours=0).z[0])
 
 
+def random_surface(draw, length=250.0):
+    """A function of x and y with a deviation of 20 and features about so long: random waves."""
+    waves = draw.normal(size=(200, 2)) * 1.2 * np.sqrt(2) / length
+    phases = draw.uniform(0, 2 * np.pi, 200)
+    return lambda x, y: 2 * np.cos(np.outer(x, waves[:, 0]) + np.outer(y, waves[:, 1]) + phases).sum(axis=1)
+
+
+def layout(kind, draw):
+    """(H, 2) holes in a square of 2 km."""
+    plan = draw.uniform(0, 2000, (30, 2))
+    if kind == "twins":
+        return np.concatenate([plan, plan + draw.normal(0, 5, plan.shape)])
+    if kind == "twins of half":
+        return np.concatenate([plan, plan[:15] + draw.normal(0, 5, (15, 2))])
+    if kind == "pairs 60 apart":
+        return np.concatenate([plan, plan + draw.normal(0, 48, plan.shape)])
+    return np.concatenate([plan, draw.uniform(0, 2000, (30, 2))])
+
+
+@pytest.mark.parametrize("kind", ["spread", "twins", "twins of half", "pairs 60 apart"])
+def test_the_error_of_holes_is_that_between_them(kind):
+    """Also where most have another one beside them: places are left out."""
+    said, true, within = [], [], []
+    for seed in range(6):
+        draw = np.random.default_rng(seed)
+        surface, plan = random_surface(draw), layout(kind, draw)
+        points = np.column_stack([plan, surface(*plan.T)])
+        result = cross_validate(points)
+        between = draw.uniform(0, 2000, (400, 2))
+        errors = interpolate(points, between).z - surface(*between.T)
+        said.append(result.rmse)
+        true.append(np.sqrt((errors**2).mean()))
+        within.append(result.within_two_deviations)
+        assert np.array_equal(result.points, points)
+    assert np.mean(said) == pytest.approx(np.mean(true), rel=0.25)
+    assert 0.8 < np.mean(within) < 0.97
+
+
 def test_points_at_one_place_leave_together():
     twice = np.vstack([POINTS, POINTS[:5]])
     result = cross_validate(twice, variogram=SPHERICAL)

@@ -39,6 +39,12 @@ def begins_run(rows: np.ndarray) -> np.ndarray:
     return found
 
 
+def ascending(*columns: np.ndarray) -> np.ndarray:
+    """(N,) the numbers of rows in ascending order of columns (N,), of which the first counts most. Equal rows
+    keep their order, NaN comes last."""
+    return np.lexsort(columns[::-1])
+
+
 def are_among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
     """(N,) bool: the rows (N, K) that are rows of others (M, K)."""
     known = set(map(tuple, others.tolist()))

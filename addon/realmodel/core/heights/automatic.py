@@ -12,6 +12,7 @@ from ..base.work import native_module
 from ..settings.methods import METHODS, checked_options
 from . import bounded, from_neighbours
 from .interpolation import Result, Task, run_method
+from .left_out_places import in_turn, places_of
 
 _FEW = 10  # points: too few for a variogram
 _LEFT_OUT = 2000  # about as many points are left out and estimated, where there are so many
@@ -113,17 +114,14 @@ def choose(task: Task) -> tuple[Trial, str]:
 
 
 def _left_out(task: Task, points: np.ndarray) -> list[np.ndarray]:
-    """(P,) bool, which points are left out at a time: every tenth, or one of few; of clustered points all in
-    every tenth square, so that they are estimated from as far as nodes are."""
-    buffer = task.run(native_module().buffer_of_clusters, points)
-    if buffer > 0.0:
-        _, order = np.unique(np.floor(points[:, :2] / buffer), axis=0, return_inverse=True)
-        order, folds, step = order.ravel(), _FOLDS, _FOLDS
-    else:
-        order, folds = np.arange(len(points)), len(points) if len(points) < _FEW else _FOLDS
-        step = max(folds, len(points) // _LEFT_OUT)
-    left_out = [order % step == fold for fold in range(1 if step > folds else folds)]
-    return [out for out in left_out if out.any() and not out.all()]
+    """(P,) bool, which points are left out at a time: every tenth, or one of few; of clustered points those
+    at every tenth place."""
+    places = places_of(task.work, points[:, :2])
+    if places is not None:
+        return in_turn(places, _FOLDS)
+    step = max(_FOLDS, len(points) // _LEFT_OUT)
+    every = in_turn(np.arange(len(points)), len(points) if len(points) < _FEW else step)
+    return every[:1] if step > _FOLDS else every
 
 
 def _is_able(candidate: Candidate, task: Task) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.algebra import ascending
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..notebook import ShortRepr
@@ -18,18 +19,23 @@ from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 from . import Task, left_out_heights
+from .from_neighbours import krige, structure
 from .interpolate import checked_nodes, checked_points, checked_triangles, method_settings
+from .interpolation import Result
+from .left_out_places import in_turn, places_of
 from .mis_ties import without_mis_ties
 from .run import heights, with_dips
 
 DEFAULT_FOLDS = 10
+_MOST_PLACES = 60  # that are left out one by one
 
 
 @dataclass(frozen=True, repr=False)
 class CrossValidation(ShortRepr):
-    """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
-    minus the points' heights; standardized (P,), errors divided by the kriging standard deviation, None where
-    the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
+    """points (P, 3), no two at one position in plan; z (P,), estimated from the other points;
+    errors (P,), z minus the points' heights; standardized (P,), errors divided by the kriging standard
+    deviation, None where the method gives no variance; rmse, the root mean square error; the method, and the
+    variogram used.
 
     Where a point cannot be estimated (a method that gives no height outside the hull of the other points),
     its z and error are NaN; rmse is of the others.
@@ -68,6 +74,14 @@ class CrossValidation(ShortRepr):
         """(P,) bool: the points that are estimated."""
         return np.isfinite(self.errors)
 
+    def in_order_of(self, points: np.ndarray) -> CrossValidation:
+        """The same in the order in which its places come first among points (P, 3)."""
+        _, first = np.unique(points[:, :2] + 0.0, axis=0, return_index=True)
+        order = np.argsort(first)
+        standardized = None if self.standardized is None else self.standardized[order]
+        of_points = self.points[order], self.z[order], self.errors[order], standardized
+        return CrossValidation(*of_points, self.rmse, self.method, self.variogram)
+
     def worst(self, number: int) -> np.ndarray:
         """The indices of the points with the largest errors, the largest first; number: how many, at most."""
         order = np.argsort(-np.abs(self.errors), kind="stable")  # NaN last
@@ -100,7 +114,9 @@ def cross_validate(
     points: (P, 3), at least 2 positions in plan; points at one position count once. Kriging and inverse
     distance leave the points out one by one, with the variogram fitted to all of them (where all points are
     neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
-    methods are run `folds` times, each time without every folds-th point. mesh: (nodes (N, 2), triangles (T,
+    methods are run `folds` times, each time without every folds-th point. Where points are clustered, as in
+    twin holes and along survey lines, all methods are run, for places and not for points (places_of): of
+    kriging and inverse distance up to 60 times. mesh: (nodes (N, 2), triangles (T,
     3)), for a method that works on a mesh. dips, options: as for `interpolate`; dips are never left out.
 
     Raises InputRefused, UsageError, Cancelled.
@@ -126,7 +142,8 @@ def cross_validate(
 
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
-            return validate(method, Task(work, points, nodes, settings, triangles, dips=known), int(folds))
+            found = validate(method, Task(work, points, nodes, settings, triangles, dips=known), int(folds))
+            return found.in_order_of(points)
 
     return run(task, progress, cancel, threads=threads)
 
@@ -138,12 +155,14 @@ def validate(method: str, task: Task, folds: int) -> CrossValidation:
     task, _ = with_dips(method, replace(task, points=points))
     if len(points) < 2:
         raise InputRefused("cross-validation needs at least two points", item="points")
-    variance, variogram = None, None
-    if METHODS[method].leaves_one_out:
+    places = places_of(task.work, points[:, :2])
+    if METHODS[method].leaves_one_out and places is None:
         result = left_out_heights(method, task)
-        z, variance, variogram = result.z, result.variance, result.variogram
     else:
-        z = _in_folds(method, task, min(folds, len(points)))
+        most = max(folds, _MOST_PLACES) if METHODS[method].leaves_one_out else folds
+        numbers = np.arange(len(points)) if places is None else places
+        result = _in_folds(method, task, in_turn(numbers, most))
+    z, variance, variogram = result.z, result.variance, result.variogram
     errors = z - points[:, 2]
     standardized = None
     if variance is not None:
@@ -155,23 +174,28 @@ def validate(method: str, task: Task, folds: int) -> CrossValidation:
 
 
 def distinct_points(points: np.ndarray) -> np.ndarray:
-    """The points without those that repeat another; heights that differ a little are averaged."""
-    points, _ = without_mis_ties(points)
-    _, first = np.unique(points, axis=0, return_index=True)
-    return np.ascontiguousarray(points[np.sort(first)])
+    """The points in ascending order, without those that repeat another; heights that differ a little are
+    averaged."""
+    points, _ = without_mis_ties(points[ascending(*points.T)])
+    return np.unique(points, axis=0)
 
 
-def _in_folds(method: str, task: Task, folds: int) -> np.ndarray:
-    points = task.points
-    z = np.empty(len(points))
-    for fold in range(folds):
-        task.work.step(fold / folds)
-        out = np.zeros(len(points), bool)
-        out[fold::folds] = True
+def _in_folds(method: str, task: Task, left_out: list[np.ndarray]) -> Result:
+    """The heights of points that are left out together. left_out: (P,) bool, which at a time."""
+    points, known, variogram = task.points, None, None
+    z, variance = np.empty(len(points)), np.full(len(points), np.nan)
+    if METHODS[method].leaves_one_out and METHODS[method].may_be_kriged:
+        known = structure(task)
+        variogram = known.variogram
+    for fold, out in enumerate(left_out):
+        task.work.step(fold / len(left_out))
         places, others = np.ascontiguousarray(points[out, :2]), np.ascontiguousarray(points[~out])
-        if task.triangles is None:
+        if known is not None:
+            found = krige(replace(task, points=others, nodes=places), known)
+            z[out], variance[out] = found.z, found.variance
+        elif task.triangles is None:
             z[out] = heights(method, replace(task, points=others, nodes=places)).z
         else:
             shape = np.column_stack([task.nodes, heights(method, replace(task, points=others)).z])
             z[out] = task.run(native_module().surface_heights, shape, task.triangles, places)
-    return z
+    return Result(z, None if known is None else variance, variogram)

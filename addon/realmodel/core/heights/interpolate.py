@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.algebra import ascending
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
@@ -55,9 +56,10 @@ def interpolate(
     """
     settings = method_settings(method, neighbours, options)
     if points is not None or METHODS[method].needs_points(settings):
-        points = checked_points(points)
+        given = checked_points(points)
+        given = given[ascending(*given.T)]  # the order of rows must not decide a result
     else:
-        points = np.empty((0, 3))
+        given = np.empty((0, 3))
     nodes = checked_nodes(nodes)
     threads = check_threads(threads)
     triangles = checked_triangles(triangles, len(nodes))
@@ -72,8 +74,8 @@ def interpolate(
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            given = Task(work, points, nodes, settings, triangles, dips=dips, bounds=bounds)
-            return heights(method, replace(given, true_thickness=true_thickness))
+            whole = Task(work, given, nodes, settings, triangles, dips=dips, bounds=bounds)
+            return heights(method, replace(whole, true_thickness=true_thickness))
 
     return run(task, progress, cancel, threads=threads)
 

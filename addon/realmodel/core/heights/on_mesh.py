@@ -175,7 +175,7 @@ def _beyond(task: Task, option: str) -> list[str]:
     other, worst = "below" if option == "above" else "above", int(past.argmax())
     return [
         f"{wrong} of {len(past)} points lie {other} {_called(reference)}, but the surface is kept "
-        f"{option} it: they are not honored, the farthest is {other} by {past[worst]:.4g}: point {worst} at "
+        f"{option} it: they are not honored, the farthest is {other} by {past[worst]:.4g}: the point at "
         f"{place_text(task.points[worst])}"
     ]
 

@@ -67,7 +67,8 @@ class Surface(Shaped):
     `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
     heights that it lies at or above, or at or below; `error` is the mean variance of the errors of the
     heights of its points; all are found when a project is read, and no input.
-    `shape_file` is the file that the arrays were read from, if any: messages name it.
+    `shape_file` is the file that the arrays were read from, if any: messages name it. Points that are read
+    are in the order of their coordinates; `point_rows` are the numbers that they had before, for messages.
     """
 
     kind = "surface"
@@ -93,6 +94,7 @@ class Surface(Shaped):
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
     error: float = field(default=0.0, repr=False, compare=False)
     is_level_set: bool = field(default=False, repr=False, compare=False)
+    point_rows: np.ndarray | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
@@ -151,6 +153,11 @@ class Surface(Shaped):
         """(P, 3) float64 the points of a surface that is read; none where it has none."""
         assert not isinstance(self.points, (str, Path, PointFile))
         return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
+
+    def point_row(self, number: int) -> int:
+        """The number that a point had in the table or array that it comes from, for messages."""
+        rows = self.point_rows
+        return number if rows is None or number >= len(rows) else int(rows[number])
 
     @builtins.property  # a field of this class is called property
     def dip_file(self) -> DipFile | None:

@@ -12,6 +12,7 @@ from ..base.algebra import norm
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.model_data import ModelData
+from ..heights.left_out_places import in_turn, places_of
 from ..project.project import Project, Rock, Surface
 from ..readers.tables.observations import Observations, in_one_interval
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
@@ -103,7 +104,7 @@ def cross_validate_holes(
     right block, and how far off they have its contacts.
 
     folds: the number of groups in which holes are left out; None: each hole by itself, but in at most 20
-    groups. The holes of a group are spread over the order of the table. Outcrops, dips and points that no
+    groups. Holes that are clustered, as twins are, are left out together (places_of). Outcrops, dips and points that no
     hole met stay. Variograms are fitted anew each time, and "auto" stays what it chose.
 
     Raises InputRefused for a model without holes, or of a file without its project; UsageError, Cancelled.
@@ -124,10 +125,11 @@ def validated_holes(work: Work, model: ModelData, folds: int | None = None) -> H
             f"the model has {len(every)} holes: leaving one out takes two or more",
             advice="give boreholes with intervals or picks",
         )
-    groups = min(folds or DEFAULT_FOLDS, len(every))
+    turns = in_turn(_places(work, rocks, every), folds or DEFAULT_FOLDS)
     found: dict[tuple[int, str], LeftOutHole] = {}
-    for group in range(groups):
-        out = every[group::groups]
+    groups = len(turns)
+    for group, chosen in enumerate(turns):
+        out = [every[number] for number in np.flatnonzero(chosen).tolist()]
         with work.part(group / groups, (group + 1) / groups):
             try:
                 found |= _without(work, model.project, rocks, out)
@@ -143,6 +145,18 @@ def _holes_of(rock: Rock) -> list[str]:
     logged = [] if observed is None else [hole for hole in observed.holes.tolist() if hole]
     picked = [hole for hole, (_, picks) in rock.hole_picks.items() if picks]
     return list(dict.fromkeys([*logged, *picked]))
+
+
+def _places(work: Work, rocks: Sequence[Rock], every: Sequence[tuple[int, str]]) -> np.ndarray:
+    """(H,) the numbers of the places of holes, (rock mass, name): twins are at one place."""
+    plan = np.zeros((len(every), 2))
+    for row, (number, hole) in enumerate(every):
+        observed = rocks[number].observed
+        met = [place for _, place in rocks[number].hole_picks.get(hole, (None, ()))[1]]
+        own = [] if observed is None else observed.places[observed.holes == hole].tolist()
+        plan[row] = np.mean([place[:2] for place in (*met, *own)], axis=0)
+    found = places_of(work, plan)
+    return np.arange(len(every)) if found is None else found
 
 
 def _without(

@@ -115,7 +115,8 @@ def _points(model: ModelData, which: tuple[int, int, int], sources: dict, near: 
         if surface.is_level_set:
             says, has = "on it", f"{by:.4g} on its {'younger' if z < place[2] else 'older'} side"
         hole, depth = sources.get(place, ("", None))
-        yield Misfit("point", rock.name, surface.name, hole, depth, row, place, says, has, by)
+        source = hole, depth, surface.point_row(row)
+        yield Misfit("point", rock.name, surface.name, *source, place, says, has, by)
 
 
 def _bounds(model: ModelData, which: tuple[int, int, int], near: float) -> Iterator[Misfit]:
@@ -157,7 +158,7 @@ def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> It
     dips = surface.known_dips()  # its own ones first
     assert dips is not None
     own = surface.own_dips()
-    rows = np.empty(0, np.int64) if own is None else np.flatnonzero(own.in_use)
+    rows = [] if own is None else [own.row(number) for number in np.flatnonzero(own.in_use).tolist()]
     z = dips.heights
     slopes, heights = _slopes(model, which, np.column_stack([dips.positions, z]))
     normals, there = (np.column_stack([-each, np.ones(len(each))]) for each in (dips.gradients, slopes))
@@ -166,7 +167,7 @@ def _dips(model: ModelData, which: tuple[int, int, int], tolerance: float) -> It
     for k in np.flatnonzero(angles > tolerance).tolist():
         place = (*dips.positions[k].tolist(), float(heights[k] if np.isnan(z[k]) else z[k]))
         texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
-        source = "", None, int(rows[k]) if k < len(rows) else None
+        source = "", None, rows[k] if k < len(rows) else None
         yield Misfit("dip", rock.name, surface.name, *source, place, *texts, float(angles[k]))
 
 
@@ -184,7 +185,9 @@ def _dips_of_field(
     for k in np.flatnonzero(angles > tolerance).tolist():
         texts = attitude_text(normals[k]), f"{attitude_text(there[k])}, {angles[k]:.0f}° off"
         place = tuple(places[k].tolist())
-        yield Misfit("dip", rock.name, own.name, "", None, int(rows[k]), place, *texts, float(angles[k]))
+        yield Misfit(
+            "dip", rock.name, own.name, "", None, dips.row(int(rows[k])), place, *texts, float(angles[k])
+        )
 
 
 def _slopes(

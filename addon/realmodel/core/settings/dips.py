@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
+from ..base.stored_objects import NOT_STORED
 from .field_table import FieldTable
 
 NORMAL = ("normal_x", "normal_y", "normal_z")
@@ -44,11 +46,13 @@ class DipFile(FieldTable):
 class SpaceDips:
     """Dips in space, at any angle. positions: (D, 3) float64. normals: (D, 3) float64 of the bedding, of any
     length, toward younger rock. used: (D,) bool, False where one is switched off, which says nothing then;
-    None: all are used."""
+    None: all are used. rows: (D,) the numbers of their rows in the table or the arrays that they come from;
+    None: they are in its order."""
 
     positions: np.ndarray
     normals: np.ndarray
     used: np.ndarray | None = None
+    rows: np.ndarray | None = field(default=None, metadata=NOT_STORED)
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -80,8 +84,13 @@ class SpaceDips:
         used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
         return cls(positions, normals, None if used.all() else used)
 
+    def row(self, number: int) -> int:
+        """The row that one of them comes from."""
+        return _row(self, number)
+
     def checked(self) -> SpaceDips:
-        """The same as arrays of float64. Raises InputRefused."""
+        """The same as arrays of float64, in the order of their places and values: the order of rows must not
+        decide a result. Raises InputRefused."""
         positions, normals = (
             _floats(values, (len(self.positions), 3), f"{name} of dips")
             for name, values in (("positions", self.positions), ("normals", self.normals))
@@ -90,7 +99,10 @@ class SpaceDips:
         bad |= ~normals.any(axis=1)
         if bad.any():
             raise InputRefused(f"dip {np.flatnonzero(bad)[0]} is not finite, or has no normal", item="dips")
-        return SpaceDips(positions, normals, _checked_use(self.used, len(positions)))
+        used = _checked_use(self.used, len(positions))
+        order = ascending(*positions.T, *normals.T, *([] if used is None else [used]))
+        rows = order if self.rows is None else np.asarray(self.rows)[order]
+        return SpaceDips(positions[order], normals[order], None if used is None else used[order], rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +115,7 @@ class Dips:
     Of a rock mass: surfaces: (D,) texts, the surface that each is of, "" where none is named, or None.
     blocks: (D,) texts, the block that each is of, by its name or that of the surface over it, "" for none, or
     None. A dip of a block counts for the surfaces under and over it that are conformable with it, one
-    without a name for all that no unconformity parts from it."""
+    without a name for all that no unconformity parts from it. rows: as of SpaceDips."""
 
     positions: np.ndarray
     gradients: np.ndarray
@@ -111,13 +123,14 @@ class Dips:
     surfaces: np.ndarray | None = None
     blocks: np.ndarray | None = None
     used: np.ndarray | None = None
+    rows: np.ndarray | None = field(default=None, metadata=NOT_STORED)
 
     def __len__(self) -> int:
         return len(self.positions)
 
     def some(self, kept: np.ndarray) -> Dips:
         """Some of them. kept: (D,) bool, or their numbers."""
-        more = (self.z, self.surfaces, self.blocks, self.used)
+        more = (self.z, self.surfaces, self.blocks, self.used, self.rows)
         chosen = [None if each is None else np.asarray(each)[kept] for each in more]
         return Dips(self.positions[kept], self.gradients[kept], *chosen)
 
@@ -125,6 +138,10 @@ class Dips:
     def in_use(self) -> np.ndarray:
         """(D,) bool: which are not switched off."""
         return _in_use(self)
+
+    def row(self, number: int) -> int:
+        """The row that one of them comes from."""
+        return _row(self, number)
 
     def used_only(self) -> Dips | None:
         """Those that are not switched off; None where there are none."""
@@ -164,7 +181,8 @@ class Dips:
         return cls(positions, gradients, z, surfaces, blocks, in_use)
 
     def checked(self) -> Dips:
-        """The same as arrays of float64. Raises InputRefused."""
+        """The same as arrays of float64, in the order of their places and values: the order of rows must not
+        decide a result. Raises InputRefused."""
         positions, gradients = (
             _floats(values, (len(self.positions), 2), f"{name} of dips")
             for name, values in (("positions", self.positions), ("gradients", self.gradients))
@@ -177,7 +195,11 @@ class Dips:
             None if names is None else _texts(names, len(positions), f"{what} of dips")
             for what, names in (("surfaces", self.surfaces), ("blocks", self.blocks))
         )
-        return Dips(positions, gradients, z, surfaces, blocks, _checked_use(self.used, len(positions)))
+        used = _checked_use(self.used, len(positions))
+        rows = np.arange(len(positions)) if self.rows is None else self.rows
+        more = [each for each in (z, surfaces, blocks, used) if each is not None]
+        order = ascending(*positions.T, *gradients.T, *more)
+        return Dips(positions, gradients, z, surfaces, blocks, used, rows).some(order)
 
     def merged(self) -> tuple[Dips, str | None]:
         """One dip at each position, the mean of those there, and a warning where they differ."""
@@ -210,6 +232,10 @@ def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:
 
 def _in_use(dips: Dips | SpaceDips) -> np.ndarray:
     return np.ones(len(dips), bool) if dips.used is None else np.asarray(dips.used, bool)
+
+
+def _row(dips: Dips | SpaceDips, number: int) -> int:
+    return number if dips.rows is None else int(dips.rows[number])
 
 
 def _checked_use(used: Any, count: int) -> np.ndarray | None:

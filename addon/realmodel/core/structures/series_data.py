@@ -50,6 +50,7 @@ class SeriesData:
         points = [rock.surfaces[number].point_array() for number in numbers]
         dips = series.space_dips() or SpaceDips(np.empty((0, 3)), np.empty((0, 3)))
         of_dips = np.flatnonzero(dips.in_use)
+        dip_rows = np.array([dips.row(number) for number in of_dips.tolist()], np.int64)
         positions, normals = dips.positions[of_dips], dips.normals[of_dips]
         given = [rock.surfaces[number].bounds for number in numbers]
         step = max(step, sum(_length(each) for each in given if each is not None) / _MOST_BOUNDS)
@@ -64,7 +65,7 @@ class SeriesData:
             np.concatenate([np.arange(len(each)) for each in points]),
             positions,
             normals / norm(normals)[:, None],
-            of_dips,
+            dip_rows,
             np.concatenate([places for places, _ in placed]),
             _owners([len(places) for places, _ in placed]),
             np.concatenate([each[rows] for each, (_, rows) in zip(lower, placed, strict=True)]),
@@ -139,7 +140,9 @@ class SeriesData:
             return source_text(str(bounds.holes[at]), float(bounds.depths[at]), self.bounds[row])
         surface = self.rock.surfaces[self.numbers[self.surfaces[row]]]
         source = self._source(row)
-        return f"surface '{surface.name}', {source or f'point {self.contact_rows[row]}'}"
+        return (
+            f"surface '{surface.name}', {source or f'point {surface.point_row(int(self.contact_rows[row]))}'}"
+        )
 
     def _source(self, row: int) -> str | None:
         """Where a contact was observed; None where it is a point of its surface."""

@@ -91,7 +91,8 @@ def _missed(
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
         return None
     place, hole = place_text(points[worst].tolist()), _hole(rock, points[worst])
-    named = f"point {worst}" if are_all else "the point"
+    row = rock.surfaces[number].point_row(worst)
+    named = f"point {row}" if are_all else "the point"
     side = "above" if points[worst, 2] > z[worst] else "below"
     before = "before it is tied " if is_tied else ""
     text = (
@@ -99,7 +100,7 @@ def _missed(
         f"neighboring surfaces are {number_text(apart)} away: "
         f"{_remedy(entry.interpolations[number], is_tied)}"
     )
-    return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
+    return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (row,) * are_all)
 
 
 def _goes_through_points(entry: RockInput, number: int) -> bool:

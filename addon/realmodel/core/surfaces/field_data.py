@@ -104,7 +104,8 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
 def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, list[LeftOut]]:
     """The dips of a rock mass with what they are of, and those that are not used."""
     if rock.dip_file is not None:
-        return read_dips_of_rock(rock.dip_file, units, project.units)
+        dips, not_used = read_dips_of_rock(rock.dip_file, units, project.units)
+        return dips.checked(), not_used
     assert rock.dips is None or isinstance(rock.dips, Dips)
     return None if rock.dips is None else rock.dips.checked(), []
 
@@ -120,7 +121,7 @@ def _with_sheet_dips(
             return replace(series, dips=series.sheet_dips())
         dips, not_used = read_dips_of_rock(series.dip_file, units, project.units)
         left_out += not_used
-        return replace(series, dips=dips)
+        return replace(series, dips=dips.checked())
 
 
 def _mapped(project: Project, rock: Rock, units: UnitNames, dips: Dips | None) -> np.ndarray | None:

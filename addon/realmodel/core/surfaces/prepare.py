@@ -177,9 +177,8 @@ def _read_series(rock: Rock, series: Series, units: str) -> Series:
     if series.kind == SHEETS:  # theirs may name surfaces and blocks: read_field_data reads them
         return series
     with naming(f"{rock.item}, {series.item}"):
-        if series.dip_file is not None:
-            return replace(series, dips=read_space_dips(series.dip_file, units))
-        dips = series.space_dips()
+        given = series.dip_file
+        dips = series.space_dips() if given is None else read_space_dips(given, units)
         return series if dips is None else replace(series, dips=dips.checked())
 
 

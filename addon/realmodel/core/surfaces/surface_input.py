@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.algebra import are_among
+from ..base.algebra import are_among, ascending
 from ..base.errors import InputRefused, naming
-from ..base.mapped_arrays import JoinPieces, MappedArrays, in_memory, in_pieces
+from ..base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MappedArrays, in_memory, in_pieces
 from ..base.sheet import Sheet
 from ..base.text import Step, no_step
 from ..base.triangles import checked_triangulation
@@ -78,7 +78,11 @@ class SurfaceInput:
         with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.has_points:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                read = replace(surface, points=points, dips=self._dips(step), shape_file=file)
+                points, rows = self._in_order(points, in_memory if arrays is None else arrays.gather)
+                rows = rows if arrays is None else None
+                read = replace(
+                    surface, points=points, dips=self._dips(step), shape_file=file, point_rows=rows
+                )
                 return ReadSurface(read, None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
@@ -105,10 +109,19 @@ class SurfaceInput:
         is_kept = surface.point_file is not None or self.met is not None
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
+    def _in_order(self, points: np.ndarray, gather: JoinPieces) -> tuple[np.ndarray, np.ndarray | None]:
+        """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers that
+        they had, None where these are the same. The order of rows must not decide a result."""
+        count = len(points) - len(self.surface.contact_array())
+        order = ascending(*points[:count].T)
+        if (order == np.arange(count)).all():
+            return points, None
+        pieces = (points[order[first : first + ROWS_AT_ONCE]] for first in range(0, count, ROWS_AT_ONCE))
+        return gather((*pieces, points[count:]), np.empty((0, 3))), order
+
     def _dips(self, step: Step) -> Dips | None:
-        if (file := self.surface.dip_file) is not None:
-            return read_dips(file, self.units, step)
-        dips = self.surface.own_dips()
+        file = self.surface.dip_file
+        dips = self.surface.own_dips() if file is None else read_dips(file, self.units, step)
         return None if dips is None else dips.checked()
 
     def _mesh(

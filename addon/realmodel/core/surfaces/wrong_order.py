@@ -64,15 +64,16 @@ def _may_be_picks(points: np.ndarray) -> bool:
 
 def _warning(rock: Rock, older: int, wrong: WrongPoints, holes: list[str]) -> BuildWarning:
     surface = rock.surfaces[older]
+    row = surface.point_row(wrong.worst)
     names = number_list([f"'{rock.surfaces[younger].name}'" for younger in wrong.others])
     text = (
         f"{len(wrong.items)} of its {len(surface.point_array())} points lie above those of {names} at the "
-        f"same place, the farthest by {wrong.by:.4g}: point {wrong.worst} at {place_text(wrong.place)}"
+        f"same place, the farthest by {wrong.by:.4g}: point {row} at {place_text(wrong.place)}"
     )
     if holes:
         text += f"; holes {number_list(dict.fromkeys(holes))}"
     text += "; a younger surface removes what is above it: check the order of the surfaces, and these points"
-    return BuildWarning(text, "wrong_side", rock.name, surface.name, wrong.items)
+    return BuildWarning(text, "wrong_side", rock.name, surface.name, wrong.rows(surface))
 
 
 class _Picks:

@@ -12,7 +12,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Rock
+from ..project.project import Rock, Surface
 from ..settings.rules import RULES, Rule
 from .rock_input import RockInput
 
@@ -186,6 +186,10 @@ class WrongPoints:
         )
         return replace(worst, items=items, others=others)
 
+    def rows(self, surface: Surface) -> tuple[int, ...]:
+        """The numbers that the points had in the table or array that they come from."""
+        return tuple(sorted(map(surface.point_row, self.items)))
+
     def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
         """count: of all points of the surface."""
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
@@ -196,10 +200,10 @@ class WrongPoints:
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {self.worst} at {place_text(self.place)}{advice}"
+            f"{self.by:.4g}: point {surface.point_row(self.worst)} at {place_text(self.place)}{advice}"
         )
         kind = "ends" if is_meant else "wrong_side"
-        return BuildWarning(text, kind, rock.name, surface.name, tuple(self.items))
+        return BuildWarning(text, kind, rock.name, surface.name, self.rows(surface))
 
 
 def listed(

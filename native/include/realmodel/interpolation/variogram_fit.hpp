@@ -29,19 +29,6 @@ struct ExperimentalVariogram {
 ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 3>> points,
                                              const Anisotropy& anisotropy);
 
-/// How far others should be from a point that is left out, so that it is predicted from as far as
-/// the places between the points are, where points are clustered: contacts along the lines of a
-/// map, picks along sections. Twice the spacing that so many points would have evenly in their
-/// convex hull; 0 where they are not clustered. They are where the mean distance to the nearest
-/// other is below half of that expected of random ones (Clark and Evans 1954, "Distance to nearest
-/// neighbor as a measure of spatial relationships in populations", Ecology 35). Errors at the
-/// distances of predictions: Mila et al. 2022, "Nearest neighbour distance matching leave-one-out
-/// cross-validation", Methods in Ecology and Evolution 13.
-/// @throws InputError kind "no_points", "not_finite", "contradicting_points", "too_large"
-/// @throws Cancelled
-double buffer_of_clusters(std::span<const std::array<double, 3>> points,
-                          const Execution& execution = {});
-
 struct FitOptions {
     Drift drift = Drift::kConstant;
     int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
@@ -64,8 +51,8 @@ struct FittedVariogram {
 /// that fits best. Of all candidates the one is chosen with which kriging predicts points that are
 /// left out one by one best from their nearest others (root mean square error, errors beyond twenty
 /// deviations counted as twenty): 4000 points from 16 others search, and up to 10,000 points from
-/// all the neighbors choose among the best eight. Of clustered points the others nearer than
-/// buffer_of_clusters are left out, too: near each other they may follow something else, such as
+/// all the neighbors choose among the best eight. Of clustered points the others nearer than twice
+/// their even spacing are left out, too: near each other they may follow something else, such as
 /// the ground along the lines of a map, and would hide how far off the rest is. Among equally good
 /// ones, within 0.2 percent, the one without a second structure, then the one that fits the
 /// experimental values best. Then ranges and sill are scaled until 95 % of those errors lie within

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "realmodel/interpolation/convex_hull.hpp"
-#include "realmodel/interpolation/variogram_fit.hpp"
 
 namespace realmodel::interpolation {
 
@@ -42,11 +41,6 @@ double buffer_of_clusters(const ManyPoints& points, const Execution& execution) 
     const double mean = sum / static_cast<double>(asked.size());
     const double spacing = std::sqrt(area_of_hull(points) / static_cast<double>(points.size()));
     return mean < kClustered * spacing / 2 ? 2 * spacing : 0;
-}
-
-double buffer_of_clusters(std::span<const std::array<double, 3>> points,
-                          const Execution& execution) {
-    return buffer_of_clusters(ManyPoints(points), execution);
 }
 
 }  // namespace realmodel::interpolation

@@ -13,10 +13,14 @@
 namespace realmodel::interpolation {
 namespace {
 
+double buffer_of(const Points& points) {
+    return buffer_of_clusters(ManyPoints(points), {});
+}
+
 TEST(Clustering, RandomPointsAreNotClustered) {
-    EXPECT_EQ(buffer_of_clusters(hills(300, 1000, {4e5, 5e6})), 0);
-    EXPECT_EQ(buffer_of_clusters(Points{{0, 0, 1}, {1, 0, 1}}), 0);
-    EXPECT_EQ(buffer_of_clusters(Points{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {9, 0, 1}}), 0)
+    EXPECT_EQ(buffer_of(hills(300, 1000, {4e5, 5e6})), 0);
+    EXPECT_EQ(buffer_of(Points{{0, 0, 1}, {1, 0, 1}}), 0);
+    EXPECT_EQ(buffer_of(Points{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {9, 0, 1}}), 0)
         << "in one line they have no hull";
 }
 
@@ -32,7 +36,7 @@ Points sections() {
 
 TEST(Clustering, PointsAlongSectionsAre) {
     const double spacing = std::sqrt(100.0 * 100.0 / 303.0);
-    EXPECT_NEAR(buffer_of_clusters(sections()), 2 * spacing, 1e-12);
+    EXPECT_NEAR(buffer_of(sections()), 2 * spacing, 1e-12);
 }
 
 TEST(Clustering, OthersNearAPointAreLeftOutWithIt) {

@@ -56,7 +56,9 @@ def read_borehole_tables(
             found.holes.setdefault(name, (collar, []))[1].extend(tops)
         found.ends |= logged.ends
     for _, places in found.holes.values():
-        places.sort(key=lambda pick: -pick[1][2])
+        places.sort(key=lambda pick: (-pick[1][2], pick[0]))
+    found.points, found.ends = dict(sorted(found.points.items())), dict(sorted(found.ends.items()))
+    found.holes = dict(sorted(found.holes.items()))
     found.warnings += holes.warnings()
     return found
 

@@ -203,13 +203,13 @@ def _divided(
     for begin, end in pairwise(sorted(set(alike.values()))):
         there = [(block, is_used) for low, high, block, is_used in given if low <= begin and end <= high]
         is_used = any(used for _, used in there)
-        claimed = {block: None for block, used in there if used == is_used}
+        claimed = sorted({block for block, used in there if used == is_used})
         if len(claimed) > 1 and is_used:
             names = " and ".join(f"'{block}'" for block in claimed)
             text = f"hole '{hole}' from {begin:.9g} to {end:.9g}: intervals of {names} overlap"
-            left_out.append(LeftOut("overlap", text, next(iter(claimed)), hole, begin))
+            left_out.append(LeftOut("overlap", text, claimed[0], hole, begin))
             continue
-        for block in list(claimed)[:1]:
+        for block in claimed[:1]:
             if found and found[-1][1:] == (begin, block, is_used):
                 found[-1] = (found[-1][0], end, block, is_used)
             else:

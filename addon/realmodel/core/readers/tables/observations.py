@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.algebra import norm, ranks_in_runs
+from ...base.algebra import ascending, norm, ranks_in_runs
 from ...base.errors import InputRefused, place_text
 from ...notebook import ShortRepr
 
@@ -106,15 +106,29 @@ class Observations(ShortRepr):
         return self.height_errors if len(self.height_errors) else np.zeros(len(self))
 
     def along_holes(self) -> Observations:
-        """The same with the places of each hole one after another downward along it: by their depths, or by
-        their heights where some have none."""
-        names, first, number = np.unique(self.holes, return_index=True, return_inverse=True)
-        without = np.bincount(number.ravel(), np.isnan(self.depths), len(names)) > 0
-        along = np.where(without[number.ravel()], -self.places[:, 2], self.depths)
+        """The same in an order that the order of rows does not decide: those of no hole by their places, then
+        hole by hole, by name, downward along each: by depths, or by heights where some have no depth."""
+        names, number = np.unique(self.holes, return_inverse=True)
+        number = number.ravel()
+        without = np.bincount(number, np.isnan(self.depths), len(names)) > 0
+        along = np.where(without[number], -self.places[:, 2], self.depths)
         has_hole = self.holes != ""
-        rows = np.arange(len(self))
-        at = np.where(has_hole, first[number.ravel()] if len(names) else 0, rows)
-        return self.some(np.lexsort((rows, np.where(has_hole, along, 0.0), at)))
+        columns = np.where(has_hole, along, 0.0), *self.places.T, self.blocks
+        found = self.some(ascending(number, *columns, self.seen_on, self.errors, ~self.in_use))
+        return found.some(found._continued())
+
+    def _continued(self) -> np.ndarray:
+        """(N,) the rows; of two at one depth of a hole, where blocks meet, that of the block above first."""
+        rows = list(range(len(self)))
+        of = list(zip(self.holes.tolist(), self.blocks.tolist(), self._interval_numbers(), strict=True))
+        same = (self.places[1:] == self.places[:-1]).all(axis=1) & (self.holes[1:] != "")
+        for row in np.flatnonzero(same & (self.holes[1:] == self.holes[:-1])).tolist():
+            if row and of[rows[row + 1]] == of[rows[row - 1]]:
+                rows[row], rows[row + 1] = rows[row + 1], rows[row]
+        return np.array(rows, np.int64)
+
+    def _interval_numbers(self) -> list[int]:
+        return self.intervals.tolist() if len(self.intervals) else [0] * len(self)
 
     @property
     def goes_on(self) -> np.ndarray:
