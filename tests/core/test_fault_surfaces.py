@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, PointFile
+from realmodel.core import Fault, InputRefused, PointFile, Project, Rock, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.readers.fault_sticks import read_fault_points
 from realmodel.core.structures.shapes.fitted import convex_hull, fit_points, fit_sticks
@@ -39,6 +39,36 @@ def test_order_and_direction_of_sticks_do_not_matter():
         return {frozenset(map(tuple, points[triangle])) for triangle in of}
 
     assert corners(vertices, triangles) == corners(again, other)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_order_of_points_does_not_matter(seed):
+    """Rough and curved sticks, their points and they themselves shuffled, some twice: the same surface."""
+    draw = np.random.default_rng(seed)
+    sticks = [stick + draw.normal(0, 2, stick.shape) * [1, 0, 0] for stick in listric_sticks(points=7)]
+    vertices, triangles = fit_sticks(sticks)
+    shuffled = [draw.permutation(sticks[k]) for k in draw.permutation(6)]
+    shuffled += [draw.permutation(np.concatenate([shuffled[2], shuffled[2][:2]]))]
+    again, other = fit_sticks(shuffled)
+    assert np.array_equal(vertices, again)
+    assert np.array_equal(triangles, other)
+    points = np.concatenate(sticks)
+    fitted = [
+        run(lambda work, given=given: fit_points(work, given)) for given in (points, draw.permutation(points))
+    ]
+    assert np.array_equal(*(sheet.vertices for sheet in fitted))
+
+
+def test_sticks_that_cross_are_refused():
+    first, second, third, fourth = listric_sticks(count=4)
+    crossed = np.concatenate([second[:4], third[4:]]), np.concatenate([third[:4], second[4:]])
+    rock = Rock("r", [Surface("S", vertices=100 * np.eye(3), triangles=[[0, 1, 2]])])
+    project = Project("p", [rock], faults=[Fault("F", points=[first, *crossed, fourth])])
+    with pytest.raises(
+        InputRefused, match=r"fault 'F': .* crosses itself at .*sticks of number .*2.*3"
+    ) as refused:
+        build(project)
+    assert refused.value.place is not None
 
 
 def test_a_curved_fault_is_followed():

@@ -43,8 +43,8 @@ def places_of(work: Work, plan: np.ndarray) -> np.ndarray | None:
 
 
 def in_turn(places: np.ndarray, most: int) -> list[np.ndarray]:
-    """(N,) bool, which data are left out at a time, in at most so many turns. places: (N,) the numbers of their
-    places."""
+    """(N,) bool, which data are left out at a time, in at most so many turns. places: (N,) the numbers of
+    their places."""
     turns = min(int(places.max()) + 1, most)
     return [places % turns == turn for turn in range(turns)]
 

@@ -104,8 +104,8 @@ def cross_validate_holes(
     right block, and how far off they have its contacts.
 
     folds: the number of groups in which holes are left out; None: each hole by itself, but in at most 20
-    groups. Holes that are clustered, as twins are, are left out together (places_of). Outcrops, dips and points that no
-    hole met stay. Variograms are fitted anew each time, and "auto" stays what it chose.
+    groups. Holes that are clustered, as twins are, are left out together (places_of). Outcrops, dips and
+    points that no hole met stay. Variograms are fitted anew each time, and "auto" stays what it chose.
 
     Raises InputRefused for a model without holes, or of a file without its project; UsageError, Cancelled.
     """

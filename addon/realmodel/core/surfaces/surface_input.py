@@ -110,8 +110,8 @@ class SurfaceInput:
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
     def _in_order(self, points: np.ndarray, gather: JoinPieces) -> tuple[np.ndarray, np.ndarray | None]:
-        """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers that
-        they had, None where these are the same. The order of rows must not decide a result."""
+        """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers
+        that they had, None where these are the same. The order of rows must not decide a result."""
         count = len(points) - len(self.surface.contact_array())
         order = ascending(*points[:count].T)
         if (order == np.arange(count)).all():

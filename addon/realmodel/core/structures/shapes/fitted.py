@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from ...base.algebra import dot, norm, principal_axes
+from ...base.algebra import ascending, dot, norm, principal_axes
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.sheet import Sheet
@@ -20,7 +20,7 @@ from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
-_TRIED = 100  # sticks that are tried as the first one
+_TRIED = 100  # points of a path: so many are tried as the first one, and parts of the path are turned round
 _NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
@@ -28,20 +28,21 @@ _ROUND = 16  # directions of an outline that is extended
 def fit_sticks(sticks: Sequence[np.ndarray], extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
     """The surface through fault sticks: their points, and triangles between neighbors.
 
-    sticks: arrays (N, 3), each from one end to the other, in any order and either direction. extend: how far
-    each stick goes on at both ends, and, if extend_sideways, the surface beyond the first and the last one.
-    Returns vertices (V, 3) float64 and triangles (T, 3) int32. Neighbors are joined at equal shares of their
-    lengths, so sticks keep their shape. Raises InputRefused.
+    sticks: arrays (N, 3), in any order, as are the points of each. extend: how far each stick goes on at both
+    ends, and, if extend_sideways, the surface beyond the first and the last one. Returns vertices (V, 3)
+    float64 and triangles (T, 3) int32. Neighbors are joined at equal shares of their lengths, so sticks keep
+    their shape. Raises InputRefused.
     """
-    sticks = [_without_repeats(np.asarray(stick, np.float64).reshape(-1, 3)) for stick in sticks]
-    sticks = [stick for stick in sticks if len(stick) > 1]
+    sticks = [_along(np.asarray(stick, np.float64).reshape(-1, 3)) for stick in sticks]
+    sticks = list({stick.tobytes(): stick for stick in sticks if len(stick) > 1}.values())
     if len(sticks) < 2:
         raise InputRefused(
             f"a surface needs two sticks of two points or more, there {'is' if len(sticks) == 1 else 'are'} "
             f"{len(sticks)}",
             advice="give more sticks, or a mesh",
         )
-    sticks = _one_way(_in_order(sticks))
+    middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
+    sticks = _one_way([sticks[number] for number in _path(middles)])
     if extend > 0:
         sticks = _longer(sticks, extend)
         if extend_sideways:
@@ -61,32 +62,51 @@ def fit_sticks(sticks: Sequence[np.ndarray], extend: float = 0.0, extend_sideway
     return Sheet(vertices, np.ascontiguousarray(triangles[has_area]))
 
 
-def _without_repeats(stick: np.ndarray) -> np.ndarray:
-    """The first of the points at each position: a stick does not return to itself."""
-    return stick[np.sort(np.unique(stick, axis=0, return_index=True)[1])]
+def _along(stick: np.ndarray) -> np.ndarray:
+    """The points of a stick from one end to the other, each once."""
+    points = np.unique(stick + 0.0, axis=0)
+    return points[_path(points)]
 
 
-def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
-    """The sticks in order along the fault: of a few orders the one with the shortest path through their
-    centers."""
-    middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
-    _, axes = principal_axes(middles)
-    along = dot(middles, axes[0])
-    orders = [list(range(len(sticks))), np.argsort(along, kind="stable").tolist()]
-    starts = range(len(sticks)) if len(sticks) <= _TRIED else (int(along.argmin()), int(along.argmax()))
-    orders += [_nearest_first(middles, start) for start in starts]
-    lengths = [norm(np.diff(middles[order], axis=0)).sum() for order in orders]
-    return [sticks[number] for number in orders[int(np.argmin(lengths))]]
+def _path(points: np.ndarray) -> list[int]:
+    """The numbers of points (N, 3), in order along a line: of a few orders the one with the shortest path, in
+    which no part is shorter if it is turned round. The order in which they are given does not matter."""
+    rank = ascending(*points.T)
+    points = points[rank]
+    _, axes = principal_axes(points)
+    along = dot(points, axes[0])
+    starts = range(len(points)) if len(points) <= _TRIED else (int(along.argmin()), int(along.argmax()))
+    orders = [np.argsort(along, kind="stable").tolist(), *(_nearest_first(points, start) for start in starts)]
+    lengths = [norm(np.diff(points[order], axis=0)).sum() for order in orders]
+    order = orders[int(np.argmin(lengths))]
+    if len(order) <= _TRIED:
+        _turn_parts(points, order)
+    return rank[order if order[0] < order[-1] else order[::-1]].tolist()
 
 
-def _nearest_first(middles: np.ndarray, start: int) -> list[int]:
-    order, free = [start], np.ones(len(middles), bool)
+def _nearest_first(points: np.ndarray, start: int) -> list[int]:
+    order, free = [start], np.ones(len(points), bool)
     free[start] = False
     while free.any():
-        away = np.where(free, norm(middles - middles[order[-1]]), np.inf)
+        away = np.where(free, norm(points - points[order[-1]]), np.inf)
         order.append(int(away.argmin()))
         free[order[-1]] = False
     return order
+
+
+def _turn_parts(points: np.ndarray, order: list[int]) -> None:
+    """Turns parts of a path round as long as this makes it shorter (2-opt; Croes 1958)."""
+    away = norm(points[:, None] - points[None])
+    count, is_changed = len(order), True
+    while is_changed:
+        is_changed = False
+        for first, last in itertools.combinations(range(count), 2):
+            a, b, c, d = order[first - 1], order[first], order[last], order[(last + 1) % count]
+            before = (away[a, b] if first else 0.0) + (away[c, d] if last + 1 < count else 0.0)
+            after = (away[a, c] if first else 0.0) + (away[b, d] if last + 1 < count else 0.0)
+            if after < before * (1 - _IN_LINE):
+                order[first : last + 1] = order[first : last + 1][::-1]
+                is_changed = True
 
 
 def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
@@ -151,6 +171,7 @@ def fit_points(work: Work, points: np.ndarray, extend: float = 0.0, extend_sidew
     vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
+    points = points[ascending(*points.T)]  # the order of rows must not decide a result
     middle = points.mean(axis=0)
     spread, axes = principal_axes(points)
     if len(points) < 3 or spread[1] <= _IN_LINE * spread[0]:

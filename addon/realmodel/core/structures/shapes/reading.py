@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from ...base.algebra import are_among
 from ...base.build_warning import BuildWarning
-from ...base.errors import InputRefused, naming, place_text
+from ...base.errors import InputRefused, naming, number_list, place_text
 from ...base.sheet import Sheet
 from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
-from ...base.work import Work
+from ...base.work import Work, native_module
 from ...heights.interpolate import checked_points
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
@@ -60,6 +61,12 @@ def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarnin
             vertices, triangles = _fitted(work, fault, points)
         else:
             vertices, triangles = _mesh_of(fault, units, warnings)
+            crossing = crossing_triangles(work, Sheet(vertices, triangles))
+            if len(crossing):
+                place = place_text(vertices[triangles[crossing[0]]].mean(axis=0))
+                what = f"{len(crossing)} of its triangles cross one another or overlap, one at {place}"
+                text = f"{fault.item}: {what}: there it is not clear which rock lies on which side"
+                warnings.append(BuildWarning(text, "crossing"))
         triangles = _two_sided(vertices, triangles)
         if fault.points is None and fault.extend > 0:
             vertices, triangles = extended(vertices, triangles, fault.extend, not fault.dies_out)
@@ -118,7 +125,29 @@ def _fitted(work: Work, fault: Fault, points: np.ndarray | Sequence[np.ndarray])
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
         return fit_points(work, checked_points(points), fault.extend, sideways)
     sticks = [checked_points(stick, f"stick {number}") for number, stick in enumerate(points, 1)]
-    return fit_sticks(sticks, fault.extend, sideways)
+    found = fit_sticks(sticks, fault.extend, sideways)
+    crossing = crossing_triangles(work, found)
+    if len(crossing):
+        corners = found.vertices[found.triangles[crossing]].reshape(-1, 3)
+        own = [f"{number}" for number, stick in enumerate(sticks, 1) if are_among(corners, stick).any()]
+        place = corners[0]
+        raise InputRefused(
+            f"the surface through its sticks crosses itself at {place_text(place)}, between the sticks of "
+            f"number {number_list(own)}, from 1",
+            advice="check whether two of them cross, or one has points of another; leave one out",
+            place=tuple(place.tolist()),
+        )
+    return found
+
+
+def crossing_triangles(work: Work, surface: Sheet) -> np.ndarray:
+    """The numbers of the triangles of a surface that others of it cross, or overlap."""
+    vertices, triangles = surface
+    beyond = vertices.max(axis=0) + np.ptp(vertices, axis=0).max() + np.eye(3)  # a triangle that meets none
+    other = np.array([[0, 1, 2]], np.int32)
+    divided = work.native(native_module().intersect, vertices, triangles, beyond, other)
+    own = divided.source_triangle[divided.source == 0]
+    return np.flatnonzero(np.bincount(own, minlength=len(triangles)) != 1)
 
 
 def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
