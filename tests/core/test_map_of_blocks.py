@@ -236,6 +236,20 @@ def test_lines_of_faults_are_no_contacts(project_of, tmp_path):
         field_of(project_of(*areas, more=', faults = "faults.wkt"'))
 
 
+def test_lines_beside_the_polygons_are_faults(project_of, tmp_path):
+    """As GIS programs keep them in one file."""
+    project = project_of(("clay", WEST), ("Yng", EAST))
+    file = tmp_path / "map.geojson"
+    found = json.loads(file.read_text())
+    line = {"type": "LineString", "coordinates": [[50.5, -3], [50.5, 30.2]]}
+    found["features"].append({"type": "Feature", "properties": {"kind": "fault"}, "geometry": line})
+    file.write_text(json.dumps(found))
+    assert contacts_of(project)[:, 1].min() > 30.2
+    assert any(
+        "1 line beside its polygons: taken for faults" in text for text in field_of(project).map_warnings
+    )
+
+
 def test_a_fault_of_any_kind_takes_contacts_near_it(project_of):
     project = project_of(("clay", WEST), ("Yng", EAST))
     vertices, triangles = plane_fault(x=50.4, y=(-50.0, 150.0), z=(-90.0, 90.0))

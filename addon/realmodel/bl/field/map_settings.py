@@ -105,7 +105,7 @@ def _begun(scene, row, given):
         rock.region = rings if rings else None
         rock.edge_length = row.edge_length if row.edge_length > 0.0 else None
     if rock.region is None:
-        polygons, _ = read_unit_polygons(given, unit)
+        polygons, _, _ = read_unit_polygons(given, unit)
         corners = np.concatenate([ring for polygon in polygons for ring in polygon.rings])
         (west, south), (east, north) = corners.min(axis=0), corners.max(axis=0)
         rock.region = np.array([(west, south), (east, south), (east, north), (west, north)])

@@ -71,8 +71,8 @@ def map_on_ground(project: Project, rock: Rock) -> MapOnGround:
     assert given is not None
     surface = _ground(rock, given)
     with naming(rock.item):
-        polygons, warnings = read_unit_polygons(given, project.units)
-        faults = _fault_lines(project, given)
+        polygons, lines, warnings = read_unit_polygons(given, project.units)
+        faults = [*lines, *_fault_lines(project, given)]
         region, holes, _ = read_rings(rock.region, rock.holes, project.units)
     rings = region if isinstance(region, list) else [region, *holes]
     corners = np.concatenate(rings)
@@ -104,7 +104,7 @@ def blocks_on_map(project: Project, rock: Rock, units: UnitNames, plan: np.ndarr
     shows none. Raises InputRefused."""
     assert rock.map is not None
     with naming(rock.item):
-        polygons, _ = read_unit_polygons(rock.map, project.units)
+        polygons, _, _ = read_unit_polygons(rock.map, project.units)
     found = np.full(len(plan), "", object)
     for each in polygons:
         block = "" if units.says_nothing(each.unit) else units.block(each.unit)

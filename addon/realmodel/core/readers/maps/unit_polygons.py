@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.algebra import begins_run
-from ...base.errors import InputRefused
+from ...base.errors import InputRefused, counted
 from ...base.units import MODEL_UNIT
 from ...settings.map_file import MapFile
 from ..tables.table_layout import names_shown
@@ -28,9 +28,12 @@ class UnitPolygon:
     has_roles: bool
 
 
-def read_unit_polygons(given: MapFile, model_unit: str = MODEL_UNIT) -> tuple[list[UnitPolygon], list[str]]:
-    """The polygons of a map, in the model's unit, and warnings about rings that bound no area. Raises
-    InputRefused naming the file, and the feature where there is one."""
+def read_unit_polygons(
+    given: MapFile, model_unit: str = MODEL_UNIT
+) -> tuple[list[UnitPolygon], list[np.ndarray], list[str]]:
+    """The polygons of a map, in the model's unit; the lines (N, 2) beside them, which are faults; and
+    warnings about these, and about rings that bound no area. Raises InputRefused naming the file, and the
+    feature where there is one."""
     shapes = read_shapes(given.polygons, model_unit, heights=Heights(with_attributes=True))
     if not shapes.polygons:
         advice = "a map needs polygons: Polygon or MultiPolygon"
@@ -48,7 +51,13 @@ def read_unit_polygons(given: MapFile, model_unit: str = MODEL_UNIT) -> tuple[li
             found.append(UnitPolygon(item, units[item], kept, polygon.has_roles))
     if not found:
         raise InputRefused("no polygon in it has an area", file=given.file)
-    return found, warnings
+    lines = [line[:, :2] for _, line in shapes.lines]
+    if lines:
+        text = (
+            f"{given.file}: {counted(len(lines), 'line')} beside its polygons: taken for faults, along which"
+        )
+        warnings.append(f"{text} no contact is seen; if they are something else, leave them out by 'where'")
+    return found, lines, warnings
 
 
 def _corners(ring: np.ndarray) -> np.ndarray:
