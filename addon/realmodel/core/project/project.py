@@ -94,7 +94,7 @@ class Surface(Shaped):
     bounds: Bounds | None = field(default=None, repr=False, compare=False)
     error: float = field(default=0.0, repr=False, compare=False)
     is_level_set: bool = field(default=False, repr=False, compare=False)
-    point_rows: np.ndarray | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+    point_rows: np.ndarray | None = field(default=None, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
-from ..base.stored_objects import NOT_STORED
 from .field_table import FieldTable
 
 NORMAL = ("normal_x", "normal_y", "normal_z")
@@ -52,7 +51,7 @@ class SpaceDips:
     positions: np.ndarray
     normals: np.ndarray
     used: np.ndarray | None = None
-    rows: np.ndarray | None = field(default=None, metadata=NOT_STORED)
+    rows: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -123,7 +122,7 @@ class Dips:
     surfaces: np.ndarray | None = None
     blocks: np.ndarray | None = None
     used: np.ndarray | None = None
-    rows: np.ndarray | None = field(default=None, metadata=NOT_STORED)
+    rows: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.positions)
