@@ -77,6 +77,7 @@ def _surface(surface):
                 "minimum_thickness",
                 "true_thickness",
                 "tie",
+                "observed",
                 "correlation",
             )
         },

@@ -91,6 +91,8 @@ def _draw_surface(layout, context, surface):
         if surface.method == "parallel" or surface.use_minimum_thickness:
             setting_rows.draw(layout, surface, "true_thickness", SURFACE)
         setting_rows.draw(layout, surface, "tie", SURFACE)
+        if not surface.series:
+            setting_rows.draw(layout, surface, "observed", SURFACE)
         setting_rows.draw(layout, surface, "correlation", SURFACE)
         if surface.dips:
             _draw_removable(layout, "Dips of the surface", "realmodel.dips_remove")

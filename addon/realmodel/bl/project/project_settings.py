@@ -38,7 +38,7 @@ from . import (
 )
 
 # of surfaces; a ready mesh has none
-_OF_INTERPOLATED = ("minimum_thickness", "true_thickness", "tie", "correlation")
+_OF_INTERPOLATED = ("minimum_thickness", "true_thickness", "tie", "observed", "correlation")
 
 
 @dataclass

@@ -57,7 +57,8 @@ class Surface(Shaped):
     `minimum_thickness` an interpolated surface stays so far above the
     older one; with `true_thickness` this, and the thickness of the method "parallel", is perpendicular to the
     other surface; unless `tie` is false, it passes through its points and keeps its bounds also
-    within triangles; `correlation` is that of the errors of its heights with those of the older one, in
+    within triangles; if it is `observed`, no younger surface cuts below its points, as below picks and the
+    points of a series; `correlation` is that of the errors of its heights with those of the older one, in
     ensembles.
     `series` is the name of the series that it belongs to; in one whose kind is "field" it has `points` alone,
     and is a level set of that field (`is_level_set`, which its rock mass says).
@@ -88,6 +89,7 @@ class Surface(Shaped):
     minimum_thickness: float | None = None
     true_thickness: bool = False
     tie: bool = True
+    observed: bool = False
     correlation: float | None = None
     rock_dips: Dips | None = field(default=None, repr=False, compare=False)
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)

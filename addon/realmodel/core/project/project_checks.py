@@ -123,7 +123,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     check_values(
         surface,
         SURFACE,
-        ("minimum_thickness", "true_thickness", "tie", "correlation", "rule", "property", "block"),
+        ("minimum_thickness", "true_thickness", "tie", "observed", "correlation", "rule", "property", "block"),
         refuse,
     )
     check_property(project.library, surface.property, refuse)
@@ -147,7 +147,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse: Refuse, continues: bool) 
         given = [] if continues else given
         of_points = ("minimum_thickness", "correlation", "left_out")
         given += [key for key in of_points if getattr(surface, key) is not None]
-        given += ["true_thickness"] if surface.true_thickness else []
+        given += [key for key in ("true_thickness", "observed") if getattr(surface, key)]
         given += [] if surface.tie else ["tie"]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])

@@ -37,7 +37,8 @@ SomeTable = TypeVar("SomeTable", bound=FieldTable)
 
 FORMAT = 1
 _OF_SURFACE = (
-    *("series", "rule", "property", "block", "minimum_thickness", "true_thickness", "tie", "correlation"),
+    *("series", "rule", "property", "block", "minimum_thickness", "true_thickness", "tie", "observed"),
+    "correlation",
 )
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 

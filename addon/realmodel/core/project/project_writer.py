@@ -204,6 +204,7 @@ def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
         "minimum_thickness": given.minimum_thickness,
         "true_thickness": given.true_thickness or None,
         "tie": None if given.tie else False,
+        "observed": given.observed or None,
         "correlation": given.correlation,
         "rule": given.rule if given.rule != DEFAULT_RULE else None,
         "property": given.property or None,

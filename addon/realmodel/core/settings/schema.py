@@ -252,6 +252,14 @@ SURFACE = {
         more="Default `true`, for interpolated surfaces; see [ties](methods.md#ties). `false` leaves the "
         "elevations as the method interpolates them",
     ),
+    "observed": Setting(
+        False,
+        kind="truth",
+        label="Observed",
+        tip="The points were seen in the rock: no younger surface cuts below them",
+        more="Default `false`; picks of boreholes and points of a [series](#series) always are. See "
+        "[observed contacts](#observed-contacts)",
+    ),
     "correlation": Setting(
         label="Correlation",
         tip="Correlation of the errors of its elevations with those of the next older surface, in ensembles",

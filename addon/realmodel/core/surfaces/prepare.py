@@ -30,6 +30,7 @@ from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
 from .observed.conformable import proposals
+from .observed.kept_contacts import with_kept_bounds
 from .observed.sheet_series import with_least_thickness
 from .planar_mesh import MeshOptions, crowded_places, mesh_rings, triangulate_rings
 from .rock_dips import apply_dips
@@ -83,6 +84,8 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         entry.has_faults = bool(project.faults)
         if rock.observed is not None:
             apply_observations(work, entry)
+        else:
+            entry.rock = with_kept_bounds(entry.rock)
         apply_dips(work, entry, field.ground, field.mapped)
         if not (project.faults or project.bodies):  # else once it is known where these are
             entry.warnings += left_out_warnings(entry)

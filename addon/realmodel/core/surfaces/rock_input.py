@@ -119,6 +119,7 @@ class RockInput:
                     options={},
                     minimum_thickness=None,
                     true_thickness=False,
+                    observed=False,
                     correlation=None,
                     vertices=vertices,
                     triangles=triangles,

@@ -253,6 +253,23 @@ class Bounds(ShortRepr):
     depths: np.ndarray
     ends: np.ndarray | None = None
 
+    @classmethod
+    def at_or_above(cls, places: np.ndarray, is_of_field: bool = False) -> Bounds:
+        """Of a surface that lies at places (N, 3) or above, of no holes. is_of_field: it is a level set."""
+        count = len(places)
+        none = np.full(count, ""), np.full(count, np.nan)
+        return cls(places, np.ones(count, bool), *none, places if is_of_field else None)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Bounds]) -> Bounds:
+        """Several of one surface, one after another."""
+        names = ("places", "is_lower", "holes", "depths")
+        ends = [part.ends for part in parts if part.ends is not None]
+        return cls(
+            *(np.concatenate([getattr(part, name) for part in parts]) for name in names),
+            np.concatenate(ends) if ends else None,
+        )
+
     def __len__(self) -> int:
         return len(self.places)
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...project.project import Rock
 from ...readers.tables.observations import SWITCHED_OFF, Bounds, LeftOut, Observations, along_bounds
 from .columns import in_wrong_order
+from .kept_contacts import kept_bounds
 from .level_sets import FieldStatements
 from .succession import Succession
 
@@ -329,8 +330,10 @@ def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:
 
 def with_contacts(rock: Rock, derived: Derived) -> Rock:
     """A rock mass whose points are arrays, with these contacts in the place of those that its surfaces had
-    from observations, and with the bounds."""
+    from observations, and with the bounds and those by contacts of older surfaces."""
     surfaces = list(rock.surfaces)
+    bounds = [Bounds.joined(each) for each in zip(derived.bounds, kept_bounds(rock), strict=True)]
+    derived = replace(derived, bounds=bounds)
     for number, surface in enumerate(surfaces):
         surfaces[number] = replace(surface, bounds=derived.bounds[number])
         if not surface.has_points:

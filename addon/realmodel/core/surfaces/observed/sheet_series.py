@@ -55,7 +55,6 @@ def bounds_beside(surface: Surface, companions: Companions | None) -> Bounds | N
     parts = [] if surface.bounds is None else [surface.bounds]
     for other, points in enumerate(companions.points):
         if other != companions.own and len(points):
-            older, none = np.full(len(points), other < companions.own), np.full(len(points), "")
-            parts.append(Bounds(points, older, none, np.full(len(points), np.nan)))
-    names = ("places", "is_lower", "holes", "depths")
-    return Bounds(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+            is_older = np.full(len(points), other < companions.own)
+            parts.append(replace(Bounds.at_or_above(points), is_lower=is_older))
+    return Bounds.joined(parts)

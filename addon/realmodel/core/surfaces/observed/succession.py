@@ -31,14 +31,14 @@ class Succession:
         self.at_or_below = np.zeros((count + len(bodies), count), bool)
         for block in range(count):
             self.at_or_above[block, block] = True
-            self.at_or_above[block, self._cut_later(block)] = True
+            self.at_or_above[block, self.cut_later(block)] = True
             self.at_or_below[block, self._before(block)] = True
         for number, after in enumerate(bodies):
             # Whether a surface before the body protects the place is not known from the body.
             if not any(rule.protects for rule in self._rules[: after + 1]):
-                self.at_or_above[count + number, self._cut_later(after)] = True
+                self.at_or_above[count + number, self.cut_later(after)] = True
 
-    def _cut_later(self, first: int) -> list[int]:
+    def cut_later(self, first: int) -> list[int]:
         """The surfaces younger than one that remove rock that was there when it came: those that cut, until
         one protects the rock."""
         found = []
@@ -70,7 +70,7 @@ class Succession:
     def removes(self, block: int, after: int) -> bool:
         """Whether a place in a block can be inside a body that came after a surface: one younger than that,
         which cuts and below which the place does not lie, has removed the body there."""
-        younger = self._cut_later(after)
+        younger = self.cut_later(after)
         return block > after and any(self.at_or_below[block, number] for number in younger)
 
     def may_lie_above(self, is_sheet: np.ndarray) -> np.ndarray:
