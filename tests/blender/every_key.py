@@ -61,6 +61,7 @@ rule = "conformable"
 minimum_thickness = 0.35
 true_thickness = true
 tie = false
+observed = true
 correlation = -0.3
 
 [[rock.surface]]

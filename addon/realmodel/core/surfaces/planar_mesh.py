@@ -27,6 +27,7 @@ _LOOKED_AT = 8  # places around one
 # are close together in plan and ask for nothing of one another: there only data that hardly can be met are
 # crowded
 _CROWDED, _HARDLY_MET = 0.25, 0.05
+_BESIDE_BOUND = 4  # contacts that say whether a surface may lie on a bound
 _BESIDE = 0.25  # of the distance to another datum of the same surface: the vertex of another one serves, too
 
 
@@ -219,11 +220,23 @@ def _crowded(work: Work, entry: RockInput, mesh: Sheet, least: float) -> tuple[n
         for data in _data_of_sheets(work, entry, number):
             if not len(data.places):
                 continue
-            asked = (data.places, data.lower, data.upper)
+            asked = (data.places, data.lower, np.where(_lifts(data), data.lower, data.upper))
             numbers, away = native_module().crowded_data(*mesh.arrays, asked, least)
             places.append(data.places[numbers])
             rooms.append(away)
     return np.concatenate(places), np.concatenate(rooms)
+
+
+def _lifts(data: TieData) -> np.ndarray:
+    """(C,) bool: the bounds from below as high as one of the nearest contacts, such as outcrops beside those
+    of a ground: the surface may lie on them."""
+    found = np.zeros(len(data.places), bool)
+    contacts, places = np.split(data.places, [data.contacts])
+    if len(contacts) and len(places):
+        near, _ = native_module().nearest_points(contacts, places, _BESIDE_BOUND)
+        low = np.where(near < 0, np.inf, data.lower[near]).min(axis=1)
+        found[data.contacts :] = data.lower[data.contacts :] >= low
+    return found
 
 
 def _apart(
