@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ..base.algebra import are_among
 from ..base.elementary import cube_root
 from ..base.errors import InputRefused, naming
+from ..base.sheet import Sheet
 from ..base.work import Work, refused_as
 from ..fields import (
     HeldData,
@@ -25,8 +27,9 @@ from ..fields.series_field import SeriesField
 from ..project.series import Series
 from ..settings.series import AUTO, FIELD
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import joined
+from ..surfaces.rock_structure import RockStructure, joined
 from ..surfaces.sides import sides_of
+from ..surfaces.surface_heights import where_known
 from .field_warnings import (
     leave_out,
     warn_of_contacts,
@@ -51,6 +54,7 @@ _NEAR = 1e-12  # of the range of f: a bound so near holds
 _PLACES = 0.5  # of an edge of the lattice: how far places within intervals are apart at most
 _FEW = 1500  # contacts and dips: of more each compartment has a field of its own data
 MOST_TOGETHER = 32  # compartments whose fields are one function
+_AT_ONCE = 1 << 20  # places at which a field is asked
 _ROUNDS = 4  # in which bounds that contacts have put off are held
 # By how much of a cell the lattice reaches beyond the rock at its low end: not by a simple fraction, so that
 # its planes do not lie in those of other meshes.
@@ -82,6 +86,52 @@ def make_fields(work: Work, inputs: list[RockInput], stage: int | None) -> None:
     for entry in inputs:
         for own in entry.fields:
             _take_level_sets(work, entry, own)
+
+
+def with_levels(work: Work, entry: RockInput) -> RockStructure:
+    """The compartments of a RockInput whose sheets are not all made, with level sets in place of the levels
+    above all rock: what the data alone say, for the throws that these show. Each is where its field passes
+    the level once over a node of the planar mesh."""
+    structure = entry.divided()
+    waiting = [series for series in entry.rock.series if series.kind == FIELD and entry.rock.members(series)]
+    if not waiting:
+        return structure
+    trial = replace(entry, warnings=[], left_out=[])  # what it says is said when the fields are made
+    top = _top_of_fields(trial)
+    sheets = [list(own) for own in structure.sheets]
+    for own in (_field_of(work, trial, series, top) for series in waiting):
+        for field, compartments in own.distinct().items():
+            for number, sheet in zip(own.numbers, _single_heights(entry.planar_mesh(), field), strict=True):
+                for compartment in compartments:
+                    sheets[compartment][number] = sheet
+    return replace(structure, sheets=sheets)
+
+
+def _single_heights(plan: Sheet, field: ScalarField) -> list[Sheet | None]:
+    """For each level of a field the sheet of the nodes of a planar mesh over which it is passed once; None
+    where there is no such triangle."""
+    nodes = plan.vertices[:, :2]
+    low, high = (corner[2] for corner in field.lattice.corners)
+    z = np.linspace(low, high, 2 * field.lattice.counts[2])
+    heights = np.full((len(field.levels), len(nodes)), np.nan)
+    some = max(1, _AT_ONCE // len(z))
+    for start in range(0, len(nodes), some):
+        part = nodes[start : start + some]
+        places = np.column_stack([np.repeat(part, len(z), axis=0), np.tile(z, len(part))])
+        f = field.at(places).reshape(len(part), len(z))
+        for own, level_of in zip(heights, field.levels, strict=True):
+            over = f - level_of
+            passes = (over[:, :-1] < 0) != (over[:, 1:] < 0)
+            at = passes.argmax(axis=1)[:, None]
+            begin, end = (np.take_along_axis(over, each, axis=1)[:, 0] for each in (at, at + 1))
+            step = np.where(end != begin, end - begin, 1.0)
+            found = z[at[:, 0]] - begin / step * (z[1] - z[0])
+            own[start : start + some] = np.where(passes.sum(axis=1) == 1, found, np.nan)
+    there = np.isfinite(heights)[:, plan.triangles].all(axis=2).any(axis=1)
+    return [
+        where_known(nodes, plan.triangles, own) if known else None
+        for own, known in zip(heights, there.tolist(), strict=True)
+    ]
 
 
 def lattices(entry: RockInput) -> list[tuple[SeriesData, Lattice]]:

@@ -31,7 +31,7 @@ from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_heights import interpolation_order
 from ..surfaces.surface_input import Reader, read_each
-from .fields import make_fields, place_level_sets
+from .fields import make_fields, place_level_sets, with_levels
 from .gaps import close_gaps, gap_widths, tops_of_faults
 from .observed_places import apply_in_compartments
 from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
@@ -196,7 +196,7 @@ def _make_all(
 ) -> None:
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     for number, entry in enumerate(work.share_out(inputs)):
-        make_sheets(work, entry, stage, keep, numbers[number] if numbers else None)
+        make_sheets(work, entry, stage, keep, numbers[number] if numbers else None, with_levels)
 
 
 def _without_gaps(

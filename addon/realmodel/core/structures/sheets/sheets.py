@@ -5,7 +5,7 @@ displace it, from the data in these compartments."""
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from ...base.work import Work
 from ...project.project import Rock
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
 from ...surfaces.rock_input import RockInput
+from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
@@ -31,10 +32,12 @@ def make_sheets(
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     numbers: Collection[int] | None = None,
+    with_levels: Callable[[Work, RockInput], RockStructure] = lambda _, entry: entry.divided(),
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
     keep: where a surface's arrays are kept once its sheets are made.
     numbers: of the surfaces, with those that they need; None: of all that have no sheets yet.
+    with_levels: the compartments with sheets of level sets, if others need the throws that these show.
 
     Surfaces without enough data in a compartment come last, for the throw of others is needed there: also
     that of those younger than `stage`, so that a stage is as in the whole. Raises InputRefused for a surface
@@ -88,7 +91,7 @@ def make_sheets(
                     unfinished += begin(work, number)
             for sheets in unfinished:
                 sheets.surface.work = work
-            make_borrowed(unfinished, Throws(work, entry.divided(), few), finish)
+            make_borrowed(unfinished, Throws(work, with_levels(work, entry), few), finish)
         younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
         warnings = entry.divided().warnings
         entry.divided().warnings = [each for each in warnings if each[1].surface not in younger]

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Warnings about contacts that a younger surface removes, and so lie on no surface of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import number_list, place_text
+from ..base.work import Work
+from ..structures.parts.parts import Structures
+from ..surfaces.observed.kept_contacts import observed_contacts
+from ..surfaces.observed.succession import Succession
+from ..surfaces.rock_input import RockInput
+from ..surfaces.wrong_sides import WrongPoints
+from .closed_form import surface_forms
+
+_KEPT = "a ready mesh, or other data of a younger surface, lie below them"
+_NOT_KEPT = "with observed = true none would be"
+
+
+def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], structures: Structures) -> None:
+    """Adds these warnings to rock masses whose surfaces are made. Surveys and grids are left out, for which
+    that is the rule, and so is what ready meshes remove of surfaces that are not observed: they stay as they
+    are."""
+    for entry, form in zip(inputs, surface_forms(inputs, structures), strict=True):
+        surfaces = entry.rock.surfaces
+        succession = Succession([surface.rule for surface in surfaces])
+        for number, surface in enumerate(surfaces):
+            if not surface.has_points or not (surface.is_level_set or len(surface.tied_points)):
+                continue
+            points = surface.known_points()
+            is_observed = bool(len(points)) and len(observed_contacts(entry.rock, number)) == len(points)
+            cutters = [n for n in succession.cut_later(number) if is_observed or surfaces[n].has_points]
+            above = [np.nan_to_num(-form.above(work, n, points)) for n in cutters if len(points)]
+            if not above:
+                continue
+            worst = np.argmax(above, axis=0)
+            wrong = WrongPoints.of(
+                points, np.max(above, axis=0), np.array(cutters)[worst], np.arange(len(points))
+            )
+            if wrong is None:
+                continue
+            text = (
+                f"{len(wrong.items)} of its {len(points)} points are removed by "
+                f"{number_list([repr(surfaces[n].name) for n in wrong.others])}, the farthest lies "
+                f"{wrong.by:.4g} above: point {wrong.worst} at {place_text(wrong.place)}; "
+            )
+            text += _KEPT if is_observed else _NOT_KEPT
+            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, wrong.items))
