@@ -55,7 +55,7 @@ struct Column {
         has_border |= found.state == State::kBorder;
         if (found.state != State::kHeight) return;
         const auto rule = meaning(history.rules.empty() ? Rule::kErosional : history.rules[sheet]);
-        double level = found.height;
+        double level = std::max(found.height, history.base_elevation.value_or(found.height));
         if (!rule.cuts && has_top) level = std::max(level, top);
         if (has_floor) level = std::max(level, floor);
         has_layer = sheet == 0 ? history.base_elevation.has_value() : has_top;

@@ -25,6 +25,12 @@ public:
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k)
             plane_.push_back(triangles[k] < 0 ? kNone
                                               : add(rock.surfaces[k], triangles[k], column));
+        if (rock.base_elevation && lowest_ <= *rock.base_elevation) {
+            std::array<exact::SpaceId, 3> corner;
+            for (std::size_t i = 0; i < 3; ++i)
+                corner[i] = geometry_.add_space_vertex(corner_[i], *rock.base_elevation);
+            base_ = geometry_.add_plane(corner);
+        }
         geometry_.freeze_vertices();
     }
 
@@ -43,6 +49,7 @@ public:
             PlaneId e = plane_[k];
             if (e == kNone) continue;
             column.surface_height.back() = scope.rounded_height(e, point_);
+            if (base_ != kNone) e = higher(e, base_);
             const Rule rule = rock.rules.empty() ? Rule::kErosional : rock.rules[k];
             before[k] = top;
             if (!meaning(rule).cuts && top != kNone) e = higher(e, top);
@@ -61,7 +68,8 @@ public:
             if (upper[k] == kNone) continue;
             const double high = scope.rounded_height(upper[k], point_);
             if (k == 0 && rock.base_elevation) {
-                column.intervals.push_back({block[k], *rock.base_elevation, high});
+                if (high > *rock.base_elevation)
+                    column.intervals.push_back({block[k], *rock.base_elevation, high});
             } else if (before[k] != kNone &&
                        scope.compare_heights(before[k], upper[k], point_) < 0) {
                 column.intervals.push_back(
@@ -77,14 +85,16 @@ private:
             const std::int32_t v = surface.triangles[3 * static_cast<std::size_t>(triangle) + i];
             row[i] = &surface.vertices[3 * static_cast<std::size_t>(v)];
             column.highest = std::max(column.highest, std::abs(row[i][2]));
+            lowest_ = std::min(lowest_, row[i][2]);
         }
         if (exact::orient2d({row[0][0], row[0][1]}, {row[1][0], row[1][1]},
                             {row[2][0], row[2][1]}) < 0)
             std::swap(row[1], row[2]);
         std::array<exact::SpaceId, 3> corner;
-        for (std::size_t i = 0; i < 3; ++i)
-            corner[i] =
-                geometry_.add_space_vertex(geometry_.add_vertex(row[i][0], row[i][1]), row[i][2]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            corner_[i] = geometry_.add_vertex(row[i][0], row[i][1]);
+            corner[i] = geometry_.add_space_vertex(corner_[i], row[i][2]);
+        }
         const PlaneId plane = geometry_.add_plane(corner);
         const exact::PlaneFilter& slope = geometry_.plane_filter(plane);
         column.slope = std::max(column.slope, std::abs(slope.gx) + std::abs(slope.gy));
@@ -94,6 +104,9 @@ private:
     PlanArrangement geometry_;
     exact::VertexId point_;
     std::vector<PlaneId> plane_;
+    std::array<exact::VertexId, 3> corner_;  ///< of some triangle, counter-clockwise
+    double lowest_ = HUGE_VAL;
+    PlaneId base_ = kNone;  ///< the flat base, where a surface may be below it
 };
 
 }  // namespace

@@ -62,7 +62,7 @@ def build_stage(
 
 def intersect(work: Work, inputs: list[RockInput], cells: str, structures: Structures) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
-    if structures.is_divided or any(entry.fields for entry in inputs):
+    if structures.is_divided or any(entry.fields or entry.reaches_base for entry in inputs):
         return build_joined(work, inputs, structures, cells)
     rocks = [entry.native() for entry in inputs]
     refused = refused_as(lambda error: refused_stack(error, inputs))

@@ -21,6 +21,7 @@ from ..structures.parts.part_models import (
     NOTHING,
     Stack,
     between_levels,
+    cut_at_base,
     distinct_plans,
     inside_body,
     plain_stack,
@@ -273,7 +274,7 @@ def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, s
         if number in times and structures.sides[part, count + body] < 0
     )
     if not inside:
-        return stack
+        return cut_at_base(stack, entry.rock.base_elevation)
     ends = structures.ends or beyond_all(sheets, structures)
     plans = [entry.region] if entry.region is not None else distinct_plans(sheets)
     for at, (after, body) in enumerate(inside):
@@ -283,7 +284,7 @@ def _stack(inputs: list[RockInput], place: PartPlace, number: int, first: int, s
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
         covered = distinct_plans(sheets[: after + 1])
         stack = inside_body(stack, after, block, ends, plans, covered)
-    return stack
+    return cut_at_base(stack, entry.rock.base_elevation)
 
 
 def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> int:

@@ -15,8 +15,10 @@ from ..cells.assembly import assemble, intersect
 from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from ..project.project import Project
 from ..project.project_checks import check_project
-from ..settings.method_options import check_threads
+from ..proof.closed_form import surface_forms
+from ..proof.cut_bases import check_bases
 from ..proof.eroded_contacts import warn_of_eroded_contacts
+from ..settings.method_options import check_threads
 from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
 from .estimate import require_memory
@@ -90,7 +92,9 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
         structures = make_surfaces(work, project, inputs, stage)
     inputs = taken()
     structures = structures if stage is None else structures.stage(stage)
-    warn_of_eroded_contacts(work, inputs, structures)
+    forms = surface_forms(inputs, structures)
+    check_bases(work, inputs, forms)
+    warn_of_eroded_contacts(work, inputs, forms)
     with timed("intersect"), work.part(ends["interpolate"], ends["intersect"]):
         built = intersect(work, inputs, cells, structures)
     given = replace(project, rocks=[entry.rock for entry in inputs])

@@ -123,7 +123,16 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     check_values(
         surface,
         SURFACE,
-        ("minimum_thickness", "true_thickness", "tie", "observed", "correlation", "rule", "property", "block"),
+        (
+            "minimum_thickness",
+            "true_thickness",
+            "tie",
+            "observed",
+            "correlation",
+            "rule",
+            "property",
+            "block",
+        ),
         refuse,
     )
     check_property(project.library, surface.property, refuse)

@@ -80,11 +80,16 @@ class ClosedForm:
         blocks[where < 0] = AIR
         if self.base_elevation is not None:
             blocks[points[:, 2] < self.base_elevation] = AIR
-        if self.region is not None:
-            vertices, triangles = self.region
-            level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
-            blocks[np.isnan(heights_at(work, level, points[:, :2]))] = AIR
+        blocks[~self.is_over_region(work, points)] = AIR
         return blocks
+
+    def is_over_region(self, work: Work, points: np.ndarray) -> np.ndarray:
+        """(N,) bool: the points (N, 3) over or under the region, if there is one; else all."""
+        if self.region is None:
+            return np.ones(len(points), bool)
+        vertices, triangles = self.region
+        level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
+        return np.isfinite(heights_at(work, level, points[:, :2]))
 
     def youngest_heights(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the heights of the youngest surface over or under points (N, 3), NaN where it has none."""

@@ -10,22 +10,21 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import number_list, place_text
 from ..base.work import Work
-from ..structures.parts.parts import Structures
 from ..surfaces.observed.kept_contacts import observed_contacts
 from ..surfaces.observed.succession import Succession
 from ..surfaces.rock_input import RockInput
 from ..surfaces.wrong_sides import WrongPoints
-from .closed_form import surface_forms
+from .closed_form import ClosedForm
 
 _KEPT = "a ready mesh, or other data of a younger surface, lie below them"
 _NOT_KEPT = "with observed = true none would be"
 
 
-def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], structures: Structures) -> None:
+def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:
     """Adds these warnings to rock masses whose surfaces are made. Surveys and grids are left out, for which
     that is the rule, and so is what ready meshes remove of surfaces that are not observed: they stay as they
     are."""
-    for entry, form in zip(inputs, surface_forms(inputs, structures), strict=True):
+    for entry, form in zip(inputs, forms, strict=True):
         surfaces = entry.rock.surfaces
         succession = Succession([surface.rule for surface in surfaces])
         for number, surface in enumerate(surfaces):

@@ -278,10 +278,10 @@ def _bases(model: ModelData) -> np.ndarray:
         return np.empty(0)
     bases = [np.nan if rock.base_elevation is None else rock.base_elevation for rock in model.project.rocks]
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
+    is_cut = [entry.reaches_base or entry.rock.has_fields for entry in model.rock_inputs]
     found = []
     for block in model.blocks:
-        folded = any(surface.is_level_set for surface in model.project.rocks[block.rock].surfaces)
-        rocks = [block.rock] if folded or block.surface == oldest[block.rock] else []
+        rocks = [block.rock] if is_cut[block.rock] or block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
             if not model.structures.times:
                 return np.empty(0)

@@ -96,6 +96,15 @@ class RockInput:
         """The field that a surface is a level set of; None for a sheet."""
         return next((each for each in self.fields if surface in each.numbers), None)
 
+    @property
+    def reaches_base(self) -> bool:
+        """Whether surfaces that are made reach down to the base elevation, or below it, and are cut there."""
+        base = self.rock.base_elevation
+        if base is None:
+            return False
+        heights = [each.vertices[:, 2] for each in self.surfaces if each is not None]
+        return any(len(z) > 0 and z.min() <= base for z in heights)
+
     def native(self) -> tuple:
         """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
         rules = [surface.rule for surface in self.rock.surfaces]

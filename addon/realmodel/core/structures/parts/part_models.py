@@ -85,6 +85,29 @@ def between_levels(stack: Stack, beneath: Mapping[int, bool], top: float, plan: 
     )
 
 
+def cut_at_base(stack: Stack, base: float | None) -> Stack:
+    """The stack with each surface as if it were at the base where it reaches below that: a level at the base,
+    with no block beneath it, comes after the surface, over what this covers."""
+    heights = [
+        float(sheet.vertices[:, 2].min()) if of >= 0 else np.inf
+        for sheet, of in zip(stack.sheets, stack.surfaces, strict=True)
+    ]
+    lowest = min(heights, default=np.inf)
+    if base is None or lowest > base or (lowest == base and stack.base_elevation is None):
+        return stack
+    # a flat base is beneath all; a surface that touches it needs one that it may touch
+    rows = [] if stack.base_elevation is None else [(level(stack.sheets[0], base), _DEPOSITS, NOTHING, FLOOR)]
+    begin = []
+    for z, row in zip(
+        heights, zip(stack.sheets, stack.rules, stack.blocks, stack.surfaces, strict=True), strict=True
+    ):
+        begin.append(len(rows))
+        rows.append(row)
+        rows += [(level(row[0], base), _DEPOSITS, NOTHING, FLOOR)] if z < base else []
+    sheets, rules, blocks, surfaces = map(list, zip(*rows, strict=True))
+    return Stack(sheets, rules, None, blocks, surfaces, tuple(begin[at] for at in stack.emptied))
+
+
 def inside_body(
     stack: Stack,
     after: int,

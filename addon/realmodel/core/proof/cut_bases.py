@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Base elevations that cut surfaces off, or leave nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, place_text
+from ..base.work import Work
+from ..settings.rules import RULES
+from ..surfaces.rock_input import RockInput
+from .closed_form import ClosedForm
+
+
+_ROUNDING = 1e-12  # of an area: a surface with less below its base touches it
+
+
+def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:
+    """Adds warnings to rock masses whose surfaces are made about those that their bases cut off. Raises
+    InputRefused for a base that is above all of a rock mass, or above a contact that would be lost."""
+    for entry, form in zip(inputs, forms, strict=True):
+        rock = entry.rock
+        shapes = [
+            None if surface.is_level_set else entry.surface(n) for n, surface in enumerate(rock.surfaces)
+        ]
+        vertices = [shape.vertices for shape in shapes if shape is not None]
+        if not entry.reaches_base:
+            continue
+        assert rock.base_elevation is not None
+        highest = np.concatenate(vertices)[np.concatenate(vertices)[:, 2].argmax()]
+        if len(vertices) == len(shapes) and highest[2] <= rock.base_elevation:
+            raise _refused(
+                entry, f"not below any of the rock mass, whose highest point is {place_text(highest)}"
+            )
+        for number, surface in enumerate(rock.surfaces):
+            # any other lies on what is older, or on what that protects, which has its own base
+            if shapes[number] is None or not (number == 0 or RULES[surface.rule].cuts):
+                continue
+            if surface.interpolated and len(surface.tied_points):
+                _check_contacts(work, entry, form, number)
+            if warning := _cut(work, entry, form, number):
+                entry.warnings.append(warning)
+
+
+def _refused(entry: RockInput, what: str) -> InputRefused:
+    rock = entry.rock
+    file, line = rock.place_of("base_elevation")
+    what = f"base_elevation {rock.base_elevation:.9g} is {what}"
+    return InputRefused(what, file=file, line=line, item=rock.item, advice="choose a lower one")
+
+
+def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int) -> None:
+    points = entry.rock.surfaces[number].known_points()
+    deep = points[points[:, 2] < form.base_elevation]
+    deep = deep[np.isfinite(form.heights(work, number, deep))]
+    if len(deep):
+        lowest = deep[deep[:, 2].argmin()]
+        name = entry.rock.surfaces[number].name
+        what = f"above {len(deep)} contacts of surface '{name}', which would be lost: the lowest is"
+        raise _refused(entry, f"{what} {place_text(lowest)}")
+
+
+def _cut(work: Work, entry: RockInput, form: ClosedForm, number: int) -> BuildWarning | None:
+    """The warning about a surface that reaches below the base where it bounds rock."""
+    base, total, below, lowest = form.base_elevation, 0.0, 0.0, np.full(3, np.inf)
+    for compartment, sheet in enumerate(each[number] for each in form.sheets):
+        corners = sheet.vertices[sheet.triangles]
+        here = form.compartments_of(work, corners.mean(axis=1)) == compartment
+        if form.region is not None and not sheet.has_plan_of(form.region):
+            here &= form.is_over_region(work, corners.mean(axis=1))
+        area, part = _areas(corners[here], base)
+        total, below = total + area, below + part
+        deepest = corners[here].reshape(-1, 3)
+        if len(deepest) and deepest[:, 2].min() < lowest[2]:
+            lowest = deepest[deepest[:, 2].argmin()]
+    if not below > _ROUNDING * total:
+        return None
+    rock = entry.rock
+    text = (
+        f"it reaches below base_elevation {base:.9g} on {100 * below / total:.2g} % of its area, and is cut "
+        f"off there: lowest at {place_text(lowest)}"
+    )
+    return BuildWarning(text, "below_base", rock.name, rock.surfaces[number].name)
+
+
+def _areas(corners: np.ndarray, base: float) -> tuple[float, float]:
+    """The area in plan of triangles (T, 3, 3), and that of what of them is below a height."""
+    u, v = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
+    area = 0.5 * np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    low, middle, high = np.sort(corners[:, :, 2] - base, axis=1).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        corner = low * low / ((middle - low) * (high - low))
+        rest = 1.0 - high * high / ((high - low) * (high - middle))
+    share = np.select([high <= 0, low >= 0, middle > 0], [1.0, 0.0, corner], rest)
+    return float(area.sum()), float((area * share).sum())
