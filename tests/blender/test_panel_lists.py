@@ -109,8 +109,8 @@ class Rocks(PanelCase):
         rock.base_elevation = -2.0  # who gives a base wants one
         ops.build()
         self.assertEqual(self.volumes(), {"base block": 5e3, "S1 block": 25e3})
-        rock.base_elevation = 5.0
-        self.refused(ops.build, "base_elevation 5 is not below")
+        rock.base_elevation = 15.0
+        self.refused(ops.build, "base_elevation 15 is not below")
 
 
 class Surfaces(PanelCase):

@@ -255,11 +255,11 @@ def test_double_valued_surfaces_are_named_with_their_triangles(write, layers):
 
 
 def test_a_base_that_is_not_below_is_named_with_its_line(layers):
-    path = layers([5, 6], rock_keys="base_elevation = 5.5")
+    path = layers([5, 6], rock_keys="base_elevation = 6.5")
     with pytest.raises(InputRefused) as raised:
         build(load_project(path))
     assert raised.value.line == 5
-    assert "base_elevation 5.5 is not below" in str(raised.value)
+    assert "base_elevation 6.5 is not below any of the rock mass" in str(raised.value)
     assert "choose one below 5" in str(raised.value)
 
 
@@ -372,7 +372,7 @@ def test_a_cancelled_build_does_little_more(long_build, share, monkeypatch):
     assert any(counted_after_cancel(long_build, share, monkeypatch) < most for _ in range(6))
 
 
-def test_a_base_that_a_method_passed_says_which_points_did_not(write):
+def test_what_a_method_leaves_below_the_base_is_cut_off(write):
     """Two points in one triangle make DSI steep: the lowest place is none that points show."""
     write("p.csv", "x,y,z\n5,5,10\n5.2,5.1,13\n5.1,5.2,11\n")
     path = write(
@@ -381,5 +381,7 @@ def test_a_base_that_a_method_passed_says_which_points_did_not(write):
         'edge_length = 4\nbase_elevation = 0\n[[rock.surface]]\nname = "s"\npoints = "p.csv"\n'
         'method = "dsi"\n',
     )
-    with pytest.raises(InputRefused, match="lowest point of surface 's' is 10, so check its method"):
-        build(load_project(path))
+    model = build(load_project(path))
+    texts = [warning.text for warning in model.warnings if warning.kind == "below_base"]
+    assert len(texts) == 1 and "below base_elevation 0 on" in texts[0]
+    assert model.vertices[:, 2].min() == 0

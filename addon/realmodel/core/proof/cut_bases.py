@@ -30,11 +30,11 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
         if not entry.reaches_base:
             continue
         assert rock.base_elevation is not None
-        highest = np.concatenate(vertices)[np.concatenate(vertices)[:, 2].argmax()]
+        every = np.concatenate(vertices)
+        highest = every[every[:, 2].argmax()]
         if len(vertices) == len(shapes) and highest[2] <= rock.base_elevation:
-            raise _refused(
-                entry, f"not below any of the rock mass, whose highest point is {place_text(highest)}"
-            )
+            what = f"not below any of the rock mass, whose highest point is"
+            raise _refused(entry, what, highest, every[:, 2].min())
         for number, surface in enumerate(rock.surfaces):
             # any other lies on what is older, or on what that protects, which has its own base
             if shapes[number] is None or not (number == 0 or RULES[surface.rule].cuts):
@@ -45,11 +45,12 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
                 entry.warnings.append(warning)
 
 
-def _refused(entry: RockInput, what: str) -> InputRefused:
-    rock = entry.rock
+def _refused(entry: RockInput, what: str, at: np.ndarray, lower: float) -> InputRefused:
+    rock, place = entry.rock, tuple(at.tolist())
     file, line = rock.place_of("base_elevation")
-    what = f"base_elevation {rock.base_elevation:.9g} is {what}"
-    return InputRefused(what, file=file, line=line, item=rock.item, advice="choose a lower one")
+    what = f"base_elevation {rock.base_elevation:.9g} is {what} {place_text(place)}"
+    advice = f"choose one below {lower:.9g}"
+    return InputRefused(what, file=file, line=line, item=rock.item, advice=advice, place=place)
 
 
 def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int) -> None:
@@ -59,8 +60,9 @@ def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int)
     if len(deep):
         lowest = deep[deep[:, 2].argmin()]
         name = entry.rock.surfaces[number].name
-        what = f"above {len(deep)} contacts of surface '{name}', which would be lost: the lowest is"
-        raise _refused(entry, f"{what} {place_text(lowest)}")
+        count = "a contact" if len(deep) == 1 else f"{len(deep)} contacts"
+        what = f"above {count} of surface '{name}', which would be lost: the lowest is"
+        raise _refused(entry, what, lowest, lowest[2])
 
 
 def _cut(work: Work, entry: RockInput, form: ClosedForm, number: int) -> BuildWarning | None:

@@ -140,7 +140,8 @@ def _stage_volumes(work: Work, model: ModelData, m: int, until: tuple[int, int] 
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
     structures = model.structures
-    bodies = _with_bodies(structures, until or (m + 1, 0)) if not model.is_stack else None
+    is_joined = not model.is_stack or any(entry.reaches_base for entry in model.rock_inputs)
+    bodies = _with_bodies(structures, until or (m + 1, 0)) if is_joined else None
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)
