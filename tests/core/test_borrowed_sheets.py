@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import Fault, PointFile, Project, Rock, Surface, build
+from realmodel.core import Fault, PointFile, Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.ensembles import ensemble
 from realmodel.core.results.displacements import displacements
 from structure_cases import compartments_of, heights_at, plane_fault, prepared
@@ -437,3 +437,28 @@ def test_a_block_of_a_real_reservoir_held_out(where):
     off = off[np.isfinite(off)]
     # not the mean square: some of its picks reach beyond a fault, and are of the other side
     assert len(off) > 400 and np.median(np.abs(off)) < 7.0
+
+
+@pytest.mark.parametrize("known_right", [0, 3])
+@pytest.mark.parametrize("is_above", [True, False])
+def test_level_sets_show_the_throw(is_above, known_right):
+    """Sheets over and under the beds of a field, which are thrown by 40, with few points east of the fault."""
+
+    def height(level):
+        return lambda x, y: level + 0.02 * y - np.where(x < 500, 0.0, 40.0)
+
+    beds = [
+        Surface(name, points=points_of(height(z), 2, 24), series="s") for name, z in (("A", 150), ("B", 200))
+    ]
+    sheet = height(260.0 if is_above else 90.0)
+    few = points_of(sheet, 3, 40, lambda x, y: x < 500), points_of(sheet, 4, 40, lambda x, y: x > 520)
+    own = Surface("S", points=np.concatenate([few[0], few[1][:known_right]]))
+    place = np.array([[200.0, 300.0, 160.0], [700.0, 600.0, 150.0]])
+    series = [Series("s", dips=SpaceDips(place, [[0.0, -0.02, 1.0]] * 2))]
+    corners = np.column_stack([SQUARE, np.full(4, 400.0)])
+    ground = Surface("ground", vertices=corners, triangles=np.array([[0, 1, 2], [0, 2, 3]]))
+    surfaces = [*beds, own, ground] if is_above else [own, *beds, ground]
+    given = project(surfaces, [fault("F", 500.0, youngest=surfaces[-2].name)], 100.0, series=series)
+    given.rocks[0].base_elevation = 0.0
+    throws = {each.surface: each.throw for each in displacements(build(given))}
+    assert np.abs(throws["S"] - 40.0).max() < 1.0

@@ -88,8 +88,8 @@ ROCK = {
     "base_elevation": Setting(
         kind="length",
         label="Base Elevation",
-        tip="Elevation of the flat base of the oldest block; below all surfaces",
-        more="It adds a block beneath the oldest surface",
+        tip="Elevation of the flat base of the oldest block; surfaces that reach below are cut off there",
+        more="It adds a block beneath the oldest surface; see [Base](#base)",
         switch=("Base", "Add a block between the oldest surface and the base elevation"),
         switch_name="use_base",
     ),

@@ -98,11 +98,11 @@ class RockInput:
 
     @property
     def reaches_base(self) -> bool:
-        """Whether surfaces that are made reach down to the base elevation, or below it, and are cut there."""
-        base = self.rock.base_elevation
+        """Whether sheets that are made reach down to the base elevation, or below it, and are cut there."""
+        base, given = self.rock.base_elevation, zip(self.rock.surfaces, self.surfaces, strict=True)
         if base is None:
             return False
-        heights = [each.vertices[:, 2] for each in self.surfaces if each is not None]
+        heights = [each.vertices[:, 2] for of, each in given if each is not None and not of.is_level_set]
         return any(len(z) > 0 and z.min() <= base for z in heights)
 
     def native(self) -> tuple:
