@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build
 
 SIZE = 100.0

@@ -442,7 +442,7 @@ def test_a_block_of_a_real_reservoir_held_out(where):
 @pytest.mark.parametrize("known_right", [0, 3])
 @pytest.mark.parametrize("is_above", [True, False])
 def test_level_sets_show_the_throw(is_above, known_right):
-    """Sheets over and under the beds of a field, which are thrown by 40, with few points east of the fault."""
+    """Sheets over and under beds of a field that are thrown by 40; few points of them east of the fault."""
 
     def height(level):
         return lambda x, y: level + 0.02 * y - np.where(x < 500, 0.0, 40.0)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contacts that were observed are there: no younger surface cuts below them, and outcrops are on the ground."""
+"""No younger surface cuts below contacts that were observed, and outcrops are on the ground."""
 
 import numpy as np
 import pytest
-
 from realmodel.core import Boreholes, InputRefused, Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import run

@@ -14,7 +14,6 @@ from ..settings.rules import RULES
 from ..surfaces.rock_input import RockInput
 from .closed_form import ClosedForm
 
-
 _ROUNDING = 1e-12  # of an area: a surface with less below its base touches it
 
 
@@ -33,7 +32,7 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
         every = np.concatenate(vertices)
         highest = every[every[:, 2].argmax()]
         if len(vertices) == len(shapes) and highest[2] <= rock.base_elevation:
-            what = f"not below any of the rock mass, whose highest point is"
+            what = "not below any of the rock mass, whose highest point is"
             raise _refused(entry, what, highest, every[:, 2].min())
         for number, surface in enumerate(rock.surfaces):
             # any other lies on what is older, or on what that protects, which has its own base
@@ -67,8 +66,11 @@ def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int)
 
 def _cut(work: Work, entry: RockInput, form: ClosedForm, number: int) -> BuildWarning | None:
     """The warning about a surface that reaches below the base where it bounds rock."""
-    base, total, below, lowest = form.base_elevation, 0.0, 0.0, np.full(3, np.inf)
-    for compartment, sheet in enumerate(each[number] for each in form.sheets):
+    base = form.base_elevation
+    total, below, lowest = 0.0, 0.0, np.full(3, np.inf)
+    for compartment, sheets in enumerate(form.sheets):
+        sheet = sheets[number]
+        assert sheet is not None and base is not None  # as it is made
         corners = sheet.vertices[sheet.triangles]
         here = form.compartments_of(work, corners.mean(axis=1)) == compartment
         if form.region is not None and not sheet.has_plan_of(form.region):

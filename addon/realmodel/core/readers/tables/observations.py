@@ -264,11 +264,9 @@ class Bounds(ShortRepr):
     def joined(cls, parts: Sequence[Bounds]) -> Bounds:
         """Several of one surface, one after another."""
         names = ("places", "is_lower", "holes", "depths")
+        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
         ends = [part.ends for part in parts if part.ends is not None]
-        return cls(
-            *(np.concatenate([getattr(part, name) for part in parts]) for name in names),
-            np.concatenate(ends) if ends else None,
-        )
+        return cls(**joined, ends=np.concatenate(ends) if ends else None)
 
     def __len__(self) -> int:
         return len(self.places)

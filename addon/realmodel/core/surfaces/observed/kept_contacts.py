@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contacts that were observed bound the younger surfaces: none of these cuts below them, as they are there."""
+"""Contacts that were observed bound the younger surfaces: none of these cuts below them."""
 
 from __future__ import annotations
 
