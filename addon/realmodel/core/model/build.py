@@ -92,11 +92,11 @@ def _build(work: Work, project: Project, cells: str, stage: int | None, memory: 
         structures = make_surfaces(work, project, inputs, stage)
     inputs = taken()
     structures = structures if stage is None else structures.stage(stage)
+    with timed("intersect"), work.part(ends["interpolate"], ends["intersect"]):
+        built = intersect(work, inputs, cells, structures)
     forms = surface_forms(inputs, structures)
     check_bases(work, inputs, forms)
     warn_of_eroded_contacts(work, inputs, forms)
-    with timed("intersect"), work.part(ends["interpolate"], ends["intersect"]):
-        built = intersect(work, inputs, cells, structures)
     given = replace(project, rocks=[entry.rock for entry in inputs])
     with work.part(ends["intersect"], 1.0):
         return Model.of(assemble(work, given, inputs, built, timings, structures))

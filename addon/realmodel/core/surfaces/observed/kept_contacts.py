@@ -24,7 +24,7 @@ def observed_contacts(rock: Rock, number: int) -> np.ndarray:
     if surface.observed or surface.series is not None:
         return own
     picks = [place for _, met in rock.hole_picks.values() for name, place in met if name == surface.name]
-    return own[are_among(own, np.array(picks, np.float64).reshape(-1, 3))]
+    return own[are_among(own, np.array(picks, np.float64))] if picks else own[:0]
 
 
 def kept_bounds(rock: Rock) -> list[Bounds]:
