@@ -78,9 +78,8 @@ std::optional<std::string> FaceShape::fault_of_base() const {
                             : model_.block_base[static_cast<std::size_t>(block)];
     if (std::isnan(base)) return "names the flat base, but its block stands on none";
     if (model_.cell(face_, 1) >= 0) return "names the flat base, but lies between two cells";
-    const bool level = std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
-        return std::abs(p[2] - base) <= allowance_[2];
-    });
+    const bool level = std::all_of(corners_.begin(), corners_.end(),
+                                   [&](const Position& p) { return p[2] == base; });
     return level ? std::nullopt : std::optional<std::string>("is not level with the flat base");
 }
 

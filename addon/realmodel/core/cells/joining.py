@@ -67,8 +67,20 @@ def build_joined(
             cells,
             piece=piece,
         )
+    _level_bases(joined, inputs)
     built = BuiltCells.of(joined, cells)
     return _with_parts(built, joined["cell_part"], inputs, structures, divides)
+
+
+def _level_bases(joined: dict, inputs: list[RockInput]) -> None:
+    """Makes faces on bases that cut surfaces off level to the last bit: those levels are rounded as surfaces
+    are, of which two heights that are nearly equal may get neighboring numbers."""
+    bases = np.array([entry.rock.base_elevation for entry in inputs if entry.reaches_base])
+    if len(bases):
+        count, corners = np.diff(joined["face_offsets"]), joined["face_vertices"]
+        rows = np.unique(corners[np.repeat(joined["face_surface"] == FLOOR, count)])
+        z = joined["vertices"][rows, 2]
+        joined["vertices"][rows, 2] = bases[np.abs(z[:, None] - bases).argmin(axis=1)]
 
 
 def _refused(

@@ -21,9 +21,9 @@ _NOT_KEPT = "with observed = true none would be"
 
 
 def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:
-    """Adds these warnings to rock masses whose surfaces are made. Surveys and grids are left out, for which
-    that is the rule, and so is what ready meshes remove of surfaces that are not observed: they stay as they
-    are."""
+    """Adds these warnings to rock masses whose surfaces are made. Of surfaces that are not observed surveys
+    and grids are left out, which are often given as they were before erosion, and what ready meshes remove:
+    these stay as they are."""
     for entry, form in zip(inputs, forms, strict=True):
         surfaces = entry.rock.surfaces
         succession = Succession([surface.rule for surface in surfaces])
@@ -40,12 +40,12 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
             wrong = WrongPoints.of(
                 points, np.max(above, axis=0), np.array(cutters)[worst], np.arange(len(points))
             )
-            if wrong is None:
+            if wrong is None or (wrong.is_part_of_survey(len(points)) and not is_observed):
                 continue
             text = (
-                f"{len(wrong.items)} of its {len(points)} points are removed by "
+                f"{len(wrong.items)} of its {len(points)} contacts are eroded by "
                 f"{number_list([repr(surfaces[n].name) for n in wrong.others])}, the farthest lies "
-                f"{wrong.by:.4g} above: point {wrong.worst} at {place_text(wrong.place)}; "
+                f"{wrong.by:.4g} above: point {surface.point_row(wrong.worst)} at {place_text(wrong.place)}; "
             )
             text += _KEPT if is_observed else _NOT_KEPT
-            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, wrong.items))
+            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, wrong.rows(surface)))

@@ -190,13 +190,16 @@ class WrongPoints:
         """The numbers that the points had in the table or array that they come from."""
         return tuple(sorted(map(surface.point_row, self.items)))
 
+    def is_part_of_survey(self, count: int) -> bool:
+        """Whether they are a part of a survey of so many points, and not errors."""
+        return count >= _SURVEY and _FEW < len(self.items) / count < 1 - _FEW
+
     def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
         """count: of all points of the surface."""
         names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
         surface = rock.surfaces[number]
-        share = len(self.items) / count
         ends = side == "below" and not RULES[surface.rule].cuts and surface.minimum_thickness is None
-        is_meant = ends and count >= _SURVEY and _FEW < share < 1 - _FEW
+        is_meant = ends and self.is_part_of_survey(count)
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
             f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
