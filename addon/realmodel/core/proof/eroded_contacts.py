@@ -48,4 +48,5 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
                 f"{wrong.by:.4g} above: point {surface.point_row(wrong.worst)} at {place_text(wrong.place)}; "
             )
             text += _KEPT if is_observed else _NOT_KEPT
-            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, wrong.rows(surface)))
+            rows = wrong.rows(surface)
+            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, rows))
