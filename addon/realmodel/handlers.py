@@ -12,13 +12,14 @@ from bpy.app.handlers import persistent
 from .bl import display
 from .bl.display import replacing
 from .bl.field import handle
-from .bl.host import caches
+from .bl.host import afterwards, caches, undo
 from .bl.objects import viewports
 from .bl.overlay import rendered
 from .bl.project import region_size, settings
 from .bl.scene import live, quality
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
+_evaluated = caches.new()  # by the name of a scene: the names of objects and data that Blender evaluated
 _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
 
 
@@ -56,6 +57,10 @@ def _loaded(*_arguments):
     display.stop()
     quality.stop()
     caches.clear()
+    afterwards.call(_take_opened)
+
+
+def _take_opened():
     check_versions()
     display.opened()
     live.switched()
@@ -76,20 +81,38 @@ def _tell(text):
 
 @persistent
 def _undoing(*_arguments):
-    display.undoing()
+    undo.begins()
 
 
 @persistent
 def _undone(*_arguments):
+    undo.ended()
+    display.forget_meshes()
+    afterwards.call(_take_undone)
+
+
+def _take_undone():
     display.undone()
     live.undone()
 
 
 @persistent
 def _changed(scene, depsgraph):
-    live.changed(scene, depsgraph)
-    handle.changed(scene, depsgraph)
-    display.changed(scene, depsgraph)
+    names = display.evaluated(depsgraph)
+    if names and not live.is_at_work():
+        _evaluated.setdefault(scene.name, set()).update(names)
+        afterwards.call(_take_evaluated)
+
+
+def _take_evaluated():
+    changed = dict(_evaluated)
+    _evaluated.clear()
+    for name, names in changed.items():
+        scene = bpy.data.scenes.get(name)
+        if scene is not None and scene.library is None:
+            live.changed(scene, names)
+            handle.changed(scene, names)
+            display.changed(scene, names)
 
 
 @persistent
@@ -144,6 +167,7 @@ _HANDLERS = (
 def register():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
+    live.start()
 
 
 def unregister():
@@ -151,6 +175,7 @@ def unregister():
         registered = getattr(bpy.app.handlers, name)
         if handler in registered:
             registered.remove(handler)
+    afterwards.stop()
     live.stop()
     region_size.stop()
     viewports.forget_status()

@@ -339,7 +339,8 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
-    is_outdated: BoolProperty(options={"HIDDEN"})  # something was changed since the blocks were built
+    built_from: StringProperty(options={"HIDDEN"})  # the fingerprint of what the blocks were built from
+    is_outdated: BoolProperty(options={"HIDDEN"})  # and it is another one now: see bl/scene/live.py
     is_coarse: BoolProperty(options={"HIDDEN"})  # the blocks are of coarse fields: see bl/scene/live.py
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)

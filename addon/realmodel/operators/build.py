@@ -37,6 +37,8 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
 
     def tell_done(self, model):
         scene = bpy.data.scenes.get(self._scene)
+        if scene is not None and live.check(scene):
+            self.report({"WARNING"}, "The model is out of date: what it is made from was changed meanwhile")
         has_picture = False
         if self._is_first and scene is not None:
             viewports.frame(scene, viewports.still_open(self._spaces))

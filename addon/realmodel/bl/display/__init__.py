@@ -49,6 +49,7 @@ from . import (
 
 _field = None  # see show_field_with
 _STRETCHED = (TAG, settings.DATA, settings.IMAGE)  # on objects that are shown with vertical exaggeration
+_SHAPES = (bpy.types.Object, bpy.types.Mesh, bpy.types.Curve)  # what models are made from
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
 
@@ -268,33 +269,35 @@ def render_ends(scene):
     replacing.end_render()
 
 
-def undoing():
-    """Called before undo and redo. Blender keeps objects that are equal in two undo steps, without the
-    changes that a live build made in between: they must not point to materials that undo removes."""
-    for scene in bpy.data.scenes:
-        colors.take_off(scene)
-
-
 def undone():
-    """Called after undo and redo: cached data of meshes may be outdated."""
-    forget_meshes()
+    """After undo and redo: the objects are those of another state."""
     for scene in bpy.data.scenes:
+        if scene.library is not None:
+            continue
         if len(scene.realmodel.results):
             colors.apply(scene)
         if cuts.is_on(scene):
             cuts.touch(scene)
 
 
-def changed(scene, depsgraph):
-    """Called when Blender has evaluated changed objects."""
-    plane = scene.realmodel.view.plane
+def evaluated(depsgraph):
+    """The names of the objects and shapes that Blender has evaluated with another shape or place. Cached data
+    of meshes are outdated then."""
+    names = set()
     for update in depsgraph.updates:
         item = update.id.original
         if isinstance(item, bpy.types.Mesh) and update.is_updated_geometry:
             drawing.forget({item.name_full})
             coordinates.forget({item.name_full})
-        elif item == plane and update.is_updated_transform and cuts.is_on(scene):
-            cuts.touch(scene)
+        if isinstance(item, _SHAPES) and (update.is_updated_geometry or update.is_updated_transform):
+            names.add(item.name_full)
+    return names
+
+
+def changed(scene, names):
+    """Objects of these names were changed."""
+    if cuts.is_on(scene) and scene.realmodel.view.plane.name_full in names:
+        cuts.touch(scene)
 
 
 def _applied(scene):

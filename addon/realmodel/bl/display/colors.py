@@ -55,13 +55,6 @@ def apply(scene):
     remove_unused()
 
 
-def take_off(scene):
-    """Removes the colors of the interfaces. `apply` sets them again."""
-    for _, surface in settings.interface_rows(scene):
-        if _can_take(surface.interface):
-            _put_into_slot(surface.interface, None)
-
-
 def key(scene):
     """The core's ColorKey of the visible objects, or None where nothing is visible."""
     by, group = scene.realmodel.color_by, scene.realmodel

@@ -114,12 +114,11 @@ def follow(scene):
     _stand(scene, item, group.datum(number))
 
 
-def changed(scene, depsgraph):
-    """Called when Blender has evaluated changed objects: where the object was moved, its datum is too."""
+def changed(scene, names):
+    """Objects of these names were changed: where the object was moved, its datum is too."""
     item = item_of(scene) if scene.realmodel.view.datum else None
-    if item is None or not any(u.id.original == item and u.is_updated_transform for u in depsgraph.updates):
-        return
-    take_place(scene)
+    if item is not None and item.name_full in names:
+        take_place(scene)
 
 
 def take_place(scene):

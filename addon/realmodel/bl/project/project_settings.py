@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -24,6 +25,7 @@ from ..objects import built_models, exaggeration, shapes, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY
 from . import (
     borehole_picks,
+    fingerprint,
     library_rows,
     method_settings,
     names,
@@ -46,7 +48,8 @@ class Composed:
     """The project of a scene. read: by place (settings.row_at) the stamp of the file that is still to be
     read. origin_is_free: no object of the user determines the position of the model. has_origin: the origin
     was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
-    and are used as they are."""
+    and are used as they are. files: by the id() of an entry that comes from a file what `fingerprint` takes in
+    its place. fingerprint: of the project."""
 
     project: Project
     origin: np.ndarray
@@ -55,6 +58,8 @@ class Composed:
     read: dict = field(default_factory=dict)
     edited: list = field(default_factory=list)
     objects: set = field(default_factory=set)
+    files: dict = field(default_factory=dict)
+    fingerprint: str = ""
 
     def from_object(self, place):
         """Whether a shape is a mesh object of the scene just as it stands."""
@@ -137,7 +142,27 @@ def compose(scene, depsgraph, whole=True):
             _shape(source, composed, place, entry, row)
         (project.faults if place[0] == "fault" else project.bodies).append(entry)
     composed.origin_is_free = composed.origin_is_free and not composed.edited
+    composed.fingerprint = f"{fingerprint.of_project(project, composed.files)} {group.cells}"
     return composed
+
+
+def files(scene):
+    """The files that a scene's model is made from."""
+    paths = [row.region_file for row in scene.realmodel.rocks]
+    paths += [row.filepath for _, row in settings.interface_rows(scene) if row.source not in settings.OF_OBJECTS]
+    return [path for path in map(absolute, paths) if path is not None]
+
+
+def _is_to_be_read(source, composed, place, entry, named, path, kept):
+    """Whether the file of an entry is to be read, or the data are used that the .blend has stored of it.
+    named: the entry as its settings name the file. kept: the stamp of the file that the stored data are of;
+    None where there are none."""
+    now = stored_arrays.file_stamp(path)
+    is_read = kept is None or (source.whole and bool(now) and now != kept)
+    if is_read:
+        composed.read[place] = now
+    composed.files[id(entry)] = named, now if is_read else kept
+    return is_read
 
 
 def _plain_surface(row, fields):
@@ -179,20 +204,17 @@ def _region(source, composed, number, rock, row):
 def _stored_rings(source, composed, number, rock, row):
     """The outlines that the .blend keeps of a region's file; None where the file is to be read."""
     path = absolute(row.region_file)
-    if path is not None and (not row.region_stored or (source.whole and _changed(path, row.region_stamp))):
-        rock.region = path
-        composed.read[number, None] = stored_arrays.file_stamp(path)
-        return None
+    if path is not None:
+        named = copy.copy(rock)
+        named.region = path
+        kept = row.region_stamp if row.region_stored else None
+        if _is_to_be_read(source, composed, (number, None), rock, named, path, kept):
+            rock.region = path
+            return None
     if not row.region_stored:
         return None
     arrays = stored_arrays.unpack(row.region_stored)
     return [arrays[f"ring{n}"] for n in range(len(arrays))]
-
-
-def _changed(path, stamp):
-    """Whether a file is there and is another one than was read."""
-    now = stored_arrays.file_stamp(path)
-    return bool(now) and now != stamp
 
 
 def _shape(source, composed, place, surface, row):
@@ -222,10 +244,14 @@ def _shape(source, composed, place, surface, row):
     if row.source in settings.LINE_OBJECTS:
         _lines_of_object(source, composed, surface, row)
         return
-    path, stored = absolute(row.filepath), stored_shape(row)
-    if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
+    path, stored, is_read = absolute(row.filepath), stored_shape(row), False
+    if path is not None:
+        named = copy.copy(surface)
+        name_file(named, row, path)
+        kept = row.stored_stamp if stored else None
+        is_read = _is_to_be_read(source, composed, place, surface, named, path, kept)
+    if is_read:
         name_file(surface, row, path)
-        composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored, row)
         if row.source == "POINTS_FILE" or (path is not None and row.source != "TRACE_FILE"):

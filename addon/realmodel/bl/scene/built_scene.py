@@ -227,6 +227,7 @@ def put(scene, prepared, composed, in_place=False):
         before = group.built_stamp if in_place else None
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
+        group.built_from = composed.fingerprint
         group.is_outdated = group.is_coarse = False
     display.built(scene, prepared.bounds, prepared.stage)
     planned_holes.update_all(scene)
@@ -476,7 +477,7 @@ def _clear(scene):
     objects = [row.object for row in scene.realmodel.results if row.object is not None]
     with settings.filling():
         scene.realmodel.results.clear()
-        scene.realmodel.built_stamp = ""
+        scene.realmodel.built_stamp = scene.realmodel.built_from = ""
         scene.realmodel.warnings = ""
         scene.realmodel.is_outdated = scene.realmodel.is_coarse = False
         scene.realmodel.view.compartments = ""

@@ -3,7 +3,8 @@
 
 A handler of Blender's dependency graph reports changed objects; the update callbacks of the settings report
 changed rows. A timer waits until nothing has changed for the length of the pause, builds in a thread, and
-updates the existing meshes. Of series whose surfaces are level sets of a field, it first builds a coarse one,
+updates the existing meshes. Whether a model is out of date is said by the fingerprint of what it was built
+from, compared with that of the settings, objects and files as they are now; without live updates, too. Of series whose surfaces are level sets of a field, it first builds a coarse one,
 which follows the hand, and once nothing changes any more the whole. It adds no undo step: undoing an edit is
 one more edit, and starts a rebuild.
 """
@@ -14,26 +15,47 @@ from contextlib import contextmanager
 import bpy
 
 from ... import preferences
-from ...core import Cancelled
+from ...core import Cancelled, RealModelError
 from ..host import caches
 from ..host.debounce import DebouncedJob
-from ..objects import viewports
-from ..project import names, plan_mesh, region_size, settings
+from ..objects import stored_arrays, viewports
+from ..project import names, plan_mesh, project_settings, region_size, settings
 from . import build_job, built_scene, problems
 
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # the changes that Blender reports now are the add-on's own
+_stamps = caches.new()  # by the name of a scene: those of the files that its model is made from
 measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
 _REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whole one is built
+_CHECK_SECONDS = 0.3  # without a change, before the fingerprint of what a model is made from is taken
+_WATCH_SECONDS = 2.0  # between two looks at the files
 _to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
 
 
 def touch(scene):
     """Reports that input of a scene's model was changed."""
-    if len(scene.realmodel.results):
-        scene.realmodel.is_outdated = True
+    _set_outdated(scene, len(scene.realmodel.results) > 0)
     _look_at(scene)
+
+
+def check(scene):
+    """Whether a scene's model is out of date: it was made from other settings, objects or files than there
+    are now. `is_outdated` is set so."""
+    group = scene.realmodel
+    if len(group.results) and scene.library is None:
+        try:
+            now = project_settings.compose(scene, viewports.updated_layer(scene).depsgraph).fingerprint
+        except RealModelError:
+            now = None  # nothing is built from that
+        _set_outdated(scene, now != group.built_from)
+    return group.is_outdated
+
+
+def _set_outdated(scene, is_outdated):
+    if scene.realmodel.is_outdated != is_outdated:
+        scene.realmodel.is_outdated = is_outdated
+        viewports.redraw()
 
 
 def _look_at(scene):
@@ -41,6 +63,7 @@ def _look_at(scene):
     names.store(scene)
     settings.follow_youngest(scene)
     bpy.context.window_manager.realmodel.estimate = ""
+    _checks.touch(scene.name)
     if scene.realmodel.live:
         _to_refine.discard(scene.name)
         _work.touch(scene.name)
@@ -49,8 +72,7 @@ def _look_at(scene):
 def switched():
     """`live` was switched on or off in some scene, or another file was opened."""
     _work.forget_changes()
-    for scene in bpy.data.scenes:
-        _look_at(scene)
+    undone()
 
 
 def is_working():
@@ -58,14 +80,14 @@ def is_working():
     return _work.is_working()
 
 
-def changed(scene, depsgraph):
-    """Called when Blender has evaluated changed objects."""
+def is_at_work():
+    """Whether the changes that Blender reports now are the add-on's own."""
+    return _at_work
+
+
+def changed(scene, edited):
+    """Blender has evaluated objects or shapes of these names with another shape or place."""
     group = scene.realmodel
-    if _at_work or not len(group.rocks):
-        return
-    edited = {update.id.original.name_full for update in depsgraph.updates if _counts(update)}
-    if not edited:
-        return
     for rock in group.rocks:
         if rock.region is not None and _names(rock.region) & edited:
             rock.region_area = -1.0
@@ -92,19 +114,15 @@ def _edited(scene, item):
         _look_at(scene)
 
 
-def _counts(update):
-    is_shape = isinstance(update.id, (bpy.types.Object, bpy.types.Mesh, bpy.types.Curve))
-    return is_shape and (update.is_updated_geometry or update.is_updated_transform)
-
-
 def _names(item):
     return {item.name_full, item.data.name_full} if item.data is not None else {item.name_full}
 
 
 def undone():
-    """Called after undo and redo: the displayed blocks may be of another build."""
+    """After undo and redo: the displayed blocks may be of another build."""
     for scene in bpy.data.scenes:
-        _look_at(scene)
+        if scene.library is None:
+            _look_at(scene)
 
 
 def stop_work():
@@ -112,9 +130,36 @@ def stop_work():
     _work.stop_jobs()
 
 
+def start():
+    """The add-on is enabled: files are watched from now on."""
+    if not bpy.app.background:
+        bpy.app.timers.register(_watch, first_interval=_WATCH_SECONDS, persistent=True)
+
+
 def stop():
     """Stops all work: the add-on is disabled."""
     _work.stop()
+    _checks.stop()
+    if bpy.app.timers.is_registered(_watch):
+        bpy.app.timers.unregister(_watch)
+
+
+def _watch():
+    """The timer: looks whether the files of models are others now."""
+    for scene in bpy.data.scenes:
+        if len(scene.realmodel.results) and scene.library is None:
+            found = [stored_arrays.file_stamp(path) for path in project_settings.files(scene)]
+            if _stamps.setdefault(scene.name, found) != found:
+                _stamps[scene.name] = found
+                _checks.touch(scene.name)
+    return _WATCH_SECONDS
+
+
+def _begin_check(name, _changed_at):
+    scene = bpy.data.scenes.get(name)
+    if scene is not None:
+        with _our_own(scene):
+            check(scene)
 
 
 def _finish(name, job, changed_at):
@@ -129,6 +174,7 @@ def _finish(name, job, changed_at):
         if name not in _refined:
             measured[name] = time.perf_counter() - changed_at
         _tell(None, None)
+        _checks.touch(name)
         if job.is_coarse:
             _to_refine.add(name)
             _work.touch(name, later=_REFINE_SECONDS)
@@ -185,5 +231,11 @@ _work = DebouncedJob(
     lambda: preferences.current().live_pause,
     _begin,
     _finish,
+    lambda: not bpy.context.window_manager.realmodel.running,
+)
+_checks = DebouncedJob(
+    lambda: _CHECK_SECONDS,
+    _begin_check,
+    lambda *_: None,
     lambda: not bpy.context.window_manager.realmodel.running,
 )
