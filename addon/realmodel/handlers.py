@@ -20,6 +20,7 @@ from .bl.scene import live, quality
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
 _evaluated = caches.new()  # by the name of a scene: the names of objects and data that Blender evaluated
+_INTERVAL = sys.getswitchinterval()  # not asked for later: another render thread may have set it
 _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
 
 
@@ -35,7 +36,7 @@ def _patient(handler):
     def patient(scene, *arguments):
         if threading.current_thread() is threading.main_thread():
             return handler(scene, *arguments)
-        until, interval = time.monotonic() + _PATIENCE, sys.getswitchinterval()
+        until = time.monotonic() + _PATIENCE
         while True:
             sys.setswitchinterval(_PATIENCE)
             try:
@@ -45,7 +46,7 @@ def _patient(handler):
                 if _WHILE_DRAWING not in str(error) or time.monotonic() > until:
                     raise
             finally:
-                sys.setswitchinterval(interval)
+                sys.setswitchinterval(_INTERVAL)
             time.sleep(0.002)
 
     return patient

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The model and its report out to files."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -17,9 +18,10 @@ from ..bl.display import shown_models
 from ..bl.jobs.export_job import ExportJob
 from ..bl.jobs.mesh_job import MeshJob
 from ..bl.project import results
-from ..bl.scene import scene_export
+from ..bl.scene import live, scene_export
 from ..core import InputRefused, UsageError
 from ..core.base.atomic import Outputs
+from ..core.base.build_warning import BuildWarning
 from ..core.exporters import FORMATS
 from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.meshes import MESH_FORMATS
@@ -39,6 +41,7 @@ _REPORTS = (
     ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
     ("CSV", "Table of Blocks (.csv)", "Volumes, shares, and counts of the blocks, for a spreadsheet"),
 )
+_OUTDATED = "The model is out of date: what it is made from was changed since it was built"
 DRAWINGS = (
     ("SVG", "SVG (.svg)", "Scalable drawing, for documents and web pages"),
     ("PNG", "PNG (.png)", "Picture, 200 dots per inch"),
@@ -105,8 +108,18 @@ class Exporting(Reporting, ExportHelper):
         self.write(context, path)
         self.report({"INFO"}, f"Wrote {path}")
 
+    def model(self, context):
+        """The whole displayed model, after `target`; where it is out of date, one of its warnings says so."""
+        model = shown_models.whole(context.scene)
+        if context.scene.realmodel.is_outdated:
+            model = replace(model, warnings=[BuildWarning(_OUTDATED, "outdated"), *model.warnings])
+        return model
+
     def target(self):
-        """The path of the output. Raises UsageError, InputRefused."""
+        """The path of the output; the window says where the model is out of date. Raises UsageError,
+        InputRefused."""
+        if live.check(bpy.context.scene):
+            self.report({"WARNING"}, _OUTDATED)
         path = chosen_path(self, "the output")
         known = self.filter_glob.replace("*", "").split(";")
         if path.suffix.lower() not in known:
@@ -183,9 +196,10 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     )
 
     def begin(self, context):
+        path = self.target()
         return ExportJob(
-            shown_models.whole(context.scene),
-            self.target(),
+            self.model(context),
+            path,
             surfaces_only=self.surfaces_only,
             cell_size=self.cell_size[:] if any(self.cell_size) else None,
             contour_interval=self.contour_interval or None,
@@ -244,7 +258,7 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
             self.layer_thickness or None,
             self.elements.lower(),
         )
-        model = shown_models.whole(context.scene)
+        model = self.model(context)
         return MeshJob(model, self._request, model.project.units)
 
     def tell_done(self, mesh):
@@ -296,7 +310,7 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
 
     def write(self, context, path):
         is_table = path.suffix.lower() == ".csv"
-        model = None if is_table else shown_models.whole(context.scene)
+        model = None if is_table else self.model(context)
         with Outputs() as outputs, outputs.file(path) as file:
             if is_table:
                 file.write(results.as_text(context.scene).encode())

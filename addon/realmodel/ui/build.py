@@ -6,7 +6,7 @@ import bpy
 from ..bl.host import notices
 from ..bl.jobs import estimate_job
 from ..bl.project import method_settings, settings
-from ..bl.scene import problems
+from ..bl.scene import live, problems
 from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, right_label, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
@@ -27,8 +27,8 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
             row.prop(group, "live", toggle=True, icon="RECOVER_LAST")
-            if group.is_outdated and not group.live:
-                layout.label(text="Changed since it was built", icon="ERROR")
+            if group.is_outdated and not live.is_working():
+                layout.label(text="Out of date: changed since it was built", icon="ERROR")
             _draw_missing(layout, group)
         else:
             hint(layout, "Add surfaces first; then the blocks between them are built here.")

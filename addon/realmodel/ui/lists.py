@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.project import library_rows, series_settings, units
+from ..bl.project import library_rows, results, series_settings, units
 from .panel import right_label
 
 
@@ -87,6 +87,6 @@ class REALMODEL_UL_results(YoungestOnTop, bpy.types.UIList):
 
     def draw_row(self, context, row, item):
         name, volume, share = result_columns(row)
-        name.label(text=item.name)
+        name.label(text=item.name, icon="UNLINKED" if results.is_missing(item) else "NONE")
         volume.label(text=units.volume_text(context.scene, item) if item.volume else "eroded")
         share.label(text=share_text(item))

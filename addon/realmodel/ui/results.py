@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl.project import compartments, units
+from ..bl.project import compartments, results, units
 from ..bl.scene import quality
 from .lists import result_columns
 from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label, wrapped
@@ -40,6 +40,8 @@ def _block_lines(scene, row):
     if not row.volume:
         yield "Eroded: nothing of it is left"
         return
+    if results.is_missing(row):
+        yield "Its object was deleted; Build makes it again"
     yield f"{units.full_volume_text(scene, row)}  ({row.share:.2f} %)"
     deviation = quality.volume_deviation(scene, row)
     if deviation is not None:

@@ -281,8 +281,8 @@ def undone():
 
 
 def evaluated(depsgraph):
-    """The names of the objects and shapes that Blender has evaluated with another shape or place. Cached data
-    of meshes are outdated then."""
+    """(whether it is an object, its name) of all that Blender has evaluated with another shape or place.
+    Cached data of meshes are outdated then."""
     names = set()
     for update in depsgraph.updates:
         item = update.id.original
@@ -290,13 +290,13 @@ def evaluated(depsgraph):
             drawing.forget({item.name_full})
             coordinates.forget({item.name_full})
         if isinstance(item, _SHAPES) and (update.is_updated_geometry or update.is_updated_transform):
-            names.add(item.name_full)
+            names.add((isinstance(item, bpy.types.Object), item.name_full))
     return names
 
 
 def changed(scene, names):
-    """Objects of these names were changed."""
-    if cuts.is_on(scene) and scene.realmodel.view.plane.name_full in names:
+    """What has these names, as of `evaluated`, was changed."""
+    if cuts.is_on(scene) and (True, scene.realmodel.view.plane.name_full) in names:
         cuts.touch(scene)
 
 

@@ -7,7 +7,7 @@ blocks that differ are transferred to Blender.
 
 import bpy
 
-from ...core import BuildFailed, build
+from ...core import BuildFailed, InputRefused, build
 from ...core.cells.assembly import build_stage
 from ...core.display import polygon_mesh
 from ..host import caches
@@ -135,8 +135,14 @@ def remember_stage(scene, stage, model, shapes):
 
 
 def _composed(scene):
-    depsgraph = viewports.updated_layer(scene).depsgraph
-    return project_settings.compose(scene, depsgraph, whole=False).project
+    """The project of the displayed model. Raises InputRefused where the settings are no longer those that it
+    was built from."""
+    composed = project_settings.compose(scene, viewports.updated_layer(scene).depsgraph, whole=False)
+    built_from = scene.realmodel.built_from
+    if built_from and built_from.split()[0] != composed.fingerprint.split()[0]:
+        what = "the model is out of date, and not in memory any more since the file was opened"
+        raise InputRefused(what, advice="press Build first")
+    return composed.project
 
 
 def _make_room():

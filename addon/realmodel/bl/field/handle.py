@@ -115,9 +115,10 @@ def follow(scene):
 
 
 def changed(scene, names):
-    """Objects of these names were changed: where the object was moved, its datum is too."""
+    """What has these names, as of `display.evaluated`, was changed: where the object was moved, its datum is
+    too."""
     item = item_of(scene) if scene.realmodel.view.datum else None
-    if item is not None and item.name_full in names:
+    if item is not None and (True, item.name_full) in names:
         take_place(scene)
 
 

@@ -2,6 +2,7 @@
 """Field data as bodies: contacts as points and dips as discs in the colors of their surfaces, what is
 switched off in gray, what does not fit in red."""
 
+import functools
 import sys
 
 import numpy as np
@@ -104,18 +105,24 @@ def _near_cut(scene, places):
 def _contacts(scene):
     """Points of surfaces, contacts that follow from logs, and observed places."""
     places, materials = [], []
-    of_block = _property_ids(scene)
+    material_of = _materials(scene)
     for group in data.groups(scene):
         if group.kind in data.DIPS:
             continue
         for number in range(min(len(group.places), _MOST)):
             name = str(group.names[number])
             is_used = bool(group.used[number])
-            material = colors.of_property(scene, of_block.get(name, 0)) if is_used else None
+            material = material_of(name) if is_used else None
             places.append(group.places[number])
             materials.append(material or colors.plain_material(*_OFF))
     kept, places = _near_cut(scene, np.array(places).reshape(-1, 3))
     _add_points(scene, CONTACTS, "Contacts", places, [materials[n] for n in kept.tolist()], _LARGER)
+
+
+def _materials(scene):
+    """A function that gives the material of a name as of `_property_ids`; each is looked for once."""
+    of_block = _property_ids(scene)
+    return functools.cache(lambda name: colors.of_property(scene, of_block.get(name, 0)))
 
 
 def _property_ids(scene):
@@ -142,7 +149,7 @@ def _add_points(scene, kind, name, places, materials, larger=1.0):
 
 def _dips(scene):
     places, normals, materials = [], [], []
-    of_block = _property_ids(scene)
+    material_of = _materials(scene)
     for group in data.groups(scene):
         if group.kind not in data.DIPS:
             continue
@@ -151,7 +158,7 @@ def _dips(scene):
         places.append(at)
         normals.append(group.normals[:_MOST])
         for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
-            own = colors.of_property(scene, of_block.get(name, 0))
+            own = material_of(name)
             upper = own if used else colors.plain_material(*_OFF)
             materials.append([upper, *[colors.dark()] * (marks.DISC_FACES - 1)])
     kept, places = _near_cut(scene, np.concatenate(places) if places else np.empty((0, 3)))

@@ -18,6 +18,10 @@ def call(function, *arguments):
         bpy.app.timers.register(_call_all, first_interval=0.0, persistent=True)
 
 
+def is_waiting():
+    return bool(_waiting)
+
+
 def _call_all():
     while _waiting:
         function = next(iter(_waiting))

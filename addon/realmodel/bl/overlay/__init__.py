@@ -5,6 +5,7 @@ Comes in: the displayed model and a view of it. Goes out: one drawing of the cor
 which `viewport` draws with the graphics card and `rendered` puts before a camera as an image.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -79,8 +80,10 @@ def _keys(scene):
     if not scene.realmodel.view.show_legend:
         return ()
     of_model = (colors.key, residuals.key, ensembles.key, fields.key) if len(scene.realmodel.results) else ()
-    found = (key(scene) for key in (*of_model, boreholes.key))
-    return tuple(key for key in found if key is not None)
+    found = [key(scene) for key in of_model]
+    if scene.realmodel.is_outdated:
+        found = [key and replace(key, title=f"{key.title}, out of date") for key in found]
+    return tuple(key for key in (*found, boreholes.key(scene)) if key is not None)
 
 
 def legend_shares(scene, size):

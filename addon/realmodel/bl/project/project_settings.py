@@ -15,6 +15,7 @@ import numpy as np
 from ...core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ...core.base.errors import naming
 from ...core.base.work import run
+from ...core.project.fingerprint import fingerprint
 from ...core.project.project import surface_item
 from ...core.results.automatic_library import with_library
 from ...core.settings.methods import CONTINUATION
@@ -25,7 +26,6 @@ from ..objects import built_models, exaggeration, shapes, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY
 from . import (
     borehole_picks,
-    fingerprint,
     library_rows,
     method_settings,
     names,
@@ -48,8 +48,8 @@ class Composed:
     """The project of a scene. read: by place (settings.row_at) the stamp of the file that is still to be
     read. origin_is_free: no object of the user determines the position of the model. has_origin: the origin
     was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
-    and are used as they are. files: by the id() of an entry that comes from a file what `fingerprint` takes in
-    its place. fingerprint: of the project."""
+    and are used as they are. files: of entries that come from a file, as `fingerprint` takes them.
+    fingerprint: of the project and the kind of its cells, with a space between."""
 
     project: Project
     origin: np.ndarray
@@ -142,14 +142,16 @@ def compose(scene, depsgraph, whole=True):
             _shape(source, composed, place, entry, row)
         (project.faults if place[0] == "fault" else project.bodies).append(entry)
     composed.origin_is_free = composed.origin_is_free and not composed.edited
-    composed.fingerprint = f"{fingerprint.of_project(project, composed.files)} {group.cells}"
+    composed.fingerprint = f"{fingerprint(project, composed.files)} {group.cells}"
     return composed
 
 
 def files(scene):
     """The files that a scene's model is made from."""
     paths = [row.region_file for row in scene.realmodel.rocks]
-    paths += [row.filepath for _, row in settings.interface_rows(scene) if row.source not in settings.OF_OBJECTS]
+    paths += [
+        row.filepath for _, row in settings.interface_rows(scene) if row.source not in settings.OF_OBJECTS
+    ]
     return [path for path in map(absolute, paths) if path is not None]
 
 

@@ -9,6 +9,7 @@ from ...core import RealModelError
 from ...core.project.region_rings import region_rings
 from ...core.readers import read_region
 from ...core.surfaces.planar_mesh import triangulate_rings
+from ..host import versions
 from ..objects import stored_arrays
 from . import project_settings, settings
 from .surface_statistics import plan_area
@@ -39,8 +40,7 @@ def _measure_all():
     for scene in bpy.data.scenes:
         for row in scene.realmodel.rocks:
             if row.region_area < 0.0 and scene.library is None:
-                layer = scene.view_layers[0]
-                measure(scene, row, layer.depsgraph)
+                measure(scene, row, versions.depsgraph(scene))
 
 
 def measure(scene, row, depsgraph):

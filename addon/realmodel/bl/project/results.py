@@ -15,6 +15,11 @@ def volume(row):
     return float(row.volume_exact) if row.volume_exact else float(row.volume)
 
 
+def is_missing(row):
+    """Whether the object of a block was deleted: while a row points to it, it lives on outside of scenes."""
+    return row.cells > 0 and (row.object is None or not row.object.users_scene)
+
+
 def slivers(model):
     """For each block of a model the number of its connected parts that have less than 0.1 % of its volume."""
     if all(block.components < 2 for block in model.blocks):

@@ -246,7 +246,8 @@ def _new(scene, stamp, name, coordinates, edges):
 
 
 def _collection(scene):
-    return next((c for c in scene.collection.children if KEY in c and c.library is None), None)
+    found = scene.collection.children_recursive  # it may have been moved
+    return next((c for c in found if KEY in c and c.library is None), None)
 
 
 def _remove(item):

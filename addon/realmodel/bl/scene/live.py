@@ -3,10 +3,12 @@
 
 A handler of Blender's dependency graph reports changed objects; the update callbacks of the settings report
 changed rows. A timer waits until nothing has changed for the length of the pause, builds in a thread, and
-updates the existing meshes. Whether a model is out of date is said by the fingerprint of what it was built
-from, compared with that of the settings, objects and files as they are now; without live updates, too. Of series whose surfaces are level sets of a field, it first builds a coarse one,
+updates the existing meshes. Of series whose surfaces are level sets of a field, it first builds a coarse one,
 which follows the hand, and once nothing changes any more the whole. It adds no undo step: undoing an edit is
 one more edit, and starts a rebuild.
+
+With live updates or without, a model is out of date where the fingerprint of what it was built from is not
+that of the settings, objects and files as they are now.
 """
 
 import time
@@ -80,13 +82,18 @@ def is_working():
     return _work.is_working()
 
 
+def is_checking():
+    """Whether it is still to be found out if a model is out of date."""
+    return _checks.is_working()
+
+
 def is_at_work():
     """Whether the changes that Blender reports now are the add-on's own."""
     return _at_work
 
 
 def changed(scene, edited):
-    """Blender has evaluated objects or shapes of these names with another shape or place."""
+    """Blender has evaluated what has these names, as of `display.evaluated`, with another shape or place."""
     group = scene.realmodel
     for rock in group.rocks:
         if rock.region is not None and _names(rock.region) & edited:
@@ -115,7 +122,8 @@ def _edited(scene, item):
 
 
 def _names(item):
-    return {item.name_full, item.data.name_full} if item.data is not None else {item.name_full}
+    own = {(True, item.name_full)}
+    return own | {(False, item.data.name_full)} if item.data is not None else own
 
 
 def undone():
