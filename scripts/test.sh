@@ -9,8 +9,9 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff types shellcheck site native core blender gui (a window under Xvfb) bpy package
-#                   asan builds; and three that are not run unless asked for: tidy tsan odr (check_odr.sh). Asked for
+#                   format ruff types shellcheck site native core blender gui (a window under Xvfb) walk (random
+#                   steps in it, random_walk.sh) bpy package asan builds; and three that are not run unless asked
+#                   for: tidy tsan odr (check_odr.sh). Asked for
 #                   alone, builds compares clang++'s optimised code too
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
@@ -18,15 +19,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff types shellcheck site native core blender gui bpy package asan builds)
+all_steps=(format ruff types shellcheck site native core blender gui walk bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff types shellcheck site native core blender gui bpy package) ;;
+        --quick) steps=(format ruff types shellcheck site native core blender gui walk bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | types | shellcheck | site | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
+                format | ruff | types | shellcheck | site | native | core | blender | gui | walk | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
@@ -127,7 +128,7 @@ end_of() { # NAME STATUS SECONDS: says how it ended, and counts it as failed if 
 }
 declare -A counted=(
     [native]=$logs/release.xml [asan]=$logs/asan.xml [tsan]=$logs/tsan.xml [core]=$logs/core.xml
-    [blender]=$logs/blender.log [gui]=$logs/gui.log [bpy]=$logs/bpy.log [package]=$logs/package.xml)
+    [blender]=$logs/blender.log [gui]=$logs/gui.log [walk]=$logs/walk.log [bpy]=$logs/bpy.log [package]=$logs/package.xml)
 
 skip() { # NAME WHY
     echo "==== $1"
@@ -153,7 +154,7 @@ install_more() { # what compiling does not need
     wants format shellcheck && groups+=(test)
     wants core && groups+=(solvers)
     wants blender package && groups+=(blender)
-    wants gui && groups+=(gui)
+    wants gui walk && groups+=(gui)
     wants bpy && groups+=(bpy)
     wants asan && groups+=(tsan)
     wants builds && groups+=(clang)
@@ -211,6 +212,8 @@ test_gui() {
         --enable-event-simulate --window-geometry 0 0 1280 800 -P tests/gui/run.py
 }
 
+test_walk() { in_time 25m scripts/random_walk.sh; }
+
 test_bpy() { in_time 25m "$venv_bpy/bin/python" tests/blender/run.py; }
 
 test_package() { # zip and wheels of the modules that can be made here, and the sources, installed as a user does
@@ -221,7 +224,7 @@ test_package() { # zip and wheels of the modules that can be made here, and the 
 step install install
 ((ended[install] == 0)) || finish
 needed=()
-wants native core blender gui bpy && needed+=(build build)
+wants native core blender gui walk bpy && needed+=(build build)
 needed+=(install-more install_more environment install_environment)
 if wants bpy; then
     if "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
@@ -239,6 +242,7 @@ alone=()
 wants blender && alone+=(blender test_blender)
 ((${ended[bpy-install]-1} != 0)) || alone+=(bpy test_bpy)
 wants gui && alone+=(gui test_gui)
+wants walk && alone+=(walk test_walk)
 wants package && alone+=(package test_package)
 wants types && alone+=(types check_types)
 wants site && alone+=(site check_site)

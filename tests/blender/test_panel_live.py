@@ -139,6 +139,15 @@ class Live(PanelCase):
         bpy.context.view_layer.update()
         self.assertIsNone(live._work.look())
 
+    def test_what_is_evaluated_in_the_same_shape_is_not_built_again(self):
+        """Or colors that are written into an interface when a cut is displayed would never end."""
+        before = self.model.built_stamp
+        self.items[2].data.update()
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertEqual(self.model.built_stamp, before)
+        self.assertFalse(self.model.is_outdated)
+
     def test_an_interpolated_interface_follows_its_settings_and_hands(self):
         ops.open_sample(sample="two_layers", build=False)
         self.model.live = True

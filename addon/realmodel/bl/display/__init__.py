@@ -87,7 +87,8 @@ def show_all(scene):
 
 
 def opened():
-    """A .blend was opened: updates the display, which may not have been complete when it was saved."""
+    """A .blend was opened, or a step undone: updates the display, which may not have been complete when it
+    was saved."""
     for scene in bpy.data.scenes:
         group = scene.realmodel
         different = {
@@ -271,6 +272,7 @@ def render_ends(scene):
 
 def undone():
     """After undo and redo: the objects are those of another state."""
+    opened()
     for scene in bpy.data.scenes:
         if scene.library is not None:
             continue

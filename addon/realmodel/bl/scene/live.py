@@ -222,6 +222,11 @@ def _begin(name, _changed_at):
     except Exception as error:
         _tell(scene, error)
         return None
+    group = scene.realmodel
+    if len(group.results) and not group.is_coarse and group.built_from == job.composed.fingerprint:
+        _tell(None, None)
+        _checks.touch(name)
+        return None  # it is what is displayed: colors were written, or an edit was undone
     job.start(is_short=not refines and measured.get(name, 0.0) < _SHORT_SECONDS)
     return job
 
