@@ -68,18 +68,21 @@ class RealModelProperty(bpy.types.PropertyGroup):
     )
     has_color: BoolProperty(options={"HIDDEN"})
     rock: StringProperty(
-        name="Lithology", description="Rock type, such as sandstone", update=changes.property_look
+        name="Lithology", description="Rock type, such as sandstone", update=changes.property_rock
     )
-    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.coloring)
-    structure: StringProperty(name="Structure", description="Bedding, texture, grain size")
+    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.setting)
+    structure: StringProperty(
+        name="Structure", description="Bedding, texture, grain size", update=changes.setting
+    )
     density: FloatProperty(
         name="Density",
         description="Density in any unit, such as kg/m³; 0: unknown",
         min=0.0,
         precision=1,
+        update=changes.setting,
         options=set(),
     )
-    description: StringProperty(name="Description", description="Further notes")
+    description: StringProperty(name="Description", description="Further notes", update=changes.setting)
     look: EnumProperty(
         name="Look",
         description="How the rock looks in rendered pictures",

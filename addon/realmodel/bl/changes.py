@@ -37,7 +37,6 @@ def _unless_filling(consequence):
 
 
 setting = _unless_filling(live.touch)  # of settings that the model depends on
-coloring = _unless_filling(display.colors_changed)
 view = _unless_filling(display.mode_changed)  # of settings of the display
 residuals = _unless_filling(display.residuals_changed)
 field_data = _unless_filling(display.field_changed)
@@ -239,8 +238,14 @@ def property_name(row, _context):
         live.touch(row.id_data)
 
 
+def property_rock(row, context):
+    """The lithology of a property was changed, which may decide its look."""
+    property_look(row, context)
+    setting(row, context)
+
+
 def property_look(row, _context):
-    """The look of a property, its lithology where that decides the look, or its texture was changed."""
+    """The look of a property or its texture was changed."""
     if not settings.is_filling():
         looks.follow(row.id_data, [row])
         weathering.follow(row.id_data)
