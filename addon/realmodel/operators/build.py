@@ -39,6 +39,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None and live.check(scene):
             self.report({"WARNING"}, "The model is out of date: what it is made from was changed meanwhile")
+            live.touch(scene)  # Auto builds again
         has_picture = False
         if self._is_first and scene is not None:
             viewports.frame(scene, viewports.still_open(self._spaces))
