@@ -12,13 +12,24 @@ from ..base.sheet import Sheet
 from .sides import RockFaults
 
 
+@dataclass(frozen=True)
+class Steps:
+    """Of a surface whose compartments differ by steps alone: heights (F,), by how much it lies higher above
+    each fault than below it, 0 where no step is found, NaN where its data do not show one; deviations: (F,)
+    their standard deviations."""
+
+    heights: np.ndarray
+    deviations: np.ndarray
+
+
 @dataclass
 class RockStructure:
     """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there; names: of the
     compartments. sheets: for each compartment one triangulation of each surface, the same object where
     compartments share it; None until it is made. warnings: (compartments, warning); reported if one of the
     compartments holds rock. few: the surfaces of which no compartment has enough points. points: of
-    interpolated surfaces (P, F) int8, the sides of their points."""
+    interpolated surfaces (P, F) int8, the sides of their points. steps: of surfaces that are fitted on both
+    sides of faults together; None until they are."""
 
     faults: RockFaults
     compartments: np.ndarray
@@ -27,6 +38,7 @@ class RockStructure:
     warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
     few: list[int] = field(default_factory=list)
     points: dict[int, np.ndarray] = field(default_factory=dict)
+    steps: dict[int, Steps] | None = None
 
     def sheet(self, compartment: int, surface: int) -> Sheet:
         """The sheet of a surface in a compartment, once it is made."""

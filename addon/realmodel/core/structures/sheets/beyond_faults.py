@@ -5,12 +5,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.algebra import are_among
 from ...base.work import native_module, on_threads
-from ...heights.mis_ties import LARGEST_SHARE, heights_apart
+from ...heights.mis_ties import LARGEST_SHARE, contradictions, heights_apart
 
 _LOOKED_AT = 16  # nearest points, whose sides are considered
 _COUNTED = 4  # points of each side, whose mean height is the expected one
 _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
+
+
+def contradicting(points: np.ndarray, rows: np.ndarray, contacts: np.ndarray) -> np.ndarray:
+    """(P,) bool: of points (P, 3) those that others at their place in plan contradict; none where these are
+    all. Of a hole that passes a fault, contacts (C, 3) that follow from observations are on their sides."""
+    found = beyond_faults(points, rows) & ~are_among(points, contacts)
+    left = np.flatnonzero(~found)
+    found[left[contradictions(np.column_stack([points, rows])[left])]] = True
+    return found & ~found.all()
 
 
 def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:

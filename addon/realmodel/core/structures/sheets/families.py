@@ -45,13 +45,17 @@ class Family:
 
 
 def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:
-    """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`.
+    """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`. A fault of
+    which no throw is found parts nothing.
 
     Where a fault that dies out ends at another one that does, it is there beyond that, too: the way round its
     tips leads there, so data are not parted.
     """
     faults = structure.faults
     active, dies_out = faults.active(number), np.array(faults.dies_out, bool)
+    steps = (structure.steps or {}).get(number)
+    if steps is not None:
+        active &= steps.heights != 0.0
     rows = np.where(active, sides, 0)
     keys = np.where(dies_out & (rows != 0), DIES_OUT, rows)
     for branch in np.flatnonzero(active & dies_out):

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.algebra import are_among
+from ...base.algebra import are_among, dot
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.sheet import Sheet
 from ...base.work import Work
 from ...heights import Interpolation
-from ...heights.mis_ties import contradictions, mean_heights
+from ...heights.mis_ties import mean_heights
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
 from ...project.project import Surface
@@ -28,7 +28,7 @@ from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ...surfaces.wrong_sides import heights_at
-from .beyond_faults import beyond_faults
+from .beyond_faults import contradicting
 from .borrowed import as_at_fault, sheet_runs_away
 from .families import Family, keys_of
 from .few_points import are_few, of_residuals
@@ -60,6 +60,8 @@ class InterpolatedSurface:
         if warning is not None:
             structure.warnings.append((list(range(len(structure.compartments))), warning))
         self._leave_out_contradictions()
+        self.steps = (structure.steps or {}).get(number)
+        self._warn_of_no_throws()
         self.counts = self._that_count()
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
         self.dips, self.dip_sides = sided_dips(work, self.surface, entry)
@@ -71,15 +73,11 @@ class InterpolatedSurface:
         self.most: tuple[int, Interpolation | None] = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
-        """Leaves out points that others at their place in plan contradict, with a warning. Of a hole that
-        passes a fault, contacts that follow from observations are on their sides."""
+        """Leaves out points that others at their place in plan contradict, with a warning."""
         faults = self.entry.divided().faults
         rows = np.where(faults.active(self.number), self.placed.sides, 0)
-        beyond = beyond_faults(self.points, rows) & ~are_among(self.points, self.surface.contact_array())
-        wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
-        left_out = beyond.copy()
-        left_out[np.flatnonzero(~beyond)[wrong]] = True
-        if left_out.all() or not left_out.any():
+        left_out = contradicting(self.points, rows, self.surface.contact_array())
+        if not left_out.any():
             return
         first = self.points[np.flatnonzero(left_out)[0]]
         text = (
@@ -91,6 +89,19 @@ class InterpolatedSurface:
         every = list(range(len(self.entry.divided().compartments)))
         self.entry.divided().warnings.append((every, warning))
         self.points, self.placed = self.points[~left_out], self.placed.some(~left_out)
+
+    def _warn_of_no_throws(self) -> None:
+        """Warns of the faults of which no throw is found."""
+        structure = self.entry.divided()
+        for fault in [] if self.steps is None else np.flatnonzero(self.steps.heights == 0.0).tolist():
+            below, above = ((self.placed.sides[:, fault] == side).sum() for side in (-1, 1))
+            text = (
+                f"no throw of fault '{structure.faults.names[fault]}' is found, from {below} contacts below "
+                f"and {above} above it: it is smaller than its standard deviation, "
+                f"{self.steps.deviations[fault]:.3g}; the surface goes on across the fault"
+            )
+            warning = BuildWarning(text, "throw", self.entry.rock.name, self.surface.name)
+            structure.warnings.append((list(range(len(structure.compartments))), warning))
 
     def _that_count(self) -> np.ndarray:
         """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
@@ -118,8 +129,8 @@ class InterpolatedSurface:
         if not self.surface.needs_points:
             return False
         points = self.points[self._certain(family)]
-        if not len(points):
-            return True
+        if not len(points) or self.steps is not None:
+            return not len(points)
         dips = self._own_dips(family)
         shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
         shown = np.concatenate([shown, *self._beside_points(family)])
@@ -206,6 +217,8 @@ class InterpolatedSurface:
         """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
         points are few or none."""
         own = self.own(family) if trends is None else self._certain(family)
+        if self.steps is not None and trends is None:
+            own = np.ones(len(own), bool)
         if trends is not None and not own.any():
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
@@ -349,8 +362,19 @@ class InterpolatedSurface:
         """(P, 3) some points as they count: the mean of heights on several sides of faults that die out, at
         one place; and others beyond the faults at which the sheet ends, for a method that needs them. lips:
         as of _interpolated; None: without those beyond."""
+        if self.steps is not None and own.all():
+            return self._restored(family)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
         return points if lips is None else np.concatenate([points, self._beyond(family, own, lips)])
+
+    def _restored(self, family: Family) -> np.ndarray:
+        """(P, 3) the points of all families as high as they would lie in one, but none of others at the place
+        of its own."""
+        assert self.steps is not None
+        steps, points = np.nan_to_num(self.steps.heights), self.points.copy()
+        points[:, 2] += dot(np.array(family.key) - self.keys, steps) / 2.0
+        own = self.own(family)
+        return points[own | ~are_among(points[:, :2], points[own, :2])]
 
     def _from_points(
         self,
@@ -497,7 +521,8 @@ class InterpolatedSurface:
         )
         dies_out = faults.active(self.number) & np.array(faults.dies_out, bool)
         has_data = self.bounds is not None or len(self.surface.tied_points) > 0
-        return self.surface.ties and is_free and has_data and bool(dies_out.any())
+        is_divided = self.steps is not None or bool(dies_out.any())
+        return self.surface.ties and is_free and has_data and is_divided
 
     def tied(self, sheets: list[Sheet]) -> tuple[list[Sheet], list[BuildWarning]]:
         """Its different sheets, tied to the data in their compartments; the same objects where they were. And

@@ -21,6 +21,7 @@ from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
 from .compartment_sheets import CompartmentSheets, make_borrowed, named
+from .fitted_throws import fit_throws
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
 from .throws import Throws
@@ -54,20 +55,16 @@ def make_sheets(
     )
     steps = np.linspace(0.0, 1.0, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
-    def begin(part: Work, number: int) -> list[CompartmentSheets]:
-        """The sheets of a surface that are not all made yet."""
+    def begin(part: Work, number: int) -> CompartmentSheets:
         kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
         with named(rock, number):
             sheets = CompartmentSheets(entry, number, kind(part, entry, number))
         sheets.make_own()
-        if sheets.waiting:
-            return [sheets]
-        if sheets.few:
-            few.append(number)
-        finish(sheets)
-        return []
+        if not sheets.waiting:
+            finish(sheets)
+        return sheets
 
-    def begin_ready(part: Work, number: int) -> list[CompartmentSheets]:
+    def begin_ready(part: Work, number: int) -> CompartmentSheets:
         with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
             return begin(part, number)
 
@@ -77,18 +74,21 @@ def make_sheets(
         _keep(entry, sheets.number, keep)
 
     few = entry.divided().few
-    # ready meshes need no others
     with work.phase(0.0, steps[0], "interpolating surfaces"):
-        unfinished = list(itertools.chain(*work.each(begin_ready, ready)))
+        if entry.divided().steps is None:
+            entry.divided().steps = fit_throws(work, entry)
+        started = work.each(begin_ready, ready)  # ready meshes need no others
     for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
-            unfinished += begin(work, number)
+            started.append(begin(work, number))
+    few += [each.number for each in started if each.few and not each.waiting]
+    unfinished = [each for each in started if each.waiting]
     if unfinished:
         with work.phase(1.0, 1.0, "interpolating surfaces"):
             begun = {*ready, *interpolated}
             for number in itertools.chain(*reversed(_by_kind(rock, None))):
                 if number not in begun and not entry.divided().is_made(number):
-                    unfinished += begin(work, number)
+                    unfinished.append(begin(work, number))
             for sheets in unfinished:
                 sheets.surface.work = work
             make_borrowed(unfinished, Throws(work, with_levels(work, entry), few), finish)
