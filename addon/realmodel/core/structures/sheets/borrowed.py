@@ -15,6 +15,7 @@ from ...surfaces.wrong_sides import Sheet
 from .tips import trace_of
 
 _FAR = 2.0  # ranges of its heights: a sheet that goes so far beyond them in another compartment is no guide
+_ROUNDING = 1e-9  # of heights: level sheets differ by so much
 _AT_ONCE = 1 << 20  # pairs of a place and a part of a line
 
 
@@ -65,7 +66,8 @@ def sheet_runs_away(sheet: Sheet, known: np.ndarray, within: Callable[[np.ndarra
         return False
     low, high = vertices[known, 2].min(), vertices[known, 2].max()
     lowest, highest = vertices[inside, 2].min(), vertices[inside, 2].max()
-    return bool(max(low - lowest, highest - high) > _FAR * (high - low))
+    rounding = _ROUNDING * max(abs(low), abs(high))
+    return bool(max(low - lowest, highest - high) > _FAR * (high - low) + rounding)
 
 
 def between_faults(

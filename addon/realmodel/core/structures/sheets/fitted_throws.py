@@ -36,6 +36,8 @@ _NUGGETS = (1e-4, 1e-2, 0.1, 0.5, 1.0)  # of its sill
 _SHARES = (0.0, 0.1, 0.5, 1.0)  # of it that is a surface's own, or a compartment's
 _INDEPENDENT = 1e-6  # of the length of a column: what is left of it beside the others
 _ROUNDING = 1e-6  # of the range of heights: smaller errors are taken to be so large
+_LEAST = 1e-100  # the least variance of an error where heights are equal
+_LIMIT = 1000  # of an exponent
 _BETTER = 1.0 + 1e-6  # times: so much the square of a likelihood has to be greater
 _SIGNIFICANT = 15.0  # the same, 95 % (a ratio of likelihoods with one more parameter, at its bound)
 _PLAIN = tuple(product(_RANGES, _NUGGETS))
@@ -77,7 +79,7 @@ class _Data:
         """(P, Q) columns, as far as they are independent: a constant of each surface, steps, and a slope of
         each surface; and which of the steps are among them."""
         own = [(self.surface == each).astype(np.float64) for each in np.unique(self.surface)]
-        slopes = [each * self.points[:, axis] for each in own for axis in (0, 1)]
+        slopes = [self.points[:, 0], self.points[:, 1]]
         columns: list[np.ndarray] = []
         units: list[np.ndarray] = []
         kept = []
@@ -111,7 +113,7 @@ class _Data:
     @property
     def least(self) -> float:
         """The least variance of an error."""
-        return float((_ROUNDING * np.ptp(self.points[:, 2])) ** 2)
+        return max(float((_ROUNDING * np.ptp(self.points[:, 2])) ** 2), _LEAST)
 
     def likeliest(self, columns: np.ndarray) -> _Field:
         """Of fields on a grid. One with a share of compartments has to be significantly likelier."""
@@ -130,9 +132,8 @@ class _Data:
     def _first_of_likeliest(
         self, columns: np.ndarray, fields: Sequence[_Field], better: float = _BETTER
     ) -> _Field:
-        """The first field than which none is so many times likelier: the square of a likelihood is the inverse
-        of the product of the errors' variance, to the power of their degrees of freedom, with two
-        determinants."""
+        """The first field than which none is so many times likelier. The square of a likelihood is 1 over
+        two determinants and the errors' variance to the power of their degrees of freedom."""
         size, count = columns.shape
         systems = self.systems(columns, fields)
         value, power = _eliminate(systems, size + count)
@@ -142,7 +143,7 @@ class _Data:
             power = power + more
         best = 0
         for number in range(1, len(fields)):
-            if np.ldexp(value[number], power[number] - power[best]) * better < value[best]:
+            if np.ldexp(value[number], min(power[number] - power[best], _LIMIT)) * better < value[best]:
                 best = number
         return fields[best]
 
@@ -219,14 +220,14 @@ def _fitted(data: _Data, numbers: list[int], faults: int) -> tuple[np.ndarray, n
     unknown = [together[each] for each in kept]
     if not unknown or len(shared) - shared.shape[1] < _FREE:
         return steps, deviations
+    field = data.likeliest(shared)
     apart, of_parts = model(parts)
     if len(of_parts) > len(kept) and len(apart) - apart.shape[1] >= _FREE:
-        field = data.likeliest(apart)
-        free, bound = data.fit(apart, field), data.fit(shared, field)
-        expected = max(free.square / free.free, data.least) * (bound.free - free.free)
+        common = field._replace(of_block=0.0)
+        bound, free = data.fit(shared, common), data.fit(apart, common)
+        expected = max(bound.square / bound.free, data.least) * (bound.free - free.free)
         if bound.square - free.square > _ALIKE * expected:
-            unknown, shared = [parts[each] for each in of_parts], apart
-    field = data.likeliest(shared)
+            unknown, field = [parts[each] for each in of_parts], data.likeliest(apart)
     if field.of_block > 0.0:
         return steps, deviations
     while unknown:
