@@ -15,7 +15,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.triangles import edge_lengths
-from ..base.work import Work
+from ..base.work import Work, native_module
 from ..project.project import Rock
 from ..project.structure_entries import Fault
 from ..settings.rules import RULES
@@ -27,7 +27,7 @@ from ..surfaces.wrong_sides import heights_at
 from .parts.part_models import level
 from .parts.parts import Structures
 from .parts.refusals import ends_inside
-from .shapes.branches import require_meeting
+from .shapes.branches import nearest_to_meet, require_meeting
 from .shapes.continued import Border, border_of, connected, continued
 from .shapes.fitted import plane_axes
 
@@ -91,8 +91,8 @@ def close_gaps(
     has_sheets: bool = False,
 ) -> tuple[list[Fault], list[BuildWarning]]:
     """The faults of some structures, with arrays, continued where their borders end short of the wall of a
-    rock mass (RockInput), of a fault at which they end, or, where the sheets are known, of the youngest
-    surface that they displace and of those that cut it; and a warning for each such end.
+    rock mass (RockInput), of its base, of a fault at which they end, or, where the sheets are known, of the
+    youngest surface that they displace and of those that cut it; and a warning for each such end.
 
     box: around all rock, (2, 3). widths: as of gap_widths. Raises InputRefused for a fault whose border is
     inside the rock, as far as that is certain.
@@ -114,6 +114,11 @@ def close_gaps(
         for each in around:
             faults[number], more = each.closed(faults[number], ends, box, has_sheets)
             warnings += more
+        for name in faults[number].ends_at if around else ():
+            other = number_of[name]
+            faults[other], more = around[0].with_tip_at(faults[number], faults[other])
+            warnings += more
+        ends = [faults[number_of[name]] for name in faults[number].ends_at]
         require_meeting(faults[number], ends)
         for each in around:
             each.require_end(faults[number], ends, box, has_sheets)
@@ -122,11 +127,13 @@ def close_gaps(
 
 def tops_of_faults(structures: Structures, number: int, rock: Rock) -> set[int]:
     """Of one rock mass the surfaces whose sheets are made before close_gaps looks at them: the youngest ones
-    that faults displace, those that cut them later, what these need, and ready meshes."""
+    that faults displace, those that cut them later, the oldest one where it is the base, what these need, and
+    ready meshes."""
     youngest = [displaced[number] for displaced in structures.displaced if number in displaced]
     cutting = [n for n, surface in enumerate(rock.surfaces) if n >= min(youngest, default=n + 1)]
     found = {n for n in cutting if n in youngest or RULES[rock.surfaces[n].rule].cuts}
     found |= {n for n, surface in enumerate(rock.surfaces) if not surface.interpolated}
+    found |= {0} if rock.base_elevation is None and youngest else set()
     waiting = list(found)
     while waiting:
         more = set(needed_surfaces(rock, waiting.pop())) - found
@@ -173,6 +180,28 @@ class _Around:
             fault, conditions, samples
         )
 
+    def with_tip_at(self, branch: Fault, other: Fault) -> tuple[Fault, list[BuildWarning]]:
+        """Another fault at whose border this one all but ends, continued to it, and a warning."""
+        if nearest_to_meet(branch, other) is None:
+            return other, []
+        border, (vertices, triangles) = _outer_border(other), branch.triangulation()
+        points, edge, _ = _spread(other.triangulation()[0], border, self.width)
+        nearest = native_module().nearest_triangles
+        _, away = self.work.native(nearest, vertices[triangles], points)
+        chosen = np.isin(np.arange(len(border.edges)), edge[away < self.width])
+        try:
+            longer = continued(*other.triangulation(), border.some(chosen), self.width)
+        except InputRefused:
+            return other, []
+        longer = replace(other, vertices=longer.vertices, triangles=longer.triangles)
+        if nearest_to_meet(branch, longer) is not None:
+            return other, []
+        text = (
+            f"{other.item}: its border ends {away.min():.4g} before {branch.item}, which ends at it, near "
+            f"{place_text(points[int(away.argmin())])}: it is continued to it"
+        )
+        return longer, [BuildWarning(text, "fault", self.entry.rock.name)]
+
     def _looked_at(
         self, fault: Fault, border: Border, conditions: _Conditions, box: np.ndarray, ends: list[Fault]
     ) -> _Samples:
@@ -200,7 +229,18 @@ class _Around:
 
     def _conditions(self, fault: Fault, ends: list[Fault], has_sheets: bool) -> _Conditions:
         found = self._walls() | {other.item: self._side_of(fault, other) for other in ends}
+        found |= self._base(has_sheets)
         return found | self._tops() if has_sheets else found
+
+    def _base(self, has_sheets: bool) -> _Conditions:
+        """Whether points are above the base of the rock mass; without one above its oldest surface, once that
+        is made."""
+        base = self.entry.rock.base_elevation
+        if base is not None:
+            return {"the base": lambda points: points[:, 2] > base}
+        if has_sheets and self.entry.divided().is_made(0):
+            return {"the base": lambda points: ~(points[:, 2] < self.sheets_at(0, points)[0])}
+        return {}
 
     def _walls(self) -> _Conditions:
         """Whether points are over the rock in plan, as far as the displaced surfaces reach."""

@@ -17,23 +17,28 @@ _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault 
 def require_meeting(fault: Fault, ends: list[Fault]) -> None:
     """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
     for other in ends:
-        both = np.concatenate([fault.triangulation()[0], other.triangulation()[0]])
-        _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
+        found = nearest_to_meet(fault, other)
+        if found is not None:
+            raise _does_not_meet(fault, other, *found)
 
 
-def _require_meeting(branch: Fault, other: Fault, near: float) -> None:
+def nearest_to_meet(branch: Fault, other: Fault) -> tuple[np.ndarray, float] | None:
+    """Where the border of a fault comes nearest to another one, and how near; None where they meet."""
     (vertices, triangles), (of_other, others) = branch.triangulation(), other.triangulation()
     if meet(vertices[triangles], of_other[others]).any():
-        return
+        return None
     border = np.unique(open_edges(vertices, triangles))
     places = vertices[border] if len(border) else vertices
     _, away = native_module().nearest_triangles(of_other[others], places, execution=on_threads(1))
-    if away.min() <= near:
-        return
-    place = places[int(away.argmin())]
+    nearest = int(away.argmin())
+    near = _TOUCHES * float(norm(np.ptp(np.concatenate([vertices, of_other]), axis=0)))
+    return None if away[nearest] <= near else (places[nearest], float(away[nearest]))
+
+
+def _does_not_meet(branch: Fault, other: Fault, place: np.ndarray, away: float) -> InputRefused:
     source = branch.source
-    raise InputRefused(
-        f"it ends at fault '{other.name}', but does not meet it: the nearest it comes is {away.min():.6g} at "
+    return InputRefused(
+        f"it ends at fault '{other.name}', but does not meet it: the nearest it comes is {away:.6g} at "
         f"{place_text(place)}",
         file=source.document.file if source else branch.shape_file,
         line=source.line("ends_at") if source else None,

@@ -270,11 +270,12 @@ def _takes_part(entry: RockInput, number: int) -> bool:
 
 
 def _parted(work: Work, entry: RockInput, number: int) -> tuple[np.ndarray, np.ndarray] | None:
-    """The points (P, 3) of a surface, and the keys (P, F) of their families; None where these are one."""
+    """The points (P, 3) of a surface whose sides are known by their places, and the keys (P, F) of their
+    families; None where these are one."""
     points = entry.rock.surfaces[number].point_array()
     structure, contacts = entry.divided(), entry.rock.surfaces[number].contact_array()
-    sides = point_sides(work, points, entry, number).sides
+    sides, moved, _ = point_sides(work, points, entry, number)
     rows = np.where(structure.faults.active(number), sides, 0)
-    kept = ~contradicting(points, rows, contacts)
+    kept = ~(contradicting(points, rows, contacts) | moved.any(axis=1))
     keys = keys_of(structure, number, sides[kept])
     return (points[kept], keys) if len(np.unique(keys, axis=0)) > 1 else None
