@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.algebra import are_among, dot
 from ...base.build_warning import BuildWarning
-from ...base.errors import place_text
+from ...base.errors import number_list, place_text
 from ...base.sheet import Sheet
 from ...base.work import Work
 from ...heights import Interpolation
@@ -103,6 +103,22 @@ class InterpolatedSurface:
             warning = BuildWarning(text, "throw", self.entry.rock.name, self.surface.name)
             structure.warnings.append((list(range(len(structure.compartments))), warning))
 
+    def _warn_of_no_points(self, family: Family) -> None:
+        """Warns that points of other families alone say how a surface lies in one."""
+        assert self.steps is not None
+        structure = self.entry.divided()
+        here, names = structure.names[next(iter(family.members))], structure.faults.names
+        throws = [
+            f"{-self.steps.heights[fault]:.4g} of fault '{names[fault]}'"
+            for fault in np.flatnonzero(family.key).tolist()
+        ]
+        text = (
+            f"it has no points in compartment '{here}': there it goes on from its others, by throws that "
+            f"these show, {number_list(throws)}"
+        )
+        warning = BuildWarning(text, "compartment", self.entry.rock.name, self.surface.name)
+        structure.warnings.append((list(family.members), warning))
+
     def _that_count(self) -> np.ndarray:
         """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
         if METHODS[self.surface.method_options()[0]].on_mesh:
@@ -122,7 +138,12 @@ class InterpolatedSurface:
         return int(self._certain(family).sum())
 
     def has_data(self, family: Family) -> bool:
-        return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
+        has_own = bool((self.own(family) & self.counts).any())
+        return not self.surface.needs_points or has_own or self._is_fitted(family)
+
+    def _is_fitted(self, family: Family) -> bool:
+        """Whether the throws of all faults beside a family are fitted: points of others count for it."""
+        return self.steps is not None and bool(np.isfinite(self.steps.heights[np.abs(family.key) == 1]).all())
 
     def has_few_data(self, family: Family) -> bool:
         """Whether its points do not show its shape there."""
@@ -130,7 +151,7 @@ class InterpolatedSurface:
             return False
         points = self.points[self._certain(family)]
         if not len(points) or self.steps is not None:
-            return not len(points)
+            return not (len(points) or self._is_fitted(family))
         dips = self._own_dips(family)
         shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
         shown = np.concatenate([shown, *self._beside_points(family)])
@@ -218,6 +239,8 @@ class InterpolatedSurface:
         points are few or none."""
         own = self.own(family) if trends is None else self._certain(family)
         if self.steps is not None and trends is None:
+            if not own.any():
+                self._warn_of_no_points(family)
             own = np.ones(len(own), bool)
         if trends is not None and not own.any():
             return self._within_bounds(family, trends)
