@@ -81,7 +81,10 @@ class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
             _row(column, "Throw", "Heave", name=f"Mean ({unit})")
             for name, surface, *values in found["faults"]:
                 if name == fault:
-                    _row(column, *(units.number_text(factor * value) for value in values), name=surface)
+                    texts = [
+                        "None found" if each is None else units.number_text(factor * each) for each in values
+                    ]
+                    _row(column, *texts, name=surface)
 
 
 def _row(column, *values, name=""):

@@ -12,7 +12,7 @@ def of_model(model):
     """The JSON text that `scene.realmodel.view.compartments` keeps of a model; "" for one without structures.
 
     names: of the compartments. volumes: {block: [its volume in each compartment]}. centers: (x, y, z) of each
-    in model coordinates. faults: [[fault, surface, mean throw, mean heave]].
+    in model coordinates. faults: [[fault, surface, mean throw, None where none is found, mean heave]].
     """
     if not model.structures.is_divided:
         return ""
@@ -26,7 +26,8 @@ def of_model(model):
         },
         "centers": [_center(model, number) for number in range(count)],
         "faults": [
-            [each.fault, each.surface, each.mean_throw, each.mean_heave] for each in displacements(model)
+            [each.fault, each.surface, each.mean_throw if each.is_found else None, each.mean_heave]
+            for each in displacements(model)
         ],
     }
     return json.dumps(kept)

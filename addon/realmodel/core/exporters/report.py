@@ -199,8 +199,8 @@ def _compartments(model: ModelData) -> list[dict]:
 
 
 def _faults(model: ModelData) -> list[dict]:
-    """Throw and heave along each fault: their means, and the largest values; and the length of the cutoff
-    lines below it along which the surface is on both sides."""
+    """Throw and heave along each fault: their means, and the largest values; whether a throw is found; and
+    the length of the cutoff lines below it along which the surface is on both sides."""
     found = displacements(model)
     return [
         {
@@ -210,6 +210,8 @@ def _faults(model: ModelData) -> list[dict]:
                     "rock": each.rock,
                     "surface": each.surface,
                     "throw": _mean_and_largest(each.throw, each.mean_throw),
+                    "throw_deviation": each.deviation,
+                    "throw_found": each.is_found,
                     "heave": _mean_and_largest(each.heave, each.mean_heave),
                     "length": float(each.length.sum()),
                 }

@@ -10,6 +10,7 @@ import numpy as np
 from ..base.work import Work, run
 from ..cells.model_data import ModelData
 from ..structures.sheets.displacement import Measured
+from ..surfaces.rock_structure import RockStructure
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,9 @@ class Displacement:
     and heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault,
     negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
     measured across the fault: in the vertical plane through the place and the direction in which the fault
-    dips there. length: (N,) of the part of the cutoff line that each place is the middle of."""
+    dips there. length: (N,) of the part of the cutoff line that each place is the middle of. deviation: the
+    standard deviation of the throw that contacts on both sides show together, None where each side was made
+    by itself. is_found: no where the throw is smaller than that, and the surface goes on across the fault."""
 
     fault: str
     rock: str
@@ -27,6 +30,8 @@ class Displacement:
     throw: np.ndarray
     heave: np.ndarray
     length: np.ndarray
+    deviation: float | None = None
+    is_found: bool = True
 
     @property
     def mean_throw(self) -> float:
@@ -37,6 +42,14 @@ class Displacement:
     def mean_heave(self) -> float:
         """Along the cutoff line."""
         return _mean(self.heave, self.length)
+
+
+def _fitted(structure: RockStructure, surface: int, fault: int) -> tuple[float | None, bool]:
+    """deviation and is_found of a Displacement."""
+    steps = (structure.steps or {}).get(surface)
+    if steps is None or np.isnan(steps.heights[fault]):
+        return None, True
+    return float(steps.deviations[fault]), bool(steps.heights[fault] != 0.0)
 
 
 def _mean(values: np.ndarray, length: np.ndarray) -> float:
@@ -60,5 +73,6 @@ def _displacements(work: Work, model: ModelData) -> list[Displacement]:
                 measured = Measured(work, structure, at, k).everywhere()
                 if len(measured[0]):
                     name = entry.rock.surfaces[k].name
-                    found.append(Displacement(fault.name, entry.rock.name, name, *measured))
+                    fitted = _fitted(structure, k, at)
+                    found.append(Displacement(fault.name, entry.rock.name, name, *measured, *fitted))
     return found
