@@ -125,9 +125,8 @@ def test_turned_blocks_have_their_own_points():
     def height(x, y):
         return 200 + np.where(x > 500, -40 + 0.1 * (x - 500), 0.02 * y) + 3 * np.sin(y / 100)
 
-    model = build(
-        project([contacts(n, 25, lambda x, y: height(x, y) + 90 * n) for n in range(3)], [fault("F")])
-    )
+    given = [contacts(n, 25, height) + np.array([0, 0, 90 * n]) for n in range(3)]
+    model = build(project(given, [fault("F")]))
     assert all(entry["throw_deviation"] is None for entry in model_report(model)["faults"][0]["surfaces"])
 
 

@@ -190,10 +190,10 @@ class _Around:
         _, away = self.work.native(nearest, vertices[triangles], points)
         chosen = np.isin(np.arange(len(border.edges)), edge[away < self.width])
         try:
-            longer = continued(*other.triangulation(), border.some(chosen), self.width)
+            mesh = continued(*other.triangulation(), border.some(chosen), self.width)
         except InputRefused:
             return other, []
-        longer = replace(other, vertices=longer.vertices, triangles=longer.triangles)
+        longer = replace(other, vertices=mesh.vertices, triangles=mesh.triangles)
         if nearest_to_meet(branch, longer) is not None:
             return other, []
         text = (

@@ -93,7 +93,9 @@ class InterpolatedSurface:
     def _warn_of_no_throws(self) -> None:
         """Warns of the faults of which no throw is found."""
         structure = self.entry.divided()
-        for fault in [] if self.steps is None else np.flatnonzero(self.steps.heights == 0.0).tolist():
+        if self.steps is None:
+            return
+        for fault in np.flatnonzero(self.steps.heights == 0.0).tolist():
             below, above = ((self.placed.sides[:, fault] == side).sum() for side in (-1, 1))
             text = (
                 f"no throw of fault '{structure.faults.names[fault]}' is found, from {below} contacts below "
