@@ -34,6 +34,17 @@ def test_a_mesh_and_its_report(tmp_path):
         assert block["volume"] == pytest.approx(block["exact_volume"], rel=0.01)
 
 
+def test_two_files_of_one_mesh(tmp_path):
+    one, two = tmp_path / "mesh.msh", tmp_path / "mesh.vtu"
+    done = run("--mesh", one, "--mesh", two, "--mesh-edge", 8)
+    assert done.returncode == 0, done.stderr
+    assert f"{one}: " in done.stdout and f"{two}: " in done.stdout
+    assert one.is_file() and two.is_file()
+    done = run("--mesh", one, "--mesh", one)
+    assert done.returncode == 2
+    assert "two outputs have this name" in done.stderr
+
+
 def test_defaults_and_tetrahedra(tmp_path):
     done = run("--mesh", tmp_path / "mesh.foam", "--mesh-elements", "tetrahedra", "--mesh-layers", 2)
     assert done.returncode == 0, done.stderr

@@ -27,6 +27,10 @@ needs_tifffile = pytest.mark.skipif(tifffile is None, reason="addon/realmodel/ve
         HEAD.upper() + "nodata_value -9999\r\n1 2 3 4\r\n-9999\r\n6",
         "nrows 2\nncols 3\nyllcenter 205\nxllcenter 105\ndx 10\ndy 10\nnodata_value -9999\n1 2 3 4\n-9999 6",
         HEAD.replace("100", "100,0") + "NODATA_value -9999\n1,0 2 3\n4 -9999 6\n",
+        HEAD + "NODATA_value nan\n1 2 3\n4 nan 6\n",  # by GDAL, of a raster without heights there
+        HEAD + "1 2 3\n4 -NaN 6\n",
+        HEAD + "NODATA_value Null\n1 2 3\n4 null 6\n",
+        HEAD + "NODATA_value void\n1 2 3\n4 void 6\n",
     ],
 )
 def test_ascii_grids(write, text):
@@ -35,11 +39,26 @@ def test_ascii_grids(write, text):
     assert warnings == []
 
 
+def test_an_ascii_grid_that_begins_without_a_height(write):
+    points, _ = read_point_file(PointFile(write("g.asc", HEAD + "NODATA_value nan\nnan nan 3\n4 nan 6\n")))
+    assert points[:, 2].tolist() == [3, 4, 6]
+
+
+def test_surfer_and_zmap_grids_with_nan(write):
+    surfer = "DSAA\n3 2\n105 125\n205 215\nnan nan\n4 NAN 6\n1 2 3\n"
+    zmap = "! Created by {}\n@g, GRID, 2\n 20, nan, , 7, 1\n 2, 3, {}\n0.0, 0.0, 0.0\n@\n1 4\n2 nan\n3 6\n"
+    edges = zmap.format("GDAL.", "100, 130, 200, 220")  # GDAL gives those of its pixels
+    middles = zmap.format("others", "105, 125, 205, 215")
+    for text in (surfer, edges, middles):
+        points, _ = read_point_file(PointFile(write("g.dat", text)))
+        assert sorted(points.tolist()) == sorted(CELLS)
+
+
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
         (HEAD + "1 2 3\n4 x 6\n", 7, "not a height: 'x'"),
-        (HEAD + "1 2 3\n4 nan 6\n", 7, "NODATA_value"),
+        (HEAD + "1 2 3\nnan x 6\n", 7, "not a height: 'x'"),
         (HEAD + "1 2 3\n4 5\n", None, "6 heights; there are 5"),
         (HEAD + "1 2 3\n4 5 6 7\n", None, "6 heights; there are 7"),
         (HEAD + "NODATA_value 1\n1 1 1\n1 1 1\n", None, "no cell of the raster has a height"),

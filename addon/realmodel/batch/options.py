@@ -204,8 +204,10 @@ OPTIONS = (
     Option(
         "mesh",
         "FILE",
-        "write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...)",
+        "write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...); may be "
+        "given several times",
         Path,
+        [],
     ),
     Option("mesh-edge", "L", "its edge length in plan (default: 1/50 of the model)", _length, needs=_MESH),
     Option(

@@ -18,6 +18,7 @@ from ..base.packages import require_extra
 from ..cells.model_data import ModelData
 from ..simulation import PolyhedralMesh
 from ..simulation.cleaned_cells import cleaned_cells
+from ..simulation.patches import solver_names
 from .endings import by_ending
 from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
@@ -70,9 +71,24 @@ def _file(write: Callable) -> Callable:
     return write_it
 
 
+_EACH_BLOCK = "{block}"  # in a file's name: a file for each
+
+
 def _parts(write: Callable) -> Callable:
-    """write(parts, file, step) of the blocks of a model."""
-    return _file(lambda model, file, step: write(model_parts(model), file, step))
+    """write(parts, file, step) of the blocks of a model: in one file, or in one for each block."""
+
+    def write_it(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
+        path, parts = Path(path), model_parts(model)
+        if _EACH_BLOCK not in path.name:
+            with outputs.file(path) as file:
+                write(parts, file, step)
+            return
+        for part, word in zip(parts, solver_names(part.name for part in parts), strict=True):
+            with outputs.file(path.with_name(path.name.replace(_EACH_BLOCK, word))) as file:
+                write([part], file, no_step)
+        step(1.0)
+
+    return write_it
 
 
 def _write_obj(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
