@@ -4,7 +4,17 @@
 import numpy as np
 import pytest
 from damages import damaged_bytes
-from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
+from realmodel.core import (
+    BuildFailed,
+    InputRefused,
+    PointFile,
+    Project,
+    Rock,
+    Surface,
+    build,
+    interpolate,
+    load_project,
+)
 from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.rasters.geotiff import read_geotiff
@@ -42,6 +52,24 @@ def test_ascii_grids(write, text):
 def test_an_ascii_grid_that_begins_without_a_height(write):
     points, _ = read_point_file(PointFile(write("g.asc", HEAD + "NODATA_value nan\nnan nan 3\n4 nan 6\n")))
     assert points[:, 2].tolist() == [3, 4, 6]
+
+
+@needs_tifffile
+def test_a_geotiff_in_another_system_than_the_project(tmp_path):
+    path = tmp_path / "g.tif"
+    keys = (1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 25832)
+    tags = [(33550, 12, 3, (25.0, 25.0, 0.0), True), (33922, 12, 6, (0.0, 0, 0, -10.0, 110.0, 0), True)]
+    tifffile.imwrite(path, np.full((5, 5), 7.0), extratags=[*tags, (34735, 3, len(keys), keys, True)])
+    rock = Rock(
+        "r",
+        [Surface("s", points=path, method="plane")],
+        region=[(0, 0), (100, 0), (100, 100), (0, 100)],
+        edge_length=50.0,
+        base_elevation=0.0,
+    )
+    for crs, said in (("EPSG:25833", 1), ("EPSG:25832", 0), (None, 0)):
+        model = build(Project("p", [rock], crs=crs))
+        assert sum("is in EPSG:25832" in str(warning) for warning in model.warnings) == said
 
 
 def test_surfer_and_zmap_grids_with_nan(write):

@@ -92,6 +92,9 @@ def run(options: argparse.Namespace) -> None:
         lines.append(f"observed: {model.observed().summary()}")
     if holes is not None:
         lines += [f"cross-validation: {holes.summary()}", left_out_table(holes)]
+    if options.origin is not None:
+        names = [str(path) for path in options.export if FORMATS[path.suffix.lower()].has_origin]
+        lines.append(f"{', '.join(names)}: coordinates count from {', '.join(map(str, options.origin))}")
     lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
         lines.append(cleaned_line(cells))
@@ -283,6 +286,10 @@ def _checked_targets(options: argparse.Namespace, requests: list, meshes: list[M
             raise UsageError(
                 f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
             )
+    if options.origin is not None:
+        able = [known.ending for known in FORMATS.values() if known.has_origin]
+        if options.surfaces_only or not any(path.suffix.lower() in able for path in exported):
+            raise UsageError(f"--origin goes with --export of blocks to {', '.join(able)}")
     single = (options.export_field, options.report, options.blend, options.render)
     paths = [*exported, *(p for p in single if p is not None)]
     paths += [path for request in requests for path in request.outputs]
@@ -303,7 +310,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
 
 
 def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
-    given = ExportOptions(options.cell_size, options.contour_interval, cells)
+    given = ExportOptions(options.cell_size, options.contour_interval, cells, options.origin)
     for path in options.export:
         write_model(
             model, path, outputs, given, lambda share, path=path: progress(1.0, f"writing {path.name}")
