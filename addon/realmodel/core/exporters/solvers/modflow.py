@@ -203,7 +203,12 @@ def write_disu(
 
 def _from_top(mesh: PolyhedralMesh, normals: np.ndarray) -> np.ndarray:
     """(C,) the cells in an order in which each comes before those below it, else as they are."""
-    flat = np.flatnonzero((mesh.face_cells[:, 1] >= 0) & ~_upright(normals))
+    first, second = mesh.face_cells.T
+    rise = np.abs(normals[:, 2])
+    plan = np.bincount(first, rise, mesh.cells + 1) / 2
+    plan += np.bincount(np.where(second < 0, mesh.cells, second), rise, mesh.cells + 1) / 2
+    wide = rise > _NARROWEST * np.minimum(plan[first], plan[second])
+    flat = np.flatnonzero((second >= 0) & wide & ~_upright(normals))
     on = mesh.face_surface[flat]
     inclined = on[(on >= 0) & (np.append(mesh.surface_kind, 0)[np.maximum(on, -1)] != 0)]
     if len(inclined):
