@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from realmodel.core.readers import read_mesh
 
 ROOT = Path(__file__).parents[2]
 PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
@@ -32,6 +33,30 @@ def test_a_mesh_and_its_report(tmp_path):
     assert set(entry["elements"]) == {"tetrahedron", "pyramid", "prism"}
     for block in entry["blocks"]:
         assert block["volume"] == pytest.approx(block["exact_volume"], rel=0.01)
+
+
+def test_two_files_of_one_mesh(tmp_path):
+    one, two = tmp_path / "mesh.msh", tmp_path / "mesh.vtu"
+    done = run("--mesh", one, "--mesh", two, "--mesh-edge", 8)
+    assert done.returncode == 0, done.stderr
+    assert f"{one}: " in done.stdout and f"{two}: " in done.stdout
+    assert one.is_file() and two.is_file()
+    done = run("--mesh", one, "--mesh", one)
+    assert done.returncode == 2
+    assert "two outputs have this name" in done.stderr
+
+
+def test_shapes_that_count_from_an_origin(tmp_path):
+    plain, near = tmp_path / "a.ply", tmp_path / "b.ply"
+    for path, more in ((plain, []), (near, ["--origin", "-1e3,2000,0.5"])):
+        done = run("--export", path, *more)
+        assert done.returncode == 0, done.stderr
+    assert f"{near}: coordinates count from -1000.0, 2000.0, 0.5" in done.stdout
+    one, two = (read_mesh(path).vertices for path in (plain, near))
+    assert two == pytest.approx(one - (-1000, 2000, 0.5), abs=1e-9)
+    done = run("--export", tmp_path / "m.vtu", "--origin", "0,0,0")
+    assert done.returncode == 2
+    assert "--origin goes with --export of blocks to .obj" in done.stderr
 
 
 def test_defaults_and_tetrahedra(tmp_path):

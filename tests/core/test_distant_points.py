@@ -32,6 +32,14 @@ def test_all_points_elsewhere(shift, said):
         build(project(moved(GRID, *shift)))
 
 
+def test_a_mesh_beside_the_region():
+    vertices = np.array([(120, 0, 1), (220, 0, 1), (120, 100, 1)], float)
+    surface = Surface("low", vertices=vertices, triangles=np.array([[0, 1, 2]]))
+    rock = Rock("ground", [surface], region=SQUARE, edge_length=20.0, base_elevation=-100.0)
+    with pytest.raises(InputRefused, match="surface 'low': its mesh lies 20 m east of the region"):
+        build(Project("p", [rock]))
+
+
 def test_in_feet():
     with pytest.raises(InputRefused, match="1,894 mi north of the region"):
         build(project(moved(GRID, 0, 1e7, 0), units="ft"))

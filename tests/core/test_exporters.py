@@ -109,6 +109,12 @@ def read_by_vtk(path):
     return reader.GetOutput()
 
 
+def test_vtu_has_exact_volumes(model, tmp_path):
+    model.save(tmp_path / "m.vtu")
+    volume = read_by_vtk(tmp_path / "m.vtu").GetCellData().GetArray("volume")
+    assert [volume.GetValue(k) for k in range(len(model.cell_block))] == model.cell_volumes.tolist()
+
+
 def polyhedron_volume(cell):
     """By the divergence theorem over the faces as VTK has them: they must turn outward.
 

@@ -4,7 +4,17 @@
 import numpy as np
 import pytest
 from damages import damaged_bytes
-from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
+from realmodel.core import (
+    BuildFailed,
+    InputRefused,
+    PointFile,
+    Project,
+    Rock,
+    Surface,
+    build,
+    interpolate,
+    load_project,
+)
 from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.rasters.geotiff import read_geotiff
@@ -27,6 +37,10 @@ needs_tifffile = pytest.mark.skipif(tifffile is None, reason="addon/realmodel/ve
         HEAD.upper() + "nodata_value -9999\r\n1 2 3 4\r\n-9999\r\n6",
         "nrows 2\nncols 3\nyllcenter 205\nxllcenter 105\ndx 10\ndy 10\nnodata_value -9999\n1 2 3 4\n-9999 6",
         HEAD.replace("100", "100,0") + "NODATA_value -9999\n1,0 2 3\n4 -9999 6\n",
+        HEAD + "NODATA_value nan\n1 2 3\n4 nan 6\n",  # by GDAL, of a raster without heights there
+        HEAD + "1 2 3\n4 -NaN 6\n",
+        HEAD + "NODATA_value Null\n1 2 3\n4 null 6\n",
+        HEAD + "NODATA_value void\n1 2 3\n4 void 6\n",
     ],
 )
 def test_ascii_grids(write, text):
@@ -35,11 +49,44 @@ def test_ascii_grids(write, text):
     assert warnings == []
 
 
+def test_an_ascii_grid_that_begins_without_a_height(write):
+    points, _ = read_point_file(PointFile(write("g.asc", HEAD + "NODATA_value nan\nnan nan 3\n4 nan 6\n")))
+    assert points[:, 2].tolist() == [3, 4, 6]
+
+
+@needs_tifffile
+def test_a_geotiff_in_another_system_than_the_project(tmp_path):
+    path = tmp_path / "g.tif"
+    keys = (1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 25832)
+    tags = [(33550, 12, 3, (25.0, 25.0, 0.0), True), (33922, 12, 6, (0.0, 0, 0, -10.0, 110.0, 0), True)]
+    tifffile.imwrite(path, np.full((5, 5), 7.0), extratags=[*tags, (34735, 3, len(keys), keys, True)])
+    rock = Rock(
+        "r",
+        [Surface("s", points=path, method="plane")],
+        region=[(0, 0), (100, 0), (100, 100), (0, 100)],
+        edge_length=50.0,
+        base_elevation=0.0,
+    )
+    for crs, said in (("EPSG:25833", 1), ("EPSG:25832", 0), (None, 0)):
+        model = build(Project("p", [rock], crs=crs))
+        assert sum("is in EPSG:25832" in str(warning) for warning in model.warnings) == said
+
+
+def test_surfer_and_zmap_grids_with_nan(write):
+    surfer = "DSAA\n3 2\n105 125\n205 215\nnan nan\n4 NAN 6\n1 2 3\n"
+    zmap = "! Created by {}\n@g, GRID, 2\n 20, nan, , 7, 1\n 2, 3, {}\n0.0, 0.0, 0.0\n@\n1 4\n2 nan\n3 6\n"
+    edges = zmap.format("GDAL.", "100, 130, 200, 220")  # GDAL gives those of its pixels
+    middles = zmap.format("others", "105, 125, 205, 215")
+    for text in (surfer, edges, middles):
+        points, _ = read_point_file(PointFile(write("g.dat", text)))
+        assert sorted(points.tolist()) == sorted(CELLS)
+
+
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
         (HEAD + "1 2 3\n4 x 6\n", 7, "not a height: 'x'"),
-        (HEAD + "1 2 3\n4 nan 6\n", 7, "NODATA_value"),
+        (HEAD + "1 2 3\nnan x 6\n", 7, "not a height: 'x'"),
         (HEAD + "1 2 3\n4 5\n", None, "6 heights; there are 5"),
         (HEAD + "1 2 3\n4 5 6 7\n", None, "6 heights; there are 7"),
         (HEAD + "NODATA_value 1\n1 1 1\n1 1 1\n", None, "no cell of the raster has a height"),

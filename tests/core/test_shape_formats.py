@@ -43,8 +43,20 @@ def test_obj_has_a_group_for_each_block(model, folder):
     read = meshio.read(folder / "m.obj")
     vertices = np.concatenate([model.block_boundary(k).vertices for k in range(4)])
     assert np.array_equal(read.points, vertices)
-    faces = sum(len(model.block_boundary(k).faces) for k in range(4))
-    assert sum(len(cells.data) for cells in read.cells) == faces
+    triangles = np.concatenate([cells.data for cells in read.cells])
+    assert {cells.type for cells in read.cells} == {"triangle"}
+    assert_closed(triangles)
+    whole = sum(block.volume for block in model.blocks)
+    assert volume(read.points, triangles) == pytest.approx(whole, rel=1e-9)
+    objects = [line.split()[1] for line in text.splitlines() if line.startswith("o ")]
+    assert objects == groups  # Blender makes an object of each "o"
+
+
+def test_stl_in_a_file_for_each_block(model, tmp_path):
+    model.save(tmp_path / "a {block}.stl")
+    names = {"a base_block.stl", "a Gres_a_Voltzia.stl", "a Clay.stl", "a Clay_2.stl"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    assert (tmp_path / "a Clay.stl").read_text().count("endsolid") == 1
 
 
 def test_ply_knows_blocks_properties_and_colors(model, folder):

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -154,6 +155,11 @@ def test_inp(mesh, tmp_path):
             used |= {corners[k] for k in sides[len(corners)][int(side) - 1]}
         nodes = re.search(rf"\*NSET, NSET={name}_nodes\n((?:\d+,\n)+)", text)[1]
         assert used == {int(node) - 1 for node in re.findall(r"\d+", nodes)}
+    parts = [
+        re.search(rf"NSET={name}_nodes\n((?:\d+,\n)+)", text)[1] for name in ("top_Ground", "top_Top_of_clay")
+    ]
+    top = re.search(r"NSET=top_nodes\n((?:\d+,\n)+)", text)[1]
+    assert set(top.split()) == {node for part in parts for node in part.split()}
     if shutil.which("ccx"):
         (tmp_path / "c.inp").write_text(
             "*INCLUDE, INPUT=m.inp\n*MATERIAL, NAME=rock\n*ELASTIC\n1e9, 0.2\n*DENSITY\n2000\n"
@@ -163,6 +169,19 @@ def test_inp(mesh, tmp_path):
         )
         done = subprocess.run(["ccx", "c"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
         assert "Job finished" in done.stdout, done.stdout[-2000:]
+
+
+def test_inp_has_no_field_longer_than_calculix_reads(mesh, tmp_path):
+    noise = 1.4210854715202004e-14 * np.array([[1, -1, 0.3]])
+    for scale, shift in ((1, 0), (1e-7, 0), (1, 4_512_345.678), (1, -1e-9)):
+        moved = replace(mesh, points=mesh.points * scale / 3 + shift + noise)
+        save_mesh(moved, tmp_path / "m.inp")
+        text = (tmp_path / "m.inp").read_text()
+        rows = re.search(r"\*NODE, NSET=all_nodes\n([^*]*)", text)[1].splitlines()
+        fields = [row.split(", ")[1:] for row in rows]
+        assert max(len(field) for row in fields for field in row) <= 20
+        size = np.abs(moved.points).max()
+        assert np.array(fields, float) == pytest.approx(moved.points, abs=1e-14 * size, rel=0)
 
 
 def test_cdb(mesh, tmp_path):
@@ -312,7 +331,8 @@ def test_modflow_disu(tmp_path):
     grid = modflow(tmp_path, "DISU6", "g.disu")
     volume = element_volumes(mesh.points, "prism", mesh.elements["prism"])
     thickness = grid.top.array - grid.bot.array
-    assert thickness * grid.area.array == pytest.approx(volume)
+    assert np.sort(thickness * grid.area.array) == pytest.approx(np.sort(volume))
+    assert grid.vertical_offset_tolerance.get_data() > 0
     ja, iac, ihc = grid.ja.array, grid.iac.array, grid.ihc.array
     assert len(ja) == iac.sum()
     begins = np.concatenate([[0], np.cumsum(iac)[:-1]])
@@ -332,11 +352,36 @@ def test_modflow_disu(tmp_path):
 
 
 def test_modflow_disu_of_a_model(tmp_path):
+    """What MODFLOW 6 refuses (Disu.f90, Connections.f90): cells without thickness, lower cells with lower
+    numbers, and tops above the bottoms of upper cells beyond the tolerance; connections without a width make
+    no matrix."""
     model = build(load_project("blend_samples/two_layers/project.toml"))
     model.save(tmp_path / "g.disu")
     grid = modflow(tmp_path, "DISU6", "g.disu")
-    volume = grid.area.array * (grid.top.array - grid.bot.array)
-    assert volume == pytest.approx(model.cell_volumes, rel=1e-9)
+    top, bottom = grid.top.array, grid.bot.array
+    assert (top > bottom).all()
+    volume = grid.area.array * (top - bottom)
+    assert sorted(volume) == pytest.approx(sorted(model.cell_volumes), rel=1e-9)
+    blocks = np.array((tmp_path / "g_disu_block.txt").read_text().split(), int)
+    assert np.bincount(blocks - 1, volume) == pytest.approx([block.volume for block in model.blocks])
+    ja, iac, ihc, width = grid.ja.array, grid.iac.array, grid.ihc.array, grid.hwva.array
+    of = np.repeat(np.arange(len(iac)), iac)
+    below = (ihc == 0) & (ja > of)
+    allowed = grid.vertical_offset_tolerance.get_data()
+    assert (top[ja[below]] - bottom[of[below]] <= allowed).all()
+    assert ((top + bottom)[of[below]] > (top + bottom)[ja[below]]).all()  # the upper one comes first
+    apart = ja != of
+    assert (grid.cl12.array[apart] > 0).all()
+    assert (
+        width[apart] > 1e-9 * np.minimum(*(np.sqrt(grid.area.array[k[apart]]) for k in (ja, of))) ** 2
+    ).all()
+
+
+def test_modflow_disu_refuses_inclined_faults(tmp_path):
+    model = build(load_project("blend_samples/fault_blocks/project.toml"))
+    with pytest.raises(UsageError, match="MODFLOW 6 wants cells in an order from the top"):
+        model.save(tmp_path / "g.disu")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_a_format_cannot_hold_is_refused(mesh, tmp_path):

@@ -45,6 +45,14 @@ def _sizes(text: str) -> list[float]:
     return [_number(word, lambda value: 0.0 < value < 1e300, "a number above 0") for word in words]
 
 
+def _place(text: str) -> list[float]:
+    what = "three numbers"
+    place = [_number(word, math.isfinite, what) for word in text.split(",")]
+    if len(place) != 3:
+        raise argparse.ArgumentTypeError(f"'{text}' is not {what}: X,Y,Z")
+    return place
+
+
 def _tile_size(text: str) -> list[float]:
     what = "two lengths above 0"
     sizes = [_number(word, lambda value: 0.0 < value < math.inf, what) for word in text.split(",")]
@@ -155,6 +163,14 @@ OPTIONS = (
         "clean the cells by --export and --cut (.vtu, .foam, .exo, .disu): T is the least size",
         _length,
     ),
+    Option(
+        "origin",
+        "X,Y,Z",
+        "the place from which the coordinates of shapes by --export count (.obj, .ply, .stl, .glb, .dxf), "
+        "for programs with short numbers",
+        _place,
+        needs=("export",),
+    ),
     Option("report", "F", "write a report to F.json", Path, ending=".json"),
     Option("render", "F", "render a picture to F.png (in Blender)", Path, ending=".png", in_blender=True),
     Option(
@@ -204,8 +220,10 @@ OPTIONS = (
     Option(
         "mesh",
         "FILE",
-        "write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...)",
+        "write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...); may be "
+        "given several times",
         Path,
+        [],
     ),
     Option("mesh-edge", "L", "its edge length in plan (default: 1/50 of the model)", _length, needs=_MESH),
     Option(

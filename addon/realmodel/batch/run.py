@@ -39,8 +39,8 @@ def run(options: argparse.Namespace) -> None:
     requests = _requests(options) if probabilities is None else probabilities.made
     if probabilities is not None and requests:
         make_folder(options.out)  # they may go there
-    mesh_request = _mesh_request(options)
-    targets = _checked_targets(options, requests, mesh_request)
+    mesh_requests = _mesh_requests(options)
+    targets = _checked_targets(options, requests, mesh_requests)
     source = OpenedFile.of(options.project)
     project = source.project
     _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> None:
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
             holes = _left_out_holes(options, model, progress)
-            mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
+            mesh = mesh_requests[0].make(model, options.threads, progress) if mesh_requests else None
             cells = _cleaned_cells(options, model, progress)
             _export(options, model, outputs, progress, cells)
             if options.export_field is not None:
@@ -80,8 +80,8 @@ def run(options: argparse.Namespace) -> None:
                 with outputs.file(options.report) as file:
                     report = model_report(model, options.stage, validation, erosion, mesh, cells)
                     write_report(report if holes is None else report | hole_entries(holes), file)
-            if mesh is not None:
-                mesh_request.write(mesh, outputs, model.project.units, progress)
+            for wanted in mesh_requests:
+                wanted.write(mesh, outputs, model.project.units, progress)
             lines = [request.run(model, outputs, options.threads, progress) for request in requests]
             ignore_interruption()
         finally:
@@ -92,8 +92,10 @@ def run(options: argparse.Namespace) -> None:
         lines.append(f"observed: {model.observed().summary()}")
     if holes is not None:
         lines += [f"cross-validation: {holes.summary()}", left_out_table(holes)]
-    if mesh is not None:
-        lines.append(mesh_request.line(mesh))
+    if options.origin is not None:
+        names = [str(path) for path in options.export if FORMATS[path.suffix.lower()].has_origin]
+        lines.append(f"{', '.join(names)}: coordinates count from {', '.join(map(str, options.origin))}")
+    lines += [wanted.line(mesh) for wanted in mesh_requests]
     if cells is not None:
         lines.append(cleaned_line(cells))
     made = [each for each in (model, mesh, cells) if each is not None]
@@ -257,21 +259,22 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
     )
 
 
-def _mesh_request(options: argparse.Namespace):
-    """The options of --mesh, or None."""
-    if options.mesh is None:
-        return None
-    return MeshRequest(
-        options.mesh,
-        options.mesh_edge,
-        options.mesh_thickness,
-        options.mesh_layers,
-        options.mesh_layer_thickness,
-        options.mesh_elements or "prisms",
-    )
+def _mesh_requests(options: argparse.Namespace) -> list[MeshRequest]:
+    """The files of --mesh: of one mesh."""
+    return [
+        MeshRequest(
+            path,
+            options.mesh_edge,
+            options.mesh_thickness,
+            options.mesh_layers,
+            options.mesh_layer_thickness,
+            options.mesh_elements or "prisms",
+        )
+        for path in options.mesh
+    ]
 
 
-def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
+def _checked_targets(options: argparse.Namespace, requests: list, meshes: list[MeshRequest]) -> list[Path]:
     """The paths of the outputs. Refuses wrong ones before anything is built."""
     exported = [] if options.ensemble is not None else options.export  # else they are requests
     for path in exported:
@@ -283,13 +286,16 @@ def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> 
             raise UsageError(
                 f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
             )
+    if options.origin is not None:
+        able = [known.ending for known in FORMATS.values() if known.has_origin]
+        if options.surfaces_only or not any(path.suffix.lower() in able for path in exported):
+            raise UsageError(f"--origin goes with --export of blocks to {', '.join(able)}")
     single = (options.export_field, options.report, options.blend, options.render)
     paths = [*exported, *(p for p in single if p is not None)]
     paths += [path for request in requests for path in request.outputs]
     targets = [output_target(path) for path in paths]
-    if mesh is not None:
-        paths.append(mesh.path)
-        targets.append(mesh.target())
+    paths += [mesh.path for mesh in meshes]
+    targets += [mesh.target() for mesh in meshes]
     for path, target in zip(paths, targets, strict=True):
         if targets.count(target) > 1:
             raise UsageError(f"{path}: two outputs have this name")
@@ -304,7 +310,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
 
 
 def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
-    given = ExportOptions(options.cell_size, options.contour_interval, cells)
+    given = ExportOptions(options.cell_size, options.contour_interval, cells, options.origin)
     for path in options.export:
         write_model(
             model, path, outputs, given, lambda share, path=path: progress(1.0, f"writing {path.name}")

@@ -43,6 +43,7 @@
 #include "simulation/corner_tetrahedra.hpp"
 #include "simulation/edge_lengths.hpp"
 #include "simulation/flat_tetrahedra.hpp"
+#include "simulation/outside_faces.hpp"
 
 namespace realmodel::simulation {
 
@@ -55,6 +56,7 @@ constexpr double kBall = 0.6;          ///< of the edge length: radius around po
 constexpr double kSeeds = 1.5;         ///< of the edge length: between first points on surfaces
 constexpr double kFacetAngle = 25;     ///< degrees: the least wanted in faces of boundaries
 constexpr double kRadiusOverEdge = 2;  ///< the most wanted of a tetrahedron
+constexpr double kReach = 1;           ///< of the edge length: outside faces from exact ones
 constexpr double kSliver = 12;         ///< degrees: flatter tetrahedra are to go
 constexpr std::uint64_t kQuestionsOfAPoint = 200;  ///< about the most asked of the model
 constexpr std::uint64_t kStepsOfAPoint = 20;       ///< the most that may fail before one succeeds
@@ -468,6 +470,8 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     FilledMesh mesh = arrays_of(complex, domain, kept);
     require_volume(mesh);
     divide_corner_tetrahedra(mesh, execution.progress);
+    sort_outside_faces(mesh, model, faces.triangles, kReach * lengths.largest(),
+                       execution.progress);
     thicken_flat_tetrahedra(mesh, tolerance, execution.progress);
     return mesh;
 }

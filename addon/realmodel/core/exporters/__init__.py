@@ -8,9 +8,11 @@ whole or not at all, with the same bytes for the same model.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from ..base.atomic import Outputs, writable_folder, writable_target
 from ..base.errors import UsageError
@@ -18,6 +20,7 @@ from ..base.packages import require_extra
 from ..cells.model_data import ModelData
 from ..simulation import PolyhedralMesh
 from ..simulation.cleaned_cells import cleaned_cells
+from ..simulation.patches import solver_names
 from .endings import by_ending
 from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
@@ -29,7 +32,7 @@ from .regular import write_ascii_grids, write_block_table, write_geotiff, write_
 from .shapes.dxf import write_dxf
 from .shapes.gltf import write_glb
 from .shapes.obj import write_mtl, write_obj
-from .shapes.parts import model_parts
+from .shapes.parts import Part, model_parts
 from .shapes.ply import write_ply
 from .shapes.stl import write_stl
 from .shapes.tsurf import write_tsurf
@@ -46,7 +49,8 @@ class ModelFormat:
     is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
     too, as of regular_cells.checked_size. has_contours: it is a map, and write takes the interval of its
     contours too, as of contours.checked_interval. has_cells: it has the model's cells, and write takes these,
-    too. needs: the library that writes it and the extra that has this, if it is one.
+    too. has_origin: its coordinates may count from a place, and write takes this, too. needs: the library
+    that writes it and the extra that has this, if it is one.
     """
 
     ending: str
@@ -57,6 +61,7 @@ class ModelFormat:
     has_cell_size: bool = False
     has_cells: bool = False
     has_contours: bool = False
+    has_origin: bool = False
     needs: tuple[str, str] | None = None
 
 
@@ -70,13 +75,38 @@ def _file(write: Callable) -> Callable:
     return write_it
 
 
+_EACH_BLOCK = "{block}"  # in a file's name: a file for each
+
+
 def _parts(write: Callable) -> Callable:
-    """write(parts, file, step) of the blocks of a model."""
-    return _file(lambda model, file, step: write(model_parts(model), file, step))
+    """write(parts, file, step) of the blocks of a model: in one file, or in one for each block."""
+
+    def write_it(
+        model: ModelData, path: Path, outputs: Outputs, step: Step, origin: Sequence[float] | None
+    ) -> None:
+        path, parts = Path(path), _parts_from(model, origin)
+        if _EACH_BLOCK not in path.name:
+            with outputs.file(path) as file:
+                write(parts, file, step)
+            return
+        for part, word in zip(parts, solver_names(part.name for part in parts), strict=True):
+            with outputs.file(path.with_name(path.name.replace(_EACH_BLOCK, word))) as file:
+                write([part], file, no_step)
+        step(1.0)
+
+    return write_it
 
 
-def _write_obj(model: ModelData, path: Path, outputs: Outputs, step: Step) -> None:
-    parts, materials = model_parts(model), Path(path).with_suffix(".mtl")
+def _parts_from(model: ModelData, origin: Sequence[float] | None) -> list[Part]:
+    """The blocks of a model, their coordinates from a place."""
+    parts = model_parts(model)
+    return parts if origin is None else [replace(p, vertices=p.vertices - np.array(origin)) for p in parts]
+
+
+def _write_obj(
+    model: ModelData, path: Path, outputs: Outputs, step: Step, origin: Sequence[float] | None
+) -> None:
+    parts, materials = _parts_from(model, origin), Path(path).with_suffix(".mtl")
     with outputs.file(materials) as file:
         write_mtl(parts, file)
     with outputs.file(path) as file:
@@ -122,23 +152,39 @@ FORMATS: dict[str, ModelFormat] = {
             has_cells=True,
         ),
         ModelFormat(
-            ".obj", "Wavefront OBJ", "The closed boundary of every block, a group for each", _write_obj
+            ".obj",
+            "Wavefront OBJ",
+            "The closed boundary of every block, an object for each",
+            _write_obj,
+            has_origin=True,
         ),
         ModelFormat(
             ".ply",
             "PLY",
             "The closed boundaries of the blocks; triangles know block and property",
             _parts(write_ply),
+            has_origin=True,
         ),
-        ModelFormat(".stl", "STL", "The closed boundary of every block, a solid for each", _parts(write_stl)),
+        ModelFormat(
+            ".stl",
+            "STL",
+            "The closed boundary of every block, a solid for each",
+            _parts(write_stl),
+            has_origin=True,
+        ),
         ModelFormat(
             ".glb",
             "glTF Binary",
             "The closed boundary of every block in the color of its property, for the web",
             _parts(write_glb),
+            has_origin=True,
         ),
         ModelFormat(
-            ".dxf", "DXF", "The closed boundary of every block, a layer for each, for CAD", _parts(write_dxf)
+            ".dxf",
+            "DXF",
+            "The closed boundary of every block, a layer for each, for CAD",
+            _parts(write_dxf),
+            has_origin=True,
         ),
         ModelFormat(
             ".ts",
@@ -238,11 +284,13 @@ def no_step(_share: float) -> None:
 
 class ExportOptions(NamedTuple):
     """What some formats of models take. cell_size: of regular grids, and of cells beside objects;
-    contour_interval: of maps; cells: of formats with the model's cells, in place of the exact ones."""
+    contour_interval: of maps; cells: of formats with the model's cells, in place of the exact ones; origin:
+    the place, model coordinates, from which those of shapes count."""
 
     cell_size: float | Sequence[float] | None = None
     contour_interval: float | None = None
     cells: PolyhedralMesh | None = None
+    origin: Sequence[float] | None = None
 
 
 def write_model(
@@ -250,7 +298,9 @@ def write_model(
 ) -> None:
     """Writes a model in the format of the path's ending; it appears with the other outputs."""
     known = format_for(path)
-    taken = zip(options, (known.has_cell_size, known.has_contours, known.has_cells), strict=True)
+    taken = zip(
+        options, (known.has_cell_size, known.has_contours, known.has_cells, known.has_origin), strict=True
+    )
     known.write(model, path, outputs, step, *(option for option, is_taken in taken if is_taken))
 
 

@@ -64,13 +64,15 @@ def _write_openfoam(mesh: Mesh, path: Path, outputs: Outputs, step: Step, _unit:
 
 
 def _modflow(write: Callable, prepare: Callable) -> Callable:
-    """A grid, and beside it NAME_block.txt with the block of each cell."""
+    """A grid, and beside it the block of each cell: NAME_block.txt, of DISU NAME_disu_block.txt, so that both
+    grids may have one name."""
 
     def write_it(mesh: Mesh, path: Path, outputs: Outputs, step: Step, unit: str) -> None:
         path = Path(path)
+        beside = "_disu_block.txt" if write is write_disu else "_block.txt"
         with (
             outputs.file(path) as file,
-            outputs.file(path.with_name(f"{path.stem}_block.txt")) as blocks,
+            outputs.file(path.with_name(path.stem + beside)) as blocks,
         ):
             write(prepare(mesh), file, blocks, step, unit)
 

@@ -26,9 +26,8 @@ from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_grid
 from .endings import by_ending
 from .npz import write_arrays
-from .shapes.obj import write_polygons
 from .shapes.part_formats import part_writers
-from .shapes.parts import section_parts
+from .shapes.parts import Part, section_parts
 
 _POLYGON = 7
 
@@ -79,15 +78,19 @@ def write_section_vtu(section: SectionData, file: BinaryIO) -> None:
 
 
 def write_section_obj(section: SectionData, file: BinaryIO) -> None:
-    """Polygons by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
+    """Triangles by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
     file.write(b"# section of a RealModel model: groups are blocks, materials are library ids\n")
     write_rows(file, "v %r %r %r", section.vertices)
     sizes = np.diff(section.offsets)
     for block in np.unique(section.block).tolist():
         own = section.block == block
         name = re.sub(r"\s+", "_", section.block_names[block].strip())
-        file.write(f"g block_{block}_{name}\nusemtl property_{section.property[own][0]}\n".encode())
-        write_polygons(file, sizes[own], section.polygon_vertices[np.repeat(own, sizes)] + 1)
+        group = f"block_{block}_{name}"
+        material = f"property_{section.property[own][0]}"
+        file.write(f"o {group}\ng {group}\nusemtl {material}\n".encode())
+        offsets = np.concatenate([[0], np.cumsum(sizes[own])])
+        part = Part(name, section.vertices, offsets, section.polygon_vertices[np.repeat(own, sizes)])
+        write_rows(file, "f %d %d %d", part.triangles + 1)
 
 
 def write_section_csv(section: SectionData, file: BinaryIO) -> None:

@@ -35,8 +35,7 @@ class FaceSet:
     """Named faces of a mesh: a patch of the outside, or the inner faces on a surface.
 
     corners: of each of SHAPES, (F, 3 or 4) int32. element, side: of each, (F,): an element with this face
-    (all
-    elements counted through), and the face's number in OUTWARD of its kind. group: of a patch, else "".
+    (all elements counted through), and the face's number in OUTWARD of its kind. group: of a patch, else "".
     """
 
     name: str
@@ -147,6 +146,16 @@ class ElementFaces:
         x, y = self.mesh.points[faces.corners[faces.first[numbers]], :2].transpose(2, 0, 1)
         x, y = x - x[:, :1], y - y[:, :1]
         return (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+
+
+def joint_sets(sets: list[FaceSet]) -> dict[str, list[FaceSet]]:
+    """The sets by name, then those of each group of patches by its name, where no patch has this."""
+    joint = {found.name: [found] for found in sets}
+    groups: dict[str, list[FaceSet]] = {}
+    for found in sets:
+        if found.group and found.group not in joint:
+            groups.setdefault(found.group, []).append(found)
+    return joint | groups
 
 
 class _Faces:

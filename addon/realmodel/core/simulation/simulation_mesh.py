@@ -20,7 +20,7 @@ from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
 from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals
 from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
-from .volume_warnings import changed_volumes
+from .volume_warnings import changed_voids, changed_volumes
 
 ALL_LINES = np.empty((0, 2))  # of local lengths: no places
 ELEMENTS = ("prisms", "tetrahedra")
@@ -295,7 +295,10 @@ def _of_tetrahedra(model: ModelData, made: dict) -> SimulationMesh:
         **_names(model),
         volumes=volumes,
         exact_volumes=np.array([block.volume for block in model.blocks]),
-        warnings=changed_volumes(model, volumes, _CHANGES_LESS),
+        warnings=[
+            *changed_volumes(model, volumes, _CHANGES_LESS),
+            *changed_voids(model, made["points"], made["triangles"], made["surface"]),
+        ],
         smallest_angle=smallest_dihedral_angle(made["points"], made["corners"]),
     )
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points so far from the region that they cannot be meant for it: other coordinates, other units."""
+"""Points and meshes that cannot be meant for a region, as they lie far from it: other coordinates, other
+units."""
 
 from __future__ import annotations
 
@@ -14,28 +15,32 @@ _TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "sou
 
 
 def require_points_near(rock: Rock, unit: str) -> None:
-    """Refuses a surface whose points are all far away from the region of its rock mass.
+    """Refuses a surface whose points are all far away from the region of its rock mass, or whose mesh lies
+    beside it.
 
-    They are if the gap between the bounding boxes of the points and of the region, in plan, is more than
-    three times the diagonals of both. Raises InputRefused with the distance.
+    Points do if the gap between their bounding box and that of the region, in plan, is more than three times
+    the diagonals of both; meshes, which say nothing beyond their borders, where there is any. Raises
+    InputRefused with the distance.
     """
     if rock.region is None:
         return
     low, high = _box(np.concatenate(rock.rings()))
     for surface in rock.surfaces:
-        points = surface.point_array()
-        if not surface.interpolated or not len(points):
+        points = surface.point_array() if surface.interpolated else surface.vertices
+        if points is None or not len(points):
             continue
         first, last = _box(points[:, :2])
         gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
         away = float(np.hypot(*gap))
-        if away > _FARTHEST * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
+        most = _FARTHEST if surface.interpolated else 0.0
+        if away > most * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
             towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
+            what = "its points lie" if surface.interpolated else "its mesh lies"
             raise InputRefused(
-                f"its points lie {length_text(away, unit)} {towards} of the region",
+                f"{what} {length_text(away, unit)} {towards} of the region",
                 item=surface_item(rock, surface),
                 file=surface.shape_file,
-                advice="check the coordinates and units of both; the region must lie where the points are",
+                advice="check the coordinates and units of both; the region must lie where the surface is",
             )
 
 

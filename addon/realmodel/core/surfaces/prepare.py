@@ -22,8 +22,10 @@ from ..project.plan_input import map_layer, read_constraints, read_rings, read_s
 from ..project.project import Project, Rock, surface_item
 from ..project.series import Series
 from ..readers import read_dips, read_space_dips
+from ..readers.rasters.geotiff import geotiff_system
 from ..readers.tables.dips import DIPS
 from ..readers.tables.hole_tables import OBSERVED, other_units_in
+from ..settings.crs import epsg_code
 from ..settings.mesh_sizes import AUTO
 from ..settings.series import SHEETS
 from .distant_points import require_points_near
@@ -69,6 +71,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
     inputs, first = [], 0
     for given, field, (warnings, of_picks) in zip(project.rocks, fields, all_warnings, strict=True):
         warnings += _other_units(given, project.units)
+        warnings += _other_systems(given, project.crs)
         rock = field.rock
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
@@ -107,6 +110,18 @@ def _other_units(rock: Rock, units: str) -> list[BuildWarning]:
             with naming(rock.item):
                 texts = other_units_in(given, Path(given.file), columns, units)
             found += [BuildWarning(text, "points", rock.name) for text in texts]
+    return found
+
+
+def _other_systems(rock: Rock, crs: str | None) -> list[BuildWarning]:
+    """Warnings about rasters in another coordinate system than the project's."""
+    number, found = epsg_code(crs), []
+    for surface in rock.surfaces:
+        given = None if surface.point_file is None else Path(surface.point_file.file)
+        system = None if number is None or given is None else geotiff_system(given)
+        if system not in (None, number):
+            what = f"{given}: it is in EPSG:{system}, the project in {crs}, and nothing is converted"
+            found.append(BuildWarning(f"{what}: reproject it in a GIS", "crs", rock.name, surface.name))
     return found
 
 

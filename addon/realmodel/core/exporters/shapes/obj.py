@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wavefront OBJ: polygons, a group for each part, a material for each property (in the .mtl beside it)."""
+"""Wavefront OBJ: triangles, an object and group for each part, a material for each property (in the .mtl
+beside it)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import BinaryIO
-
-import numpy as np
 
 from ..encodings.text_rows import write_rows
 from .parts import Part, plain_words
@@ -15,29 +14,20 @@ from .parts import Part, plain_words
 def write_obj(
     parts: Sequence[Part], file: BinaryIO, step: Callable[[float], None], materials: str = ""
 ) -> None:
-    """Writes parts. materials: the name of the .mtl file; "" where there is none."""
-    file.write(b"# RealModel: a group for each part, z upward\n")
+    """Writes parts, as triangles: programs divide polygons that are not convex in their own ways, and lose
+    some. materials: the name of the .mtl file; "" where there is none."""
+    file.write(b"# RealModel: an object for each part, z upward\n")
     file.write(f"mtllib {materials}\n".encode() if materials else b"")
     first = 1
     words = plain_words([part.name for part in parts])
     for number, (part, word) in enumerate(zip(parts, words, strict=True), 1):
-        file.write(f"g {word}\n".encode())
+        file.write(f"o {word}\ng {word}\n".encode())
         file.write(f"usemtl {_material(part)}\n".encode() if materials else b"")
         write_rows(file, "v %r %r %r", part.vertices)
-        write_polygons(file, np.diff(part.offsets), part.corners + first)
+        write_rows(file, "f %d %d %d", part.triangles + first)
         first += len(part.vertices)
         step(number / len(parts))
     step(1.0)
-
-
-def write_polygons(file: BinaryIO, sizes: np.ndarray, corners: np.ndarray) -> None:
-    """Writes polygons with so many corners each, numbers of vertices from 1."""
-    ends = np.cumsum(sizes)
-    starts = np.flatnonzero(np.diff(sizes, prepend=-1))  # of runs of polygons of one size
-    for begin, end in zip(starts, [*starts[1:], len(sizes)], strict=True):
-        size = int(sizes[begin])
-        run = corners[ends[begin] - size : ends[end - 1]].reshape(-1, size)
-        write_rows(file, "f" + " %d" * size, run)
 
 
 def write_mtl(parts: Sequence[Part], file: BinaryIO) -> None:

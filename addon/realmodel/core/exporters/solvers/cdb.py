@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces
+from ...simulation.element_faces import ElementFaces, joint_sets
 from ...simulation.patches import solver_names
 from ..encodings.text_rows import write_rows, write_wrapped
 
@@ -27,7 +27,7 @@ _LONGEST_NAME = 32
 
 def write_cdb(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes elements; the material of each is the number of its block from 1. The component of a block holds
-    elements, that of a patch or an inner surface nodes."""
+    elements, that of a patch, a group of patches or an inner surface nodes."""
     points, cells = len(mesh.points), mesh.cells
     file.write(
         f"/COM,RealModel\n/PREP7\nET,1,185\nNBLOCK,6,SOLID,{points:9d},{points:9d}\n(3i9,6e25.16e3)\n".encode()
@@ -45,16 +45,14 @@ def write_cdb(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
         first += len(elements)
     file.write(b"       -1\n")
     step(0.7)
-    sets = ElementFaces(mesh).sets()
+    sets = joint_sets(ElementFaces(mesh).sets())
     block = mesh.of_all(mesh.element_block)
     present = np.unique(block).tolist()
-    names = solver_names(
-        [*(mesh.block_names[k] for k in present), *(s.name for s in sets)], longest=_LONGEST_NAME
-    )
+    names = solver_names([*(mesh.block_names[k] for k in present), *sets], longest=_LONGEST_NAME)
     for number, name in zip(present, names, strict=False):
         _component(file, name, "ELEM", np.flatnonzero(block == number) + 1)
-    for found, name in zip(sets, names[len(present) :], strict=True):
-        corners = [part.ravel() for part in found.corners.values()]
+    for found, name in zip(sets.values(), names[len(present) :], strict=True):
+        corners = [part.ravel() for own in found for part in own.corners.values()]
         _component(file, name, "NODE", np.unique(np.concatenate(corners)) + 1)
     file.write(b"FINISH\n")
     step(1.0)

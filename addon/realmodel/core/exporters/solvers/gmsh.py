@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces
+from ...simulation.element_faces import ElementFaces, joint_sets
 from ..shapes.parts import distinct_names
 
 _VOLUMES = {"tetrahedron": 4, "hexahedron": 5, "prism": 6, "pyramid": 7}
@@ -23,8 +23,7 @@ def write_msh(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     group have the physical group of that name, too."""
     sets = ElementFaces(mesh).sets()
     step(0.3)
-    alone = {s.group for s in sets if s.group == s.name}
-    groups = [group for group in dict.fromkeys(s.group for s in sets) if group and group not in alone]
+    groups = list(joint_sets(sets))[len(sets) :]
     surface_tags = [
         [k, *([1 + len(sets) + groups.index(s.group)] if s.group in groups else [])]
         for k, s in enumerate(sets, 1)

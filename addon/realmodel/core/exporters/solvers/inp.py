@@ -13,7 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ...simulation import VolumeMesh
-from ...simulation.element_faces import ElementFaces
+from ...simulation.element_faces import ElementFaces, joint_sets
 from ...simulation.patches import solver_names
 from ..encodings.text_rows import write_rows
 
@@ -22,10 +22,10 @@ _TYPES = {"tetrahedron": "C3D4", "prism": "C3D6", "hexahedron": "C3D8"}
 
 def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes elements and sets: the elements of a block are the set with its name, the faces of a patch or
-    inner
-    surface a surface with its name, their nodes the set NAME_nodes."""
+    inner surface a surface with its name, their nodes, and those of a group of patches, the set
+    NAME_nodes."""
     file.write(b"*HEADING\nRealModel\n*NODE, NSET=all_nodes\n")
-    write_rows(file, "%d, %r, %r, %r", np.arange(1, len(mesh.points) + 1), mesh.points)
+    write_rows(file, "%d, %r, %r, %r", np.arange(1, len(mesh.points) + 1), _in_field(mesh.points))
     step(0.3)
     names = solver_names(mesh.block_names)
     written, pyramids = 1, None
@@ -51,10 +51,13 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
         first_pyramid += len(elements)
     taken = [*names, "all_elements", "all_nodes"]
     sets = ElementFaces(mesh).sets()
-    for found, name in zip(sets, solver_names([*taken, *(s.name for s in sets)])[len(taken) :], strict=True):
-        corners = [part.ravel() for part in found.corners.values()]
+    joint = joint_sets(sets)
+    set_names = solver_names([*taken, *joint])[len(taken) :]
+    for found, name in zip(joint.values(), set_names, strict=True):
+        corners = [part.ravel() for own in found for part in own.corners.values()]
         file.write(f"*NSET, NSET={name}_nodes\n".encode())
         write_rows(file, "%d,", np.unique(np.concatenate(corners)) + 1)
+    for found, name in zip(sets, set_names, strict=False):
         file.write(f"*SURFACE, NAME={name}, TYPE=ELEMENT\n".encode())
         for shape in found.corners:
             element, side = found.element[shape], found.side[shape].astype(np.int64)
@@ -70,6 +73,14 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
                 sides = np.concatenate([sides, sides[base]])
             write_rows(file, "%d, S%d", rows, sides)
     step(1.0)
+
+
+def _in_field(points: np.ndarray) -> np.ndarray:
+    """Coordinates with 15 digits of the largest: CalculiX reads 20 characters of each, and would cut the
+    exponent of what rounding leaves of a zero."""
+    largest = float(np.abs(points).max(initial=0.0))
+    digits = int(np.floor(np.log10(largest))) + 1 if largest > 0 else 0
+    return np.round(points, 15 - digits) + 0.0  # no -0
 
 
 class _Halves:

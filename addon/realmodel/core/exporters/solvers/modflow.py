@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Grids of MODFLOW 6, text: discretization by vertices (DISV) and unstructured (DISU) (Langevin and others
-2017,
-USGS TM6-A55; the packages' input instructions).
+2017, USGS TM6-A55; the packages' input instructions).
 
 Both stand for the volumes of the mesh exactly: a cell's thickness is its volume over its area in plan.
 """
@@ -9,17 +8,21 @@ Both stand for the volumes of the mesh exactly: a cell's thickness is its volume
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import BinaryIO
 
 import numpy as np
 
-from ...base.errors import UsageError
+from ...base.errors import UsageError, place_text
 from ...simulation import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 from ...simulation.element_faces import OUTWARD
 from ..encodings.text_rows import write_rows, write_wrapped
 from .vtu import CellFaces
 
 _A_LINE = 10
+_NARROWEST = 1e-9  # of a cell's extent: through less nothing flows, and solvers do not converge
+_NO_ORDER = "MODFLOW 6 wants cells in an order from the top to the base"
+_OTHERS = "write another format, such as .vtu or .foam"
 _UNITS = {"m": "METERS", "cm": "CENTIMETERS", "ft": "FEET", "us-ft": "FEET"}
 
 
@@ -110,11 +113,22 @@ def write_disu(
     unit: str = "m",
 ) -> None:
     """Writes the package DISU of polyhedra. Cells that share vertical faces are connected sideways (ihc 1),
-    with
-    the width that gives the area of these faces at their mean thickness, others one above the other (ihc 0),
-    by the area in plan. blocks: as of write_disv."""
+    with the width that gives the area of these faces at their mean thickness, others one above the other
+    (ihc 0), by the area in plan. Cells are numbered from the top, as MODFLOW 6 wants it: of two that are one
+    above the other the upper one comes first. Tops of lower cells may be above bottoms of upper ones by what
+    surfaces rise within a cell, which the option VERTICAL_OFFSET_TOLERANCE allows. blocks: as of write_disv.
+
+    Raises UsageError where no such numbers exist, and for faults and bodies that are not vertical."""
     cells = mesh.cells
     normals, centers = _face_areas(mesh)
+    order = _from_top(mesh, normals)
+    number = np.empty(cells, np.int64)
+    number[order] = np.arange(cells)
+    mesh = replace(
+        mesh,
+        face_cells=np.append(number, -1)[mesh.face_cells].astype(np.int32),
+        cell_block=mesh.cell_block[order],
+    )
     owner, other = mesh.face_cells.T
     lever = np.zeros((cells, 3))
     faces = CellFaces(mesh)
@@ -136,7 +150,7 @@ def write_disu(
         low.astype(np.int64) * cells + high, return_index=True, return_inverse=True
     )
     above = np.bincount(of_pair, np.abs(normals[inner, 2]), len(pair))
-    beside = np.bincount(of_pair, np.hypot(*normals[inner, :2].T) * (normals[inner, 2] == 0), len(pair))
+    beside = np.bincount(of_pair, np.hypot(*normals[inner, :2].T) * _upright(normals[inner]), len(pair))
     is_beside = beside > above
     low, high = low[first], high[first]
     face = inner[first]
@@ -148,6 +162,12 @@ def write_disu(
         away = np.abs(np.einsum("ij,ij->i", centers[face] - center[cell], normals[face]))
         across = np.divide(away, length, out=np.zeros(len(face)), where=length > 0)
         reach.append(np.where(is_beside, across, thickness[cell] / 2))
+    least = np.minimum(plan[low], plan[high])
+    is_wide = size > _NARROWEST * np.where(is_beside, np.sqrt(least), least)
+    low, high, size, is_beside = (each[is_wide] for each in (low, high, size, is_beside))
+    reach = [each[is_wide] for each in reach]
+    top, bottom = center[:, 2] + thickness / 2, center[:, 2] - thickness / 2
+    overlap = (top[high] - bottom[low])[~is_beside].max(initial=0.0)
     step(0.5)
     one = np.concatenate([np.arange(cells), low, high])
     two = np.concatenate([np.arange(cells), high, low])
@@ -159,12 +179,14 @@ def write_disu(
         "CL12": np.concatenate([none, reach[0], reach[1]])[order],
         "HWVA": np.concatenate([none, size, size])[order],
     }
-    head = f"BEGIN OPTIONS\n  LENGTH_UNITS {_UNITS.get(unit, 'UNKNOWN')}\nEND OPTIONS\n\n"
+    head = f"BEGIN OPTIONS\n  LENGTH_UNITS {_UNITS.get(unit, 'UNKNOWN')}\n"
+    head += f"  VERTICAL_OFFSET_TOLERANCE {float(overlap) * 1.001!r}\n" if overlap > 0 else ""
+    head += "END OPTIONS\n\n"
     head += f"BEGIN DIMENSIONS\n  NODES {cells}\n  NJA {len(one)}\nEND DIMENSIONS\n\nBEGIN GRIDDATA\n"
     file.write(head.encode())
     for name, array in (
-        ("TOP", center[:, 2] + thickness / 2),
-        ("BOT", center[:, 2] - thickness / 2),
+        ("TOP", top),
+        ("BOT", bottom),
         ("AREA", plan),
     ):
         file.write(f"  {name}\n".encode())
@@ -177,6 +199,52 @@ def write_disu(
     file.write(b"END CONNECTIONDATA\n")
     _numbers(blocks, mesh.cell_block + 1)
     step(1.0)
+
+
+def _from_top(mesh: PolyhedralMesh, normals: np.ndarray) -> np.ndarray:
+    """(C,) the cells in an order in which each comes before those below it, else as they are."""
+    first, second = mesh.face_cells.T
+    rise = np.abs(normals[:, 2])
+    plan = np.bincount(first, rise, mesh.cells + 1) / 2
+    plan += np.bincount(np.where(second < 0, mesh.cells, second), rise, mesh.cells + 1) / 2
+    wide = rise > _NARROWEST * np.minimum(plan[first], plan[second])
+    flat = np.flatnonzero((second >= 0) & wide & ~_upright(normals))
+    on = mesh.face_surface[flat]
+    inclined = on[(on >= 0) & (np.append(mesh.surface_kind, 0)[np.maximum(on, -1)] != 0)]
+    if len(inclined):
+        raise UsageError(f"{_NO_ORDER}; '{mesh.surface_names[inclined[0]]}' is inclined; {_OTHERS}")
+    first, second = mesh.face_cells[flat].T
+    rises = normals[flat, 2] > 0  # out of the first cell
+    above, below = np.where(rises, second, first), np.where(rises, first, second)
+    if (above < below).all():
+        return np.arange(mesh.cells)
+    waits = np.bincount(below, minlength=mesh.cells)  # for so many cells above
+    by_upper = np.argsort(above, kind="stable")
+    begins = np.searchsorted(above[by_upper], np.arange(mesh.cells + 1))
+    ready = np.flatnonzero(waits == 0)
+    rounds = []
+    while len(ready):
+        rounds.append(ready)
+        counts = begins[ready + 1] - begins[ready]
+        rows = np.repeat(begins[ready] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
+        freed, number = np.unique(below[by_upper[rows]], return_counts=True)
+        waits[freed] -= number
+        ready = freed[waits[freed] == 0]
+    order = np.concatenate([np.empty(0, np.int64), *rounds])
+    if len(order) < mesh.cells:
+        cell = int(np.flatnonzero(waits)[0])
+        face = int(np.flatnonzero((mesh.face_cells == cell).any(axis=1))[0])
+        place = mesh.points[mesh.face_vertices[mesh.face_offsets[face]]]
+        raise UsageError(
+            f"{_NO_ORDER}; near {place_text(place)} cells are above and below one another, as in folds; "
+            f"{_OTHERS}"
+        )
+    return order
+
+
+def _upright(normals: np.ndarray) -> np.ndarray:
+    """Which faces are vertical, up to the rounding of their corners."""
+    return np.abs(normals[:, 2]) <= _NARROWEST * np.linalg.norm(normals, axis=1)
 
 
 def _face_areas(mesh: PolyhedralMesh) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ...base.work import native_module
+from ...base.work import native_module, on_threads
 from ...simulation import PolyhedralMesh
 from ..encodings.vtk_xml import END, ArrayTag, write_array, write_header, write_length
 
@@ -23,7 +23,8 @@ _LARGEST_INT32 = 2**31 - 1
 
 def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list),
-    `property` (library id, 0: none) and `compartment`. Faces turn counter-clockwise seen from outside their
+    `property` (library id, 0: none), `compartment` and `volume`, as VTK computes only those of convex cells.
+    Faces turn counter-clockwise seen from outside their
     cell. Numbers of points and of numbers are Int32 where they fit, which halves the file, else Int64."""
     cells = CellFaces(mesh)
     count = len(mesh.cell_block)
@@ -36,6 +37,7 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
         ArrayTag("CellData", "block", "i4", 4 * count),
         ArrayTag("CellData", "property", "i4", 4 * count),
         ArrayTag("CellData", "compartment", "i4", 4 * count),
+        ArrayTag("CellData", "volume", "f8", 8 * count),
         ArrayTag("Cells", "types", "u1", count),
         ArrayTag("Cells", "faceoffsets", kind, each_size),
         ArrayTag("Cells", "faces", kind, faces_size),
@@ -47,6 +49,13 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
     write_array(file, mesh.cell_block.astype("<i4"))
     write_array(file, mesh.block_property[mesh.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
     write_array(file, np.ascontiguousarray(mesh.cell_compartment, "<i4"))
+    volumes = native_module().cell_volumes
+    write_array(
+        file,
+        volumes(
+            mesh.points, mesh.face_offsets, mesh.face_vertices, mesh.face_cells, count, on_threads(0)
+        ).astype("<f8", copy=False),
+    )
     write_array(file, np.full(count, _POLYHEDRON, np.uint8))
     ends_at = file.tell()
     faces_at = ends_at + 8 + each_size

@@ -11,7 +11,15 @@ from pathlib import Path
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import Step, no_step, text_content
-from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
+from .grid_text import (
+    NO_HEIGHT_WORDS,
+    GridText,
+    grid_heights,
+    header_lines,
+    header_numbers,
+    require_count,
+    require_spacing,
+)
 from .raster import Raster, known_heights
 
 _CPS3 = re.compile(rb"(?:\s*!.*\n)*\s*FS(?:ASCI|ATTR|LIMI|NROW|XINC)\s")
@@ -64,10 +72,11 @@ def read_zmap_grid(
     file = Path(file)
     raw = text_content(file)
     header: list[tuple[int, str]] = []  # (line, text) from the first @ to the second
-    line, at = 0, 0
+    line, at, by_gdal = 0, 0, False
     for line, text, at in header_lines(raw):  # noqa: B007  they say where the heights begin
         if text.startswith("@") and header:
             break
+        by_gdal = by_gdal or (text.startswith("!") and "created by gdal" in text.lower())
         if text and not text.startswith("!"):
             header.append((line, text))
     else:
@@ -76,8 +85,14 @@ def read_zmap_grid(
         raise InputRefused("the header needs three lines between the two @", file=file, line=line)
     (_, _), (of_none, text), (of_numbers, numbers), *_ = header
     null = text.split(",")[1].strip() if text.count(",") else ""
-    none = header_numbers(file, null, of_none, 1, "the number for no height")
+    none = []
+    if null.lower() not in NO_HEIGHT_WORDS:
+        none = header_numbers(file, null, of_none, 1, "the number for no height")
     found = header_numbers(file, numbers, of_numbers, 6, "rows, columns, and the ends of x and y")
+    if by_gdal:  # which takes the edges of its pixels for the ends
+        for low, count in ((2, found[1]), (4, found[0])):
+            half = (found[low + 1] - found[low]) / max(count, 1.0) / 2
+            found[low], found[low + 1] = found[low] + half, found[low + 1] - half
     heights = GridText(file, raw, at, line + 1)
     return _columns(heights, found, (of_numbers, of_numbers), [*none, *nodata], step, gather)
 

@@ -27,7 +27,8 @@ from .raster import Raster, without_values
 _MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 _PIXEL_SCALE, _TIEPOINTS, _TRANSFORMATION, _GEO_KEYS = 33550, 33922, 34264, 34735
 _GDAL_METADATA, _GDAL_NODATA = 42112, 42113
-_MODEL_TYPE, _RASTER_TYPE, _PLAN_UNIT = 1024, 1025, 3076  # geokeys
+_MODEL_TYPE, _RASTER_TYPE, _PROJECTED, _PLAN_UNIT = 1024, 1025, 3072, 3076  # geokeys
+_OF_USER = 32767  # for a system without a code
 _GEOGRAPHIC, _PIXEL_IS_POINT = 2, 2
 _FEET = {9002: "ft", 9003: "us-ft"}
 _NONE, _LZW, _DEFLATE, _PACKBITS = 1, 5, (8, 32946), 32773
@@ -80,6 +81,19 @@ def read_geotiff(
     keys = _geo_keys(tags.get(_GEO_KEYS, ()))
     origin, across, down = _place(file, tags, keys)
     return Raster(z, origin, across, down, _warnings(keys))
+
+
+def geotiff_system(file: str | Path) -> int | None:
+    """EPSG's number of the projected coordinate system that a GeoTIFF names; None of others, and of other
+    files."""
+    with Path(file).open("rb") as opened:
+        if not is_tiff(opened.read(4)):
+            return None
+    tifffile = vendored("tifffile", "tifffile", "reading GeoTIFF")
+    with _no_logging(), tifffile.TiffFile(file) as tiff:
+        directory = tiff.pages[0].tags.get(_GEO_KEYS)  # its value is read when it is asked for
+        number = _geo_keys(() if directory is None else directory.value).get(_PROJECTED, _OF_USER)
+    return None if number == _OF_USER else number
 
 
 @contextmanager

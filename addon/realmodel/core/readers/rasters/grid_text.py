@@ -16,6 +16,8 @@ from ...base.work import native_module
 
 _LONGEST = 1 << 10  # bytes of a number, mostly
 _BLANK = re.compile(rb"\s")
+NO_HEIGHT_WORDS = ("nan", "-nan", "+nan", "null", "na", "1.#qnan", "-1.#ind")
+_NONE = -1.7976931348623157e308  # what such words are read as
 
 
 @dataclass(frozen=True)
@@ -27,26 +29,37 @@ class GridText:
     body: int
     line: int
     decimal: str = "."
+    none: str = ""  # a word that means no height, beside NO_HEIGHT_WORDS
 
 
 def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterator[np.ndarray]:
-    """The heights of a grid, piece by piece (N,) float64. Raises InputRefused naming the line."""
+    """The heights of a grid, piece by piece (N,) float64, NaN where a word says that there is none. Raises
+    InputRefused naming the line."""
     native, file, raw, body = native_module(), text.file, text.raw, text.body
     one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
+    words = "|".join(re.escape(word) for word in (*NO_HEIGHT_WORDS, text.none.lower()) if word)
+    no_height = re.compile(rf"(?<!\S)(?:{words})(?!\S)".encode(), re.IGNORECASE)
+    as_number = repr(_NONE).encode()
     found, at = 0, body
     while at < len(raw):
-        piece = _to_blank(raw, at).translate(one_a_line)
+        given = _to_blank(raw, at).translate(one_a_line)
+        piece = no_height.sub(as_number, given)
         try:
             numbers = native.read_numbers(piece, (" ", text.decimal), [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
             begin, stop = error.items[2:4]
-            number = text.line + raw.count(b"\n", body, at + begin)
             entry = piece[begin:stop].decode("latin-1")
+            for word in no_height.finditer(given):  # back to the bytes of the file
+                if word.start() >= begin:
+                    break
+                begin -= len(as_number) - len(word.group())
+            number = text.line + raw.count(b"\n", body, at + begin)
             advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
             what = f"not a height: '{entry:.40}'"
             raise InputRefused(what, file=file, line=number, advice=advice) from error
-        at += len(piece)
+        at += len(given)
         found += len(numbers)
+        numbers[numbers == _NONE] = np.nan
         yield numbers
         step(at / len(raw))
     if found != rows * columns:

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/outside_faces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/disjoint_sets.hpp"
+#include "base/index.hpp"
+#include "base/lists.hpp"
+#include "base/parallel.hpp"
+#include "base/vectors.hpp"
+#include "simulation/corner_tetrahedra.hpp"
+#include "simulation/flat_tetrahedra.hpp"
+#include "spatial/box_tree.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+constexpr double kSamePatch = 0.64;  ///< cosine between normals within a patch: 50 degrees
+constexpr double kOnPatch = 1e-9;    ///< of the largest coordinate: what rounding may do
+constexpr double kTurned = 0.25;     ///< of the reach: what a face turned by 90 degrees is off
+constexpr double kLeast = 0.01;      ///< roundness that elements keep, if they had it
+constexpr std::size_t kMostPlaces = 64;
+constexpr int kSortings = 8;
+
+Vec3 nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
+    const Vec3 way = minus(b, a);
+    const double square = dot(way, way);
+    return square > 0 ? moved(a, std::clamp(dot(minus(p, a), way) / square, 0.0, 1.0), way) : a;
+}
+Vec3 nearest_on_triangle(const std::array<Vec3, 3>& t, const Vec3& p) {
+    // its foot, or that of an edge
+    const Vec3 n = triangle_normal(t[0], t[1], t[2]);
+    const Vec3 foot = moved(p, dot(minus(t[0], p), n) / dot(n, n), n);
+    bool is_within = true;
+    Vec3 best = t[0];
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 &a = t[i], &b = t[(i + 1) % 3];
+        is_within = is_within && dot(cross(minus(b, a), minus(foot, a)), n) >= 0;
+        const Vec3 at = nearest_on_segment(a, b, p);
+        const double far = length(minus(at, p));
+        if (far < least) {
+            least = far;
+            best = at;
+        }
+    }
+    return is_within ? foot : best;
+}
+
+/// A patch of the outside that a corner is near.
+struct Near {
+    std::int32_t patch;
+    double distance;
+};
+
+/// The outside of a model: patches, of one surface and without sharp edges, and the edges between.
+class Outside {
+public:
+    Outside(const ComplexView& model, std::span<const BoundaryTriangle> triangles, double reach)
+        : reach_(reach) {
+        for (const BoundaryTriangle& t : triangles) {
+            if (t.behind != 0 && t.in_front != 0) continue;
+            Triangle own{{}, {}, t.surface};
+            for (std::size_t i = 0; i < 3; ++i) {
+                own.at[i] = model.vertex(t.corners[i]);
+                for (const double x : own.at[i])
+                    rounding_ = std::max(rounding_, kOnPatch * std::abs(x));
+            }
+            own.normal = times(t.behind == 0 ? -1 : 1,
+                               unit(triangle_normal(own.at[0], own.at[1], own.at[2])));
+            triangles_.push_back(own);
+            corners_.push_back(t.corners);
+        }
+        find_patches();
+        std::vector<spatial::Box> boxes;
+        for (const Triangle& t : triangles_)
+            boxes.push_back(spatial::bounding_box(t.at));
+        tree_ = spatial::BoxTree(std::move(boxes));
+        boxes.clear();
+        for (const Crease& crease : creases_)
+            boxes.push_back(spatial::bounding_box(crease.ends));
+        crease_tree_ = spatial::BoxTree(std::move(boxes));
+    }
+
+    double rounding() const { return rounding_; }
+    std::int32_t surface(std::int32_t patch) const { return triangles_[index(patch)].surface; }
+
+    /// The patches within reach of a point, by number.
+    std::vector<Near> patches_near(const Vec3& p) const {
+        std::vector<Near> found;
+        tree_.find(around(p), [&](std::int32_t t) {
+            const double far = length(minus(nearest_on_triangle(triangles_[index(t)].at, p), p));
+            if (far <= reach_) found.push_back({patch_[index(t)], far});
+        });
+        std::ranges::sort(found, {}, [](const Near& n) { return std::pair(n.patch, n.distance); });
+        const auto rest = std::ranges::unique(found, {}, &Near::patch);
+        found.erase(rest.begin(), rest.end());
+        return found;
+    }
+
+    /// How far a face is turned from the nearest triangle of a patch: 1 minus the cosine.
+    double turn(std::int32_t patch, const Vec3& p, const Vec3& normal) const {
+        double least = HUGE_VAL, found = 1;
+        tree_.find(around(p), [&](std::int32_t t) {
+            if (patch_[index(t)] != patch) return;
+            const double far = length(minus(nearest_on_triangle(triangles_[index(t)].at, p), p));
+            if (far >= least) return;
+            least = far;
+            found = 1 - dot(normal, triangles_[index(t)].normal);
+        });
+        return found;
+    }
+
+    /// Places on a patch within reach of a point: the nearest of each triangle and edge, in the
+    /// order of their distances.
+    std::vector<Vec3> places_on(std::int32_t patch, const Vec3& p) const {
+        std::vector<std::pair<double, Vec3>> found;
+        tree_.find(around(p), [&](std::int32_t t) {
+            if (patch_[index(t)] != patch) return;
+            const Vec3 place = nearest_on_triangle(triangles_[index(t)].at, p);
+            const double far = length(minus(place, p));
+            if (far <= reach_) found.emplace_back(far, place);
+        });
+        crease_tree_.find(around(p), [&](std::int32_t c) {
+            const auto& [ends, patches] = creases_[index(c)];
+            if (patches[0] != patch && patches[1] != patch) return;
+            for (const Vec3& place : {nearest_on_segment(ends[0], ends[1], p), ends[0], ends[1]}) {
+                const double far = length(minus(place, p));
+                if (far <= reach_) found.emplace_back(far, place);
+            }
+        });
+        std::ranges::sort(found);
+        std::vector<Vec3> places = mapped(found, &std::pair<double, Vec3>::second);
+        const auto rest = std::ranges::unique(places);
+        places.erase(rest.begin(), rest.end());
+        if (places.size() > kMostPlaces) places.resize(kMostPlaces);
+        return places;
+    }
+
+private:
+    struct Triangle {
+        std::array<Vec3, 3> at;
+        Vec3 normal;  ///< outward
+        std::int32_t surface;
+    };
+    struct Crease {
+        std::array<Vec3, 2> ends;
+        std::array<std::int32_t, 2> patches;
+    };
+    struct Use {
+        std::array<std::int32_t, 2> edge;
+        std::int32_t triangle;
+    };
+
+    void find_patches() {
+        std::vector<Use> uses;
+        for (std::size_t t = 0; t < corners_.size(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                uses.push_back({unordered(corners_[t][i], corners_[t][(i + 1) % 3]),
+                                static_cast<std::int32_t>(t)});
+            }
+        }
+        std::ranges::sort(uses, {}, [](const Use& u) { return std::pair(u.edge, u.triangle); });
+        DisjointSets sets(triangles_.size());
+        const auto each_pair = [&](const auto& visit) {
+            for (std::size_t i = 1; i < uses.size(); ++i)
+                if (uses[i].edge == uses[i - 1].edge) visit(uses[i - 1], uses[i]);
+        };
+        each_pair([&](const Use& a, const Use& b) {
+            const Triangle &s = triangles_[index(a.triangle)], &t = triangles_[index(b.triangle)];
+            if (s.surface == t.surface && dot(s.normal, t.normal) >= kSamePatch)
+                sets.join(a.triangle, b.triangle);
+        });
+        for (std::size_t t = 0; t < triangles_.size(); ++t)
+            patch_.push_back(sets.find(static_cast<std::int32_t>(t)));
+        each_pair([&](const Use& a, const Use& b) {
+            const std::array patches{patch_[index(a.triangle)], patch_[index(b.triangle)]};
+            if (patches[0] == patches[1]) return;
+            const auto& corners = corners_[index(a.triangle)];
+            const auto& at = triangles_[index(a.triangle)].at;
+            std::array<Vec3, 2> ends{};
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t k = 0; k < 2; ++k)
+                    if (corners[i] == a.edge[k]) ends[k] = at[i];
+            creases_.push_back({ends, patches});
+        });
+    }
+    spatial::Box around(const Vec3& p) const {
+        spatial::Box box{p, p};
+        box.widen(reach_);
+        return box;
+    }
+
+    const double reach_;
+    double rounding_ = 0;
+    std::vector<Triangle> triangles_;
+    std::vector<std::array<std::int32_t, 3>> corners_;
+    std::vector<std::int32_t> patch_;  ///< of each triangle: the least triangle of its patch
+    std::vector<Crease> creases_;
+    spatial::BoxTree tree_{{}}, crease_tree_{{}};
+};
+
+class OutsideSorter {
+public:
+    OutsideSorter(FilledMesh& mesh, const Outside& outside)
+        : mesh_(mesh),
+          outside_(outside),
+          around_(rows_at(mesh, mesh.tetrahedra)),
+          near_(mesh.points.size()) {
+        for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+            if (!is_outside(mesh.triangles[f])) continue;
+            faces_.push_back(f);
+            for (const std::int32_t v : mesh.triangles[f])
+                if (near_[index(v)].empty()) look_around(v);
+        }
+    }
+
+    /// Whether a corner was moved.
+    bool run(double reach, Progress* progress) {
+        bool any = false;
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            poll(progress, i);
+            const auto& corners = mesh_.triangles[faces_[i]];
+            const auto patch = patch_of(corners, reach);
+            if (!patch) continue;
+            mesh_.surface[faces_[i]] = outside_.surface(*patch);
+            for (const std::int32_t v : corners)
+                if (distance(v, *patch) > outside_.rounding()) any |= move(v, *patch);
+        }
+        return any;
+    }
+
+private:
+    bool is_outside(const std::array<std::int32_t, 3>& face) const {
+        const auto own = around_[index(face[0])];
+        return std::ranges::count_if(own, [&](std::int32_t t) {
+                   const auto& corners = mesh_.tetrahedra[index(t)];
+                   return std::ranges::find(corners, face[1]) != corners.end() &&
+                          std::ranges::find(corners, face[2]) != corners.end();
+               }) == 1;
+    }
+    void look_around(std::int32_t v) {
+        near_[index(v)] = outside_.patches_near(mesh_.points[index(v)]);
+    }
+    /// HUGE_VAL beyond reach.
+    double distance(std::int32_t v, std::int32_t patch) const {
+        const auto& own = near_[index(v)];
+        const auto at = std::ranges::lower_bound(own, patch, {}, &Near::patch);
+        return at != own.end() && at->patch == patch ? at->distance : HUGE_VAL;
+    }
+
+    /// The patch that all corners of a face are nearest to, and that lies as the face does.
+    std::optional<std::int32_t> patch_of(const std::array<std::int32_t, 3>& face,
+                                         double reach) const {
+        const auto at = [&](std::size_t i) { return mesh_.points[index(face[i])]; };
+        const Vec3 normal = unit(triangle_normal(at(0), at(1), at(2)));
+        const Vec3 middle = middle_of(at(0), at(1), at(2));
+        std::optional<std::int32_t> best;
+        double least = HUGE_VAL;
+        for (const Near& near : near_[index(face[0])]) {
+            double far = near.distance;
+            for (const std::int32_t v : face)
+                far = std::max(far, distance(v, near.patch));
+            if (!(far < least)) continue;
+            far += kTurned * reach * outside_.turn(near.patch, middle, normal);
+            if (!(far < least)) continue;
+            least = far;
+            best = near.patch;
+        }
+        return best;
+    }
+
+    /// Moves a corner to the nearest place of the patch that is on all patches it is on.
+    bool move(std::int32_t v, std::int32_t patch) {
+        Vec3& at = mesh_.points[index(v)];
+        const Vec3 from = at;
+        const double before = least_around(v);
+        for (const Vec3& place : outside_.places_on(patch, from)) {
+            const auto there = outside_.patches_near(place);
+            const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const Near& own) {
+                if (own.distance > outside_.rounding()) return true;
+                const auto same = std::ranges::lower_bound(there, own.patch, {}, &Near::patch);
+                return same != there.end() && same->patch == own.patch &&
+                       same->distance <= outside_.rounding();
+            });
+            if (!stays_on) continue;
+            at = place;
+            const double after = least_around(v);
+            if (after > 0 && after >= std::min(before, kLeast)) {
+                near_[index(v)] = there;
+                return true;
+            }
+        }
+        at = from;
+        return false;
+    }
+    double least_around(std::int32_t v) const {
+        double least = 1;
+        for (const std::int32_t t : around_[index(v)]) {
+            const auto& corners = mesh_.tetrahedra[index(t)];
+            if (!(six_volumes(mesh_, corners) > 0)) return 0;
+            least = std::min(least, roundness(mesh_, corners));
+        }
+        return least;
+    }
+
+    FilledMesh& mesh_;
+    const Outside& outside_;
+    const Buckets<std::int32_t> around_;
+    std::vector<std::vector<Near>> near_;  ///< of each corner outside, by patch
+    std::vector<std::size_t> faces_;       ///< outside
+};
+
+}  // namespace
+
+void sort_outside_faces(FilledMesh& mesh, const ComplexView& model,
+                        std::span<const BoundaryTriangle> triangles, double reach,
+                        Progress* progress) {
+    const Outside outside(model, triangles, reach);
+    OutsideSorter sorter(mesh, outside);
+    for (int round = 0; round < kSortings && sorter.run(reach, progress); ++round) {
+    }
+}
+
+}  // namespace realmodel::simulation
