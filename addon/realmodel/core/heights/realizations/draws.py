@@ -13,21 +13,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..readers.tables.observations import Bounds
-from ..settings.methods import SURFACE_OPTIONS, checked_options
-from ..settings.variogram import Variogram
-from . import Interpolation, heights
-from .bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
-from .companions import Companions
-from .from_neighbours import KrigingStructure, dip_use, structure, thinned
-from .interpolation import Result, Task, run_method
+from ...readers.tables.observations import Bounds
+from ...settings.methods import SURFACE_OPTIONS, checked_options
+from ...settings.variogram import Variogram
+from .. import Interpolation, heights
+from ..bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
+from ..companions import Companions
+from ..from_neighbours import KrigingStructure, dip_use, structure, thinned
+from ..interpolation import Result, Task, run_method
+from ..mis_ties import without_mis_ties
+from ..on_mesh import within_bounds
+from ..run import with_dips
+from ..surface_reference import heights_of
+from ..true_thickness import lifted, measured
 from .likely_variograms import LikelyVariograms
-from .mis_ties import without_mis_ties
-from .on_mesh import within_bounds
-from .run import with_dips
 from .sheet_draws import SeriesDraw, SheetField, drawn_companions, drawn_dips, nugget_noise
-from .surface_reference import heights_of
-from .true_thickness import lifted, measured
 from .turning_bands import FieldArea, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact

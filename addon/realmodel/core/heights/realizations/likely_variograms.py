@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.elementary import exp
-from ..base.work import native_module
-from ..settings.variogram import Variogram
-from .from_neighbours import dips_of_fit
-from .interpolation import Task
+from ...base.elementary import exp
+from ...base.work import native_module
+from ...settings.variogram import Variogram
+from ..from_neighbours import dips_of_fit
+from ..interpolation import Task
 from .turning_bands import Noise
 
 _MOST = 100  # points: more know their variogram well enough

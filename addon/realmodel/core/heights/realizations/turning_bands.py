@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.algebra import dot, norm
-from ..base.elementary import cos, exp, hypot, sin
-from ..base.work import Work, native_module
-from ..settings.variogram import NO_ANISOTROPY, Structure, Variogram
+from ...base.algebra import dot, norm
+from ...base.elementary import cos, exp, hypot, sin
+from ...base.work import Work, native_module
+from ...settings.variogram import NO_ANISOTROPY, Structure, Variogram
 
 LINES = 320
 _STEPS = 64  # samples of a process in a range
