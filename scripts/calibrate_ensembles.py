@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from realmodel.core.base.work import Work
 from realmodel.core.heights import Task
-from realmodel.core.heights.draws import Draw
-from realmodel.core.heights.turning_bands import FieldArea, Noise
+from realmodel.core.heights.realizations.draws import Draw
+from realmodel.core.heights.realizations.turning_bands import FieldArea, Noise
 from realmodel.core.settings.methods import checked_options
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from realmodel.core.base.work import run
 from realmodel.core.fields import FieldDraws, Lattice
-from realmodel.core.heights.turning_bands import Noise
+from realmodel.core.heights.realizations.turning_bands import Noise
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "core"))

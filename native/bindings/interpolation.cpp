@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, fit_alike, fit_sheets, idw, idw_left_out, spline,
-// mean_spacing, nearest_distance, line_sums.
+// krige, krige_left_out, fit_variogram, likely_variograms, fit_alike, fit_sheets, idw,
+// idw_left_out, spline, mean_spacing, nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -214,6 +214,26 @@ py::dict fit_variogram(const Array<double>& points,
     return out;
 }
 
+py::list likely_variograms(const Array<double>& points,
+                           const std::optional<std::pair<double, double>>& anisotropy,
+                           const std::string& drift, const std::optional<DipsTuple>& dips,
+                           bool has_bounds, WatchedExecution* execution) {
+    const auto from = rows<3>(points, "points");
+    interpolation::FitOptions options;
+    options.drift = drift_of(drift);
+    options.dips = dips_of(dips);
+    options.has_bounds = has_bounds;
+    const auto found = unlocked([&] {
+        return interpolation::likely_variograms(from, anisotropy_of(anisotropy), options,
+                                                run(execution));
+    });
+    py::list out;
+    for (const auto& [variogram, density, squares, free] : found)
+        out.append(py::make_tuple(std::string(name_of(variogram.model)), variogram.range,
+                                  variogram.nugget, density, squares, free));
+    return out;
+}
+
 /// Points and dips of a surface.
 using SurfaceTuple = std::tuple<Array<double>, std::optional<DipsTuple>>;
 
@@ -373,6 +393,17 @@ error       as fit_variogram, of all surfaces
 Returns a list of dicts as of fit_variogram, one for each surface; empty where there is none, or the
 data are too few.
 Raises InputError as fit_variogram; Cancelled.)");
+    module.def(
+        "likely_variograms", &likely_variograms, arg("points"),
+        arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
+        arg("dips") = py::none(), arg("has_bounds") = false, arg("execution") = py::none(),
+        R"(The variograms on a grid that points (P, 3) float64 and dips allow, and how likely they are.
+
+anisotropy, drift, dips, has_bounds  as fit_variogram
+
+Returns a list of (model, range, share of the nugget in the sill, logarithm of the density, squares, free):
+squares divided by a chi-square number of so many degrees of freedom give a sill. Empty where the data are
+too few. Raises InputError as fit_variogram; Cancelled.)");
     module.def(
         "fit_sheets", &fit_sheets, arg("points"), arg("sheets"),
         arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",

@@ -20,9 +20,9 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import Work, native_module
 from realmodel.core.heights.bounded import TOLERANCE, consistent
-from realmodel.core.heights.draws import Draw
 from realmodel.core.heights.interpolation import Task
-from realmodel.core.heights.turning_bands import FieldArea, Noise
+from realmodel.core.heights.realizations.draws import Draw
+from realmodel.core.heights.realizations.turning_bands import FieldArea, Noise
 from realmodel.core.settings.methods import checked_options
 from structure_cases import heights_at, plane_fault, prepared
 

@@ -24,10 +24,10 @@ from realmodel.core import (
 )
 from realmodel.core.base.work import Work, native_module
 from realmodel.core.ensembles.realization import Realizer
-from realmodel.core.heights.draws import Draw
 from realmodel.core.heights.from_neighbours import dip_use, structure
 from realmodel.core.heights.interpolation import Task
-from realmodel.core.heights.turning_bands import FieldArea, Noise
+from realmodel.core.heights.realizations.draws import Draw
+from realmodel.core.heights.realizations.turning_bands import FieldArea, Noise
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_dips
 from realmodel.core.settings.methods import METHODS, checked_options

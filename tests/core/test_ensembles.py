@@ -10,7 +10,7 @@ from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, bui
 from realmodel.core.base.work import Work
 from realmodel.core.ensembles import Ensemble, Realizer, blocks_at, ensemble
 from realmodel.core.ensembles.ensemble import Sums, added
-from realmodel.core.heights.turning_bands import FieldArea, GaussianField, Noise
+from realmodel.core.heights.realizations.turning_bands import FieldArea, GaussianField, Noise
 from realmodel.core.project.project import Fault
 from realmodel.core.settings.variogram import VARIOGRAMS, Structure, Variogram
 from structure_cases import plane_fault

@@ -24,8 +24,8 @@ from realmodel.core.heights.companions import Companions, SheetModel
 from realmodel.core.heights.cross_validation import validate
 from realmodel.core.heights.from_neighbours import DipUse, KrigingStructure, structure
 from realmodel.core.heights.interpolation import Task
-from realmodel.core.heights.sheet_draws import SeriesDraw
-from realmodel.core.heights.turning_bands import FieldArea, GaussianField, Noise
+from realmodel.core.heights.realizations.sheet_draws import SeriesDraw
+from realmodel.core.heights.realizations.turning_bands import FieldArea, GaussianField, Noise
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.project.series import Series
 from realmodel.core.results.surface_quality import surface_quality

@@ -13,9 +13,9 @@ from ..base.work import Cancel, Progress, Work, run
 from ..cells.assembly import assemble, intersect
 from ..fields import FieldDraws
 from ..fields.series_field import SeriesField
-from ..heights.draws import Draw
-from ..heights.sheet_draws import SeriesDraw
-from ..heights.turning_bands import FieldArea, Noise
+from ..heights.realizations.draws import Draw
+from ..heights.realizations.sheet_draws import SeriesDraw
+from ..heights.realizations.turning_bands import FieldArea, Noise
 from ..model.model import Model
 from ..proof.closed_form import ClosedForm, closed_forms
 from ..structures.setup import make_surfaces

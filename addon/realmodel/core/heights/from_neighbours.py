@@ -69,6 +69,11 @@ def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
     return DipUse(baseline, min(max(share, _FEWEST_DIPS), neighbours) if neighbours else 0)
 
 
+def dips_of_fit(task: Task) -> tuple | None:
+    """The dips of a task as the native functions that fit variograms take them."""
+    return None if task.dips is None else DipUse(_spacing(task.points, task.dips), 0).native(task.dips)
+
+
 def _spacing(points: np.ndarray, dips: Dips) -> float:
     """The mean spacing of points and dips together."""
     every = np.vstack([points, np.column_stack([dips.positions, np.zeros(len(dips))])])
@@ -111,7 +116,7 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
         drift=settings.get("drift", "constant"),
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
         are_apart=are_apart,
-        dips=None if task.dips is None else DipUse(_spacing(task.points, task.dips), 0).native(task.dips),
+        dips=dips_of_fit(task),
         has_bounds=has_bounds,
         error=task.error,
     )

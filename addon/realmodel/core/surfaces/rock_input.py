@@ -16,7 +16,7 @@ from ..base.triangles import median_edge
 from ..fields import FieldDraws, LevelSolid, ScalarField
 from ..fields.series_field import SeriesField
 from ..heights import Interpolation
-from ..heights.draws import Draw
+from ..heights.realizations.draws import Draw
 from ..project.project import Rock
 from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS

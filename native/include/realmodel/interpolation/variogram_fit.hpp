@@ -92,6 +92,25 @@ constexpr bool fits_by_likelihood(std::size_t points, bool has_dips, bool has_bo
     return error > 0 || points < (has_dips ? 150U : has_bounds ? 30U : 0U);
 }
 
+/// A variogram that points and dips allow, with the sill 1. density: the logarithm of how likely
+/// they are with it, whatever sill and drift are. squares: of what variogram and drift do not
+/// explain, of `free` degrees of freedom: divided by a chi-square number of these they give a sill.
+struct LikelyVariogram {
+    Variogram variogram;
+    double density, squares;
+    std::size_t free;
+};
+
+/// Of all models, ranges and nuggets on a grid (Bayesian kriging: Kitanidis 1986, "Parameter
+/// uncertainty in estimation of spatial functions", Water Resources Research 22; Handcock and Stein
+/// 1993). Of many points a fixed, even part counts.
+/// @return none where the data are too few
+/// @throws InputError as fit_variogram; Cancelled
+std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double, 3>> points,
+                                               const Anisotropy& anisotropy,
+                                               const FitOptions& options = {},
+                                               const Execution& execution = {});
+
 /// What is known of one surface. Its dips' baseline is the mean spacing of its points and dips.
 struct SurfaceData {
     std::span<const std::array<double, 3>> points;

@@ -21,7 +21,8 @@ constexpr int kRanges = 18;
 constexpr double kRatios[] = {2, 4, 8};
 constexpr double kAzimuthStep = 15;
 constexpr double kMostAnisotropic = 20;
-constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};                      // of the sill
+constexpr double kNuggets[] = {0.001, 0.01, 0.05, 0.2};  // of the sill
+constexpr double kLikelyNuggets[] = {0, 0.1, 0.3};
 constexpr double kThicknesses[] = {1e-5, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};  // of the sill
 // Of the sill, where the nugget is at least that of known errors.
 constexpr double kNuggetsOfErrors[] = {1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1}, kMostOfErrors = 0.5;
@@ -56,6 +57,11 @@ double needed_gain(double few, double more, std::size_t data) {
         return parameters + parameters * (parameters + 1) / (count - parameters - 1);
     };
     return penalty(more) - penalty(few);
+}
+
+/// Step k of so many from one length to another, whose ratios are equal.
+double between(double first, double last, int k, int steps) {
+    return first * elementary::pow(last / first, static_cast<double>(k) / (steps - 1));
 }
 
 class LikelihoodSearch {
@@ -301,11 +307,6 @@ private:
         if (anisotropy.azimuth >= 180) anisotropy.azimuth -= 180;
     }
 
-    /// Step k of so many from one length to another, whose ratios are equal.
-    static double between(double first, double last, int k, int steps) {
-        return first * elementary::pow(last / first, static_cast<double>(k) / (steps - 1));
-    }
-
     double range(int k) const { return diagonal_ * between(kShortest, kLongest, k, kRanges); }
 
     std::span<const double> nuggets_to_begin_with() const {
@@ -355,6 +356,32 @@ std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 
     search.run(!options.dips.positions.empty(), given, options);
     if (!search.has_found()) return std::nullopt;
     return search.variogram();
+}
+
+std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double, 3>> points,
+                                               const Anisotropy& anisotropy,
+                                               const FitOptions& options,
+                                               const Execution& execution) {
+    check_anisotropy(anisotropy);
+    const Likelihood likelihood(points, options.dips, options.drift);
+    std::vector<LikelyVariogram> out;
+    if (!is_enough(likelihood)) return out;
+    for (const VariogramModel model :
+         models_for(!options.dips.positions.empty(), options.has_bounds)) {
+        for (int k = 0; k < kRanges; ++k) {
+            if (execution.progress != nullptr) execution.progress->check();
+            const double range = likelihood.diagonal() * between(kShortest, kLongest, k, kRanges);
+            for (const double nugget : kLikelyNuggets) {
+                const Variogram shape{model, range, 1, nugget, anisotropy, {}};
+                const std::optional<Likelihood::Found> found = likelihood.of({shape});
+                if (!found || !(found->squares > 0)) continue;
+                const double free = static_cast<double>(found->free);
+                const double density = found->density - free / 2 * elementary::log(found->squares);
+                out.push_back({shape, density, found->squares, found->free});
+            }
+        }
+    }
+    return out;
 }
 
 std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,

@@ -13,20 +13,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..readers.tables.observations import Bounds
-from ..settings.methods import SURFACE_OPTIONS, checked_options
-from ..settings.variogram import Variogram
-from . import Interpolation, heights
-from .bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
-from .companions import Companions
-from .from_neighbours import KrigingStructure, dip_use, structure, thinned
-from .interpolation import Result, Task, run_method
-from .mis_ties import without_mis_ties
-from .on_mesh import within_bounds
-from .run import with_dips
+from ...readers.tables.observations import Bounds
+from ...settings.methods import SURFACE_OPTIONS, checked_options
+from ...settings.variogram import Variogram
+from .. import Interpolation, heights
+from ..bounded import MethodHeights, active_bounds, consistent, holds_bounds, runner
+from ..companions import Companions
+from ..from_neighbours import KrigingStructure, dip_use, structure, thinned
+from ..interpolation import Result, Task, run_method
+from ..mis_ties import without_mis_ties
+from ..on_mesh import within_bounds
+from ..run import with_dips
+from ..surface_reference import heights_of
+from ..true_thickness import lifted, measured
+from .likely_variograms import LikelyVariograms
 from .sheet_draws import SeriesDraw, SheetField, drawn_companions, drawn_dips, nugget_noise
-from .surface_reference import heights_of
-from .true_thickness import lifted, measured
 from .turning_bands import FieldArea, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
@@ -38,7 +39,7 @@ class _Known:
     the options that reproduce them, counts, (P,) bool, the points that they use, and the variogram. For a
     surface parallel to another one these are of its thickness, and where that is perpendicular to the other
     one, thickness: (N,) the interpolated one at the nodes. joint: of a sheet of a series, what all of them
-    have in common."""
+    have in common. likely: the variograms that few points allow, of which each realization draws one."""
 
     result: Interpolation
     method: str
@@ -47,6 +48,7 @@ class _Known:
     counts: np.ndarray
     thickness: np.ndarray | None = None
     joint: KrigingStructure | None = None
+    likely: LikelyVariograms | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,8 @@ class Draw:
         own = self._known(method, task)
         if own.variogram is None:
             return own.result
+        if own.likely is not None:
+            own = self._with_drawn_variogram(task, own)
         points = thinned(own.method, task, without_mis_ties(task.points[own.counts])[0])
         field = self._field_of(own, task.companions)
         at_points, at_nodes = self._at(task, field, points[:, :2])
@@ -90,6 +94,16 @@ class Draw:
             return replace(own.result, z=lifted(task, below, own.thickness + error))
         z = z + error
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
+
+    def _with_drawn_variogram(self, task: Task, own: _Known) -> _Known:
+        """With one of the variograms that the points allow, and the heights that it gives."""
+        assert own.likely is not None
+        variogram = own.likely.draw(self.noise)
+        settings, result = own.settings, own.result
+        if "variogram" in settings:
+            settings = {**settings, "variogram": variogram.settings()}
+            result = replace(result, z=heights(own.method, replace(task, settings=settings)).z)
+        return replace(own, variogram=variogram, settings=settings, result=result)
 
     def _field_of(self, own: _Known, companions: Companions | None) -> GaussianField | SheetField:
         """S: of a sheet of a series together with those of the others."""
@@ -190,7 +204,11 @@ class Draw:
             asked = task.settings if "variogram" in settings else checked_options("kriging", {})
             joint = structure(replace(task, points=plain, settings=asked))
             variogram = joint.variogram
-        return _Known(result, method, settings, variogram, counts, thickness, joint)
+        likely = None
+        is_fitted = task.settings.get("variogram") is None
+        if variogram is not None and joint is None and thickness is None and is_fitted and not task.error:
+            likely = LikelyVariograms.of(replace(task, points=plain), settings, variogram)
+        return _Known(result, method, settings, variogram, counts, thickness, joint, likely)
 
     def _at(
         self, task: Task, field: GaussianField | SheetField, points: np.ndarray

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.algebra import dot, norm
-from ..base.elementary import cos, exp, hypot, sin
-from ..base.work import Work, native_module
-from ..settings.variogram import NO_ANISOTROPY, Structure, Variogram
+from ...base.algebra import dot, norm
+from ...base.elementary import cos, exp, hypot, sin
+from ...base.work import Work, native_module
+from ...settings.variogram import NO_ANISOTROPY, Structure, Variogram
 
 LINES = 320
 _STEPS = 64  # samples of a process in a range
@@ -58,9 +58,16 @@ class Noise:
                 self._drawn[part] = kept
         return kept[:count].copy()
 
+    def chosen(self, part: int, free: int) -> tuple[float, float]:
+        """A number from 0 to 1, and one of the chi-square distribution with so many degrees of freedom."""
+        own = self._generator(part)
+        return float(own.random()), float((own.standard_normal(free) ** 2).sum())
+
+    def _generator(self, part: int) -> np.random.Generator:
+        return np.random.Generator(np.random.Philox(np.random.SeedSequence((*self._seed, part + 1))))
+
     def _normal(self, part: int, count: int) -> np.ndarray:
-        own = np.random.Generator(np.random.Philox(np.random.SeedSequence((*self._seed, part + 1))))
-        drawn = own.standard_normal(count)
+        drawn = self._generator(part).standard_normal(count)
         if self._older is None or not self._correlation:
             return drawn
         share = self._correlation

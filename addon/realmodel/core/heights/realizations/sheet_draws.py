@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..base.work import Work
-from ..settings.dips import Dips
-from ..settings.variogram import Variogram
-from .companions import Companions, SheetModel
-from .from_neighbours import KrigingStructure
-from .interpolation import Task
-from .mis_ties import without_mis_ties
+from ...base.work import Work
+from ...settings.dips import Dips
+from ...settings.variogram import Variogram
+from ..companions import Companions, SheetModel
+from ..from_neighbours import KrigingStructure
+from ..interpolation import Task
+from ..mis_ties import without_mis_ties
 from .turning_bands import FieldArea, GaussianField, Noise
 
 NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
