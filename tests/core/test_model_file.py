@@ -17,6 +17,7 @@ from realmodel.core import (
     Project,
     Rock,
     Surface,
+    UsageError,
     build,
     load_project,
 )
@@ -77,7 +78,10 @@ def side(model):
 def saved(model, tmp_path):
     for ending, known in FORMATS.items():
         size = {"cell_size": side(model) / 20} if known.has_cell_size else {}
-        model.save(tmp_path / f"m{ending}", **size)
+        try:
+            model.save(tmp_path / f"m{ending}", **size)
+        except UsageError as error:
+            assert ending == ".disu" and "is inclined" in str(error)
     return files_of(tmp_path)
 
 

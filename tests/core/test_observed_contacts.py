@@ -73,7 +73,7 @@ def test_what_is_not_observed_is_counted():
     assert lost(model) == 6
     warning = eroded(model)["B"]
     assert warning.items == (0, 1, 2, 3, 4, 5)
-    assert "6 of its 8 contacts are eroded by 'U'" in warning.text and "observed = true" in warning.text
+    assert "it erodes 6 of the 8 contacts of 'B'" in warning.text and "observed = true" in warning.text
 
 
 def test_a_ready_mesh_stays_and_what_it_removes_is_counted():

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import number_list, place_text
+from ..base.errors import place_text
 from ..base.work import Work
 from ..surfaces.observed.kept_contacts import observed_contacts
 from ..surfaces.observed.succession import Succession
@@ -16,8 +16,8 @@ from ..surfaces.rock_input import RockInput
 from ..surfaces.wrong_sides import WrongPoints
 from .closed_form import ClosedForm
 
-_KEPT = "a ready mesh, or other data of a younger surface, lie below them"
-_NOT_KEPT = "with observed = true none would be"
+_KEPT = "it is a ready mesh, or other data of it lie below them"
+_NOT_KEPT = "if they are observed = true, it cuts none"
 
 
 def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedForm]) -> None:
@@ -32,21 +32,17 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
                 continue
             points = surface.known_points()
             is_observed = bool(len(points)) and len(observed_contacts(entry.rock, number)) == len(points)
-            cutters = [n for n in succession.cut_later(number) if is_observed or surfaces[n].has_points]
-            above = [np.nan_to_num(-form.above(work, n, points)) for n in cutters if len(points)]
-            if not above:
-                continue
-            worst = np.argmax(above, axis=0)
-            wrong = WrongPoints.of(
-                points, np.max(above, axis=0), np.array(cutters)[worst], np.arange(len(points))
-            )
-            if wrong is None or (wrong.is_part_of_survey(len(points)) and not is_observed):
-                continue
-            text = (
-                f"{len(wrong.items)} of its {len(points)} contacts are eroded by "
-                f"{number_list([repr(surfaces[n].name) for n in wrong.others])}, the farthest lies "
-                f"{wrong.by:.4g} above: point {surface.point_row(wrong.worst)} at {place_text(wrong.place)}; "
-            )
-            text += _KEPT if is_observed else _NOT_KEPT
-            rows = wrong.rows(surface)
-            entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, surface.name, rows))
+            for cutter in succession.cut_later(number) if len(points) else ():
+                if not (is_observed or surfaces[cutter].has_points):
+                    continue
+                above = np.nan_to_num(-form.above(work, cutter, points))
+                wrong = WrongPoints.of(points, above, cutter, np.arange(len(points)))
+                if wrong is None or (wrong.is_part_of_survey(len(points)) and not is_observed):
+                    continue
+                text = (
+                    f"it erodes {len(wrong.items)} of the {len(points)} contacts of '{surface.name}', the "
+                    f"farthest lies {wrong.by:.4g} above it: point {surface.point_row(wrong.worst)} at "
+                    f"{place_text(wrong.place)}; {_KEPT if is_observed else _NOT_KEPT}"
+                )
+                own = surfaces[cutter].name  # a stage without it has no such warning
+                entry.warnings.append(BuildWarning(text, "eroded", entry.rock.name, own, wrong.rows(surface)))

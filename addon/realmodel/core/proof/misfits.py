@@ -146,7 +146,7 @@ def _blocks(work: Work, model: ModelData, number: int, form: ClosedForm, near: f
         depth, to = (None if np.isnan(d) else float(d) for d in given.depths[[row, last]])
         says = f"{block} to {to:.6g}" if to is not None and last > row else block
         has = name if is_place[each] else f"{100 * (1 - seen.share[each]):.0f} % outside, most in {name}"
-        source = str(given.holes[row]), depth, row
+        source = str(given.holes[row]), depth, given.row(row)
         place = tuple(begin[each].tolist())
         low = None if is_place[each] else tuple(end[each].tolist())
         yield Misfit("block", rock.name, block, *source, place, says, has, float(length[each]), low)

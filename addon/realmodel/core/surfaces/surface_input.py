@@ -112,12 +112,14 @@ class SurfaceInput:
     def _in_order(self, points: np.ndarray, gather: JoinPieces) -> tuple[np.ndarray, np.ndarray | None]:
         """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers
         that they had, None where these are the same. The order of rows must not decide a result."""
-        count = len(points) - len(self.surface.contact_array())
+        count, rows = len(points) - len(self.surface.contact_array()), self.surface.point_rows
+        rows = rows if rows is not None and len(rows) == count else None
         order = ascending(*points[:count].T)
         if (order == np.arange(count)).all():
-            return points, None
+            return points, rows
         pieces = (points[order[first : first + ROWS_AT_ONCE]] for first in range(0, count, ROWS_AT_ONCE))
-        return gather((*pieces, points[count:]), np.empty((0, 3))), order
+        rows = order if rows is None else rows[order]
+        return gather((*pieces, points[count:]), np.empty((0, 3))), rows
 
     def _dips(self, step: Step) -> Dips | None:
         file = self.surface.dip_file

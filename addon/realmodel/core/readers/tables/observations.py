@@ -5,7 +5,7 @@ them."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ...notebook import ShortRepr
 # Of the range of heights: so far within its bounds a surface is kept, where there is room. A bound says that
 # rock beside the surface is there, not that it ends there: two sheets on one bound would leave none.
 BESIDE_BOUND = 1e-6
-_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors")
+_ARRAYS = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors", "rows")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +32,8 @@ class Observations(ShortRepr):
     used: (N,) bool, False where one is switched off, which says nothing then; without it all are used.
     on: (N,) texts, the surface on which each was seen, as the ground of a map, by its name, "" for none: it
     passes through the place, too. height_errors: (N,) float64, how far the height of each may be off, as a
-    standard deviation in model units; without it heights are exact.
+    standard deviation in model units; without it heights are exact. rows: (N,) int64, the numbers that they
+    had before they were put in order (along_holes), for messages; without it these.
 
     Raises InputRefused for arrays that do not fit together.
 
@@ -48,6 +49,7 @@ class Observations(ShortRepr):
     used: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
     on: np.ndarray = field(default_factory=lambda: np.empty(0, str))
     height_errors: np.ndarray = field(default_factory=lambda: np.empty(0))
+    rows: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
 
     def __post_init__(self) -> None:
         try:
@@ -71,14 +73,16 @@ class Observations(ShortRepr):
         used = np.asarray(self.used, bool).reshape(-1)
         on = np.asarray(self.on, str).reshape(-1)
         errors = np.asarray(self.height_errors, np.float64).reshape(-1)
+        rows = np.asarray(self.rows, np.int64).reshape(-1)
         optional = {"numbers of intervals": intervals, "of 'used'": used, "of 'on'": on, "errors": errors}
+        optional["numbers of rows"] = rows
         for what, given in optional.items():
             if len(given) not in (0, count):
                 text = f"{count} places have {len(given)} {what}"
                 raise InputRefused(text, item="observations", advice="give each place one, or none of them")
         if not (np.isfinite(errors) & (errors >= 0)).all():
             raise InputRefused("an error of a height is negative, or not finite", item="observations")
-        arrays = places, blocks, holes, depths, intervals, used, on, errors
+        arrays = places, blocks, holes, depths, intervals, used, on, errors, rows
         for name, value in zip(_ARRAYS, arrays, strict=True):
             object.__setattr__(self, name, value)
 
@@ -114,7 +118,8 @@ class Observations(ShortRepr):
         along = np.where(without[number], -self.places[:, 2], self.depths)
         has_hole = self.holes != ""
         columns = np.where(has_hole, along, 0.0), *self.places.T, self.blocks
-        found = self.some(ascending(number, *columns, self.seen_on, self.errors, ~self.in_use))
+        order = ascending(number, *columns, self.seen_on, self.errors, ~self.in_use)
+        found = replace(self, rows=self.rows if len(self.rows) else np.arange(len(self))).some(order)
         return found.some(found._continued())
 
     def _continued(self) -> np.ndarray:
@@ -151,6 +156,10 @@ class Observations(ShortRepr):
         found = found.some(in_interval)
         return {str(hole): found.some(found.holes == hole) for hole in dict.fromkeys(found.holes.tolist())}
 
+    def row(self, number: int) -> int:
+        """The number that one of them had before they were put in order."""
+        return int(self.rows[number]) if len(self.rows) else number
+
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""
         return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
@@ -160,7 +169,9 @@ class Observations(ShortRepr):
         """Several, `parts`, one after another."""
         if not parts:
             return cls(np.empty((0, 3)), np.empty(0, str))
-        *arrays, intervals, used, on, errors = ([getattr(part, name) for part in parts] for name in _ARRAYS)
+        *arrays, intervals, used, on, errors, _ = (
+            [getattr(part, name) for part in parts] for name in _ARRAYS
+        )
         if any(map(len, intervals)):
             intervals = [np.cumsum(~part.goes_on) for part in parts]
             firsts = np.cumsum([0, *(int(own.max(initial=0)) for own in intervals[:-1])])
@@ -262,7 +273,7 @@ class Bounds(ShortRepr):
 
     @classmethod
     def joined(cls, parts: Sequence[Bounds]) -> Bounds:
-        """Several of one surface, one after another."""
+        """Several, `parts`, of one surface, one after another."""
         names = ("places", "is_lower", "holes", "depths")
         joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
         ends = [part.ends for part in parts if part.ends is not None]
