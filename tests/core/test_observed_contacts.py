@@ -40,7 +40,9 @@ def lost(model):
 
 
 def eroded(model):
-    return {warning.surface: warning for warning in model.warnings if warning.kind == "eroded"}
+    """The warnings by the names of the surfaces whose contacts are removed."""
+    found = [warning for warning in model.warnings if warning.kind == "eroded"]
+    return {warning.text.split("contacts of '")[1].split("'")[0]: warning for warning in found}
 
 
 def unconformity(**options):

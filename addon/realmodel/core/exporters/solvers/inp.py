@@ -53,8 +53,8 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     sets = ElementFaces(mesh).sets()
     joint = joint_sets(sets)
     set_names = solver_names([*taken, *joint])[len(taken) :]
-    for found, name in zip(joint.values(), set_names, strict=True):
-        corners = [part.ravel() for own in found for part in own.corners.values()]
+    for parts, name in zip(joint.values(), set_names, strict=True):
+        corners = [part.ravel() for own in parts for part in own.corners.values()]
         file.write(f"*NSET, NSET={name}_nodes\n".encode())
         write_rows(file, "%d,", np.unique(np.concatenate(corners)) + 1)
     for found, name in zip(sets, set_names, strict=False):
