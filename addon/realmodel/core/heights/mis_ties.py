@@ -137,6 +137,12 @@ def _mixed(points: np.ndarray, groups: int) -> np.ndarray:
     return ((mixed >> np.uint64(32)) * np.uint64(groups) >> np.uint64(32)).astype(np.int64)
 
 
+def shuffled(places: np.ndarray) -> np.ndarray:
+    """(P,) the numbers of places (P, 2) in an order that has nothing to do with where they lie, and is the
+    same for the same places."""
+    return np.argsort(_mixed(places, 1 << 31), kind="stable")
+
+
 def first_at_each_place(points: np.ndarray) -> np.ndarray:
     """The first of the points (P, 3) at each place in plan, in their order."""
     _, first = np.unique(points[:, :2] + 0.0, axis=0, return_index=True)

@@ -13,7 +13,7 @@ from ..base.errors import place_text
 from ..base.work import Work, native_module
 from ..readers.tables.observations import BESIDE_BOUND, Bounds
 from .bounded import consistent
-from .mis_ties import contradictions, first_at_each_place, without_mis_ties
+from .mis_ties import contradictions, first_at_each_place, shuffled, without_mis_ties
 
 _TOLERANCE = 1e-10  # of the height range of the data: nearer is right
 _DIGITS = 4  # of the last digits of heights, if that is more
@@ -99,7 +99,11 @@ def correction_of_sheets(
 ) -> tuple[Terms, np.ndarray]:
     """The correction of several sheets, as native ties takes them. of_sheet: (C,) int32, to which of them
     each of the data counts."""
-    asked = (data.places, data.lower, data.upper, of_sheet)
+    # of contacts near one another the first ones count more: they must not lie on one side
+    order = np.concatenate(
+        [shuffled(data.places[: data.contacts]), np.arange(data.contacts, len(data.places))]
+    )
+    asked = (data.places[order], data.lower[order], data.upper[order], of_sheet[order])
     found = work.native(native_module().ties, nodes, triangles, sheets, asked, data.tolerance)
     faults = sheets[1].shape[1]
     count = len(found["positions"])
@@ -109,7 +113,9 @@ def correction_of_sheets(
         found["sided"].reshape(count, faults),
         found["coefficients"].reshape(len(found["radii"]), count),
     )
-    return terms, found["after"]
+    after = np.empty(len(order))
+    after[order] = found["after"]
+    return terms, after
 
 
 def tied_heights(
