@@ -14,6 +14,14 @@ target_link_libraries(realmodel_fuzzing
     PUBLIC realmodel realmodel_settings
     PRIVATE realmodel_dependencies realmodel_warnings)
 
+# Allocations that fail on request: the linker gives what calls malloc() and realloc() these instead.
+add_library(realmodel_failing_allocations INTERFACE)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_sources(realmodel_failing_allocations INTERFACE
+        "${CMAKE_CURRENT_SOURCE_DIR}/fuzz/allocations/failing_allocations.cpp")
+    target_link_options(realmodel_failing_allocations INTERFACE -Wl,--wrap=malloc -Wl,--wrap=realloc)
+endif()
+
 set(fuzzing_programs build_digests)
 if(NOT WIN32)
     list(APPEND fuzzing_programs stack_fuzzer boolean_fuzzer)

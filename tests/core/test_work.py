@@ -276,6 +276,18 @@ def test_cancelling_and_progress_reach_all_items(threads):
     assert "item 0" in {text for _, text in calls}
 
 
+def test_where_memory_ends_is_said():
+    def grows(execution):
+        raise MemoryError
+
+    def task(work):
+        with work.phase(0, 1, "cutting the blocks"):
+            work.native(grows)
+
+    with pytest.raises(BuildFailed, match=r"for this model \(cutting the blocks\); use fewer"):
+        run(task)
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="of GNU's OpenMP library on Linux")
 @pytest.mark.parametrize(("before", "policy", "asleep"), [(True, "", 2), (True, "active", 0), (False, "", 0)])
 def test_threads_that_wait_sleep_where_openmp_was_loaded_before(before, policy, asleep):

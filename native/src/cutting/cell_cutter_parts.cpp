@@ -2,6 +2,8 @@
 // The parts that a cell falls into.
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <vector>
 
 #include "cutting/cell_cutter.hpp"
 #include "cutting/shell.hpp"
@@ -133,23 +135,26 @@ bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int
 void CellCutter::attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
                                 DisjointSets& sets) const {
     const auto count = static_cast<std::int32_t>(refs.size() + 2 * result.caps.size());
-    const Position origin = position(pieces_.polygons[index(refs[0].piece)][0]);
+    std::vector<Position> corners;
     for (const std::int8_t side : {kBelow, kAbove}) {
-        Shells shells;
+        std::set<std::int32_t> shells;
         for (std::int32_t i = 0; i < count; ++i) {
-            if (side_of(index(i), refs) == side) shells[sets.find(i)];
+            if (side_of(index(i), refs) == side) shells.insert(sets.find(i));
         }
         if (shells.size() < 2) continue;
-        for (std::int32_t i = 0; i < count; ++i) {
-            if (side_of(index(i), refs) != side) continue;
-            const bool is_cap = index(i) >= refs.size();
-            const bool reversed = is_cap ? side == kAbove : refs[index(i)].which == 1;
-            shells.at(sets.find(i))
-                .add(is_cap ? result.caps[(index(i) - refs.size()) / 2]
-                            : pieces_.polygons[index(refs[index(i)].piece)],
-                     reversed ? -1 : 1, origin, [this](NodeId node) { return position(node); });
-        }
-        join_hollows(shells, sets);
+        const auto each_polygon = [&](const VisitShellPolygon& visit) {
+            for (std::int32_t i = 0; i < count; ++i) {
+                if (side_of(index(i), refs) != side) continue;
+                const bool is_cap = index(i) >= refs.size();
+                const bool reversed = is_cap ? side == kAbove : refs[index(i)].which == 1;
+                corners.clear();
+                for (const NodeId node : is_cap ? result.caps[(index(i) - refs.size()) / 2]
+                                                : pieces_.polygons[index(refs[index(i)].piece)])
+                    corners.push_back(position(node));
+                visit(sets.find(i), corners, reversed ? -1 : 1);
+            }
+        };
+        join_hollows(each_polygon, sets);
     }
 }
 

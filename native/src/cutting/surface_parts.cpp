@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <vector>
 
 #include "arrangement/joined_polygons.hpp"
 #include "base/counting_sort.hpp"
@@ -462,7 +464,6 @@ void SurfaceParts::attach_hollows(Progress* progress) {
             }
         }
     });
-    const auto at = [this](NodeId node) { return overlay_.position(node); };
     const auto visit_item = [&](const Item& item, const auto& visit) {
         if (item.patch < 0) {
             visit_loops(caps_[index(item.caps)], visit);
@@ -472,38 +473,44 @@ void SurfaceParts::attach_hollows(Progress* progress) {
             visit(patch.loops());
         }
     };
-    // what is left out is with the first face of its group
-    const auto add_far = [&](const Item& item, const Position& origin, PartShell& shell) {
-        const std::int32_t first = item.patch < 0 ? -1 : patches_[index(item.patch)].face;
-        if (first < 0 || !overlay_.far().is_first(index(first))) return;
-        const FarFaces& far = overlay_.far();
-        const int sign = slots_[index(item.slot)].sign;
-        for (const std::int32_t face : far.of_group(far.group(index(first)))) {
-            shell.add(far.model().face(index(face)), far.is_reversed(face) ? -sign : sign, origin,
-                      [&far](NodeId node) { return far.model().vertex(node); });
-        }
-    };
     const auto attach = [&](std::span<const Item> of_cell, std::int8_t half) {
         const auto is_of_half = [&](const Item& item) {
             return slots_[index(item.slot)].half == half;
         };
-        Shells shells;
+        std::set<std::int32_t> shells;
         for (const Item& item : of_cell) {
-            if (is_of_half(item)) shells[joined_->find(item.slot)];
+            if (is_of_half(item)) shells.insert(joined_->find(item.slot));
         }
         if (shells.size() < 2) return;
-        Position origin;
-        visit_item(of_cell[0], [&](const auto& loops) { origin = at(loops[0][0]); });
-        for (const Item& item : of_cell) {
-            if (!is_of_half(item)) continue;
-            PartShell& shell = shells.at(joined_->find(item.slot));
-            visit_item(item, [&](const auto& loops) {
-                for (const auto& loop : loops)
-                    shell.add(loop, slots_[index(item.slot)].sign, origin, at);
-            });
-            add_far(item, origin, shell);
-        }
-        join_hollows(shells, *joined_);
+        std::vector<Position> corners;
+        const auto each_polygon = [&](const VisitShellPolygon& visit) {
+            const auto visit_loop = [&](const auto& loop, const Item& item, int sign,
+                                        const auto& at) {
+                corners.clear();
+                for (const NodeId node : loop)
+                    corners.push_back(at(node));
+                visit(joined_->find(item.slot), corners, sign);
+            };
+            for (const Item& item : of_cell) {
+                if (!is_of_half(item)) continue;
+                const int sign = slots_[index(item.slot)].sign;
+                visit_item(item, [&](const auto& loops) {
+                    for (const auto& loop : loops)
+                        visit_loop(loop, item, sign,
+                                   [this](NodeId node) { return overlay_.position(node); });
+                });
+                // what is left out is with the first face of its group
+                const FarFaces& far = overlay_.far();
+                const std::int32_t first = item.patch < 0 ? -1 : patches_[index(item.patch)].face;
+                if (first < 0 || !far.is_first(index(first))) continue;
+                for (const std::int32_t face : far.of_group(far.group(index(first)))) {
+                    visit_loop(far.model().face(index(face)), item,
+                               far.is_reversed(face) ? -sign : sign,
+                               [&far](NodeId node) { return far.model().vertex(node); });
+                }
+            }
+        };
+        join_hollows(each_polygon, *joined_);
     };
     constexpr std::size_t kCells = 1 << 8;
     parallel_ranges(items.size(), kCells, {overlay_.threads(), progress},

@@ -7,10 +7,27 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <new>
 
 namespace realmodel::exact {
 
 namespace {
+
+/// What GMP gets its memory by, once this library is loaded. By itself it ends the process where
+/// there is none; an exception passes through it, and leaves the number that was to grow as it was.
+/// What is freed may have been taken by GMP's own functions, which use the same memory.
+void* grown(void* memory, std::size_t, std::size_t size) {
+    void* const got = std::realloc(memory, size);
+    if (got == nullptr) throw std::bad_alloc();
+    return got;
+}
+void* taken(std::size_t size) {
+    return grown(nullptr, 0, size);
+}
+[[maybe_unused]] const bool kGmpThrows = [] {
+    mp_set_memory_functions(&taken, &grown, nullptr);
+    return true;
+}();
 
 // A finite double as mantissa * 2^exponent with an odd mantissa; 0 for zero, whose exponent is left
 // as it is.

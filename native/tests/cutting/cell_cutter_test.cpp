@@ -182,6 +182,25 @@ TEST(CellCutter, AHollowInOneTowerBelongsToThatTower) {
     }
 }
 
+TEST(CellCutter, AHollowBelongsToTheTowerAroundItThoughASmallerOneReachesRoundBoth) {
+    // a frame that hangs round a wide tower; face 3 is a wall of that
+    const auto frame = prism({{0, 0},
+                              {8, 0},
+                              {8, 8},
+                              {2, 8},
+                              {2, 1},
+                              {1, 1},
+                              {1, 9},
+                              {9, 9},
+                              {9, 2},
+                              {10, 2},
+                              {10, 10},
+                              {0, 10}});
+    const CutAt cut(with_hollow(frame, {{4, 4}, {6, 4}, {6, 6}, {4, 6}}), 1.5);
+    EXPECT_EQ(cut.count(kAbove), 2);
+    EXPECT_EQ(cut.part_of(14, kAbove), cut.part_of(3, kAbove));
+}
+
 TEST(CellCutter, ThroughAHollowTheCapsGoRoundIt) {
     const CutAt cut(hollow_cube(), 0.5);
     EXPECT_DOUBLE_EQ(cut.area(), 0.75);

@@ -3,39 +3,85 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 namespace realmodel::cutting {
 namespace {
 
-/// The corners of a box by the bits of their numbers: x, y, z.
-struct Corners {
-    Position low, high;
-    Position operator()(NodeId i) const {
-        return {(i & 1) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
-                (i & 4) != 0 ? high[2] : low[2]};
+using Footprint = std::vector<std::array<double, 2>>;
+
+/// Polygons of shells; the number of each is its place here.
+struct Bodies {
+    std::vector<std::vector<std::vector<Position>>> shells;
+    std::vector<int> signs;
+
+    /// A prism over a counter-clockwise outline.
+    void add(const Footprint& outline, double low, double high, int sign) {
+        std::vector<std::vector<Position>> faces(2);
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            const auto [x, y] = outline[i];
+            const auto [u, v] = outline[(i + 1) % outline.size()];
+            faces[0].push_back({x, y, high});
+            faces[1].insert(faces[1].begin(), {x, y, low});
+            faces.push_back({{x, y, low}, {u, v, low}, {u, v, high}, {x, y, high}});
+        }
+        shells.push_back(faces);
+        signs.push_back(sign);
+    }
+    /// The shell that is joined with the last one.
+    std::size_t around_last() const {
+        DisjointSets sets(shells.size());
+        join_hollows(
+            [this](const VisitShellPolygon& visit) {
+                for (std::size_t s = 0; s < shells.size(); ++s) {
+                    for (const auto& face : shells[s])
+                        visit(static_cast<std::int32_t>(s), face, signs[s]);
+                }
+            },
+            sets);
+        const auto last = static_cast<std::int32_t>(shells.size() - 1);
+        std::size_t found = shells.size();
+        for (std::size_t s = 0; s + 1 < shells.size(); ++s) {
+            if (sets.find(static_cast<std::int32_t>(s)) != sets.find(last)) continue;
+            EXPECT_EQ(found, shells.size());
+            found = s;
+        }
+        return found;
     }
 };
 
-const std::vector<std::vector<NodeId>> kOutward{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                                {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+const Footprint kFrame{{0, 0}, {10, 0}, {10, 10}, {9, 10}, {9, 1}, {1, 1}, {1, 10}, {0, 10}};
+const Footprint kFinger{{2, 2}, {8, 2}, {8, 10}, {2, 10}};
+const Footprint kHole{{4, 4}, {6, 4}, {6, 6}, {4, 6}};
 
-PartShell shell_of(const Corners& at, int sign) {
-    PartShell shell;
-    for (const auto& face : kOutward)
-        shell.add(face, sign, at(0), at);
-    return shell;
+TEST(JoinHollows, AHollowGoesToTheShellThatContainsIt) {
+    Bodies in_finger, in_frame;
+    in_finger.add(kFrame, 0, 2, 1);
+    in_finger.add(kFinger, 0, 2, 1);
+    in_frame = in_finger;
+    in_finger.add(kHole, 0.5, 1.5, -1);
+    EXPECT_EQ(in_finger.around_last(), 1U);  // though the frame is smaller, and its box contains it
+    in_frame.add({{0.2, 0.2}, {0.8, 0.2}, {0.8, 5}, {0.2, 5}}, 0.5, 1.5, -1);
+    EXPECT_EQ(in_frame.around_last(), 0U);
 }
 
-TEST(PartShell, HasTheVolumeAndTheBoxOfItsPolygons) {
-    const PartShell shell = shell_of({{1, 2, 3}, {3, 5, 4}}, 1);
-    EXPECT_DOUBLE_EQ(shell.sixfold_volume, 6 * 6.0);
-    EXPECT_EQ(shell.box.low, (Position{1, 2, 3}));
-    EXPECT_EQ(shell.box.high, (Position{3, 5, 4}));
+TEST(JoinHollows, AHollowThatTouchesTheWallsIsInsideAllTheSame) {
+    Bodies bodies;
+    bodies.add(kFrame, 0, 2, 1);
+    bodies.add(kFinger, 0, 2, 1);
+    // three of its edges lie in walls of the finger
+    bodies.add({{2, 5}, {5, 2}, {8, 5}, {5, 8}}, 0.5, 1.5, -1);
+    EXPECT_EQ(bodies.around_last(), 1U);
 }
 
-TEST(PartShell, AroundAHollowItIsNegative) {
-    EXPECT_DOUBLE_EQ(shell_of({{0, 0, 0}, {1, 1, 2}}, -1).sixfold_volume, -6 * 2.0);
+TEST(JoinHollows, OfShellsInOneAnotherItIsTheInnermost) {
+    Bodies bodies;
+    bodies.add({{-9, -9}, {19, -9}, {19, 19}, {-9, 19}}, -9, 9, 1);
+    bodies.add(kFinger, 0, 2, 1);
+    bodies.add(kHole, 0.5, 1.5, -1);
+    EXPECT_EQ(bodies.around_last(), 1U);
 }
 
 }  // namespace

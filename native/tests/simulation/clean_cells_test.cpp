@@ -52,6 +52,14 @@ TEST(CleanCellsTest, AFaultKeepsItsNumberWhereALayerVanishes) {
     }
 }
 
+TEST(CleanCellsTest, OfNothingNothingIsLeft) {
+    const std::vector<std::int64_t> offsets{0};
+    const CleanedCells made =
+        clean_cells(ComplexView{.face_offsets = offsets}, {}, 0.1, {1, nullptr});
+    EXPECT_EQ(made.after.cells, 0u);
+    EXPECT_EQ(made.largest_move, 0);
+}
+
 TEST(CleanCellsTest, CellsThickerThanTheToleranceStay) {
     const Tower tower({0, 5, 5.01, 9});
     const CleanedCells made = cleaned(tower, 0.005);

@@ -134,8 +134,10 @@ class Work:
         except native.Cancelled as error:
             raise Cancelled("cancelled") from error
         except MemoryError as error:
+            doing = execution.text or self._text
+            step = f" ({doing})" if doing else ""
             raise BuildFailed(
-                "not enough memory for this model; use fewer triangles or a longer edge length"
+                f"not enough memory for this model{step}; use fewer triangles or a longer edge length"
             ) from error
         except RuntimeError as error:  # what the native part takes for impossible
             raise BuildFailed(

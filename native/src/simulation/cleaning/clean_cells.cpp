@@ -49,7 +49,7 @@ public:
         made.after = complex_.counts();
         made.short_edges = short_edges().size();
         made.thin_cells = thin_cells().size();
-        made.largest_move = *std::max_element(moved_.begin(), moved_.end());
+        made.largest_move = moved_.empty() ? 0.0 : std::ranges::max(moved_);
         return made;
     }
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small builds of each kind while an allocation fails, one after the other (a sample of them): as
+// SQLite is tested.
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "../sanitized.hpp"
+#include "allocations/failing_allocations.hpp"
+#include "small_builds.hpp"
+
+#if defined(__linux__)
+
+namespace realmodel {
+namespace {
+
+class FailedAllocations : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(FailedAllocations, AreErrorsAndLeaveNothingBehind) {
+    const fuzz::SmallBuild build = fuzz::small_builds(1).at(GetParam());
+    const std::uint64_t expected = build.digest(1);
+    for (const int threads : {1, 3}) {
+        for (const bool and_later : {false, true}) {
+            std::uint64_t number = 1;
+            for (std::uint64_t allocations = 1; number <= allocations;) {
+                bool is_out_of_memory = false;
+                std::uint64_t made = 0;
+                {
+                    const fuzz::FailingAllocations failing(number, and_later);
+                    try {
+                        made = build.digest(threads);
+                    } catch (const std::bad_alloc&) {
+                        is_out_of_memory = true;
+                    }
+                    allocations = failing.count();
+                }
+                if (!is_out_of_memory) {
+                    ASSERT_EQ(made, expected) << build.name << ", allocation " << number;
+                }
+                number += 1 + number / (kSanitized ? 2 : 6);
+            }
+            EXPECT_EQ(build.digest(threads), expected) << build.name;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallBuilds, FailedAllocations,
+                         testing::Range<std::size_t>(0, fuzz::small_builds(1).size()),
+                         [](const auto& kind) { return "Kind" + std::to_string(kind.param); });
+
+}  // namespace
+}  // namespace realmodel
+
+#endif
