@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
-from ..base.algebra import are_among
+from ..base.algebra import are_among, dot
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, METHODS, NEIGHBOURS_OF_FITTED
@@ -16,6 +17,7 @@ from ..settings.variogram import Variogram, fit_warnings
 from .companions import (
     MOST_AT_ONCE,
     MOST_NEIGHBOURS,
+    Alike,
     Companions,
     JointData,
     SheetModel,
@@ -26,6 +28,10 @@ from .companions import (
     pooled,
 )
 from .interpolation import Result, Task
+from .regional_plane import RegionalPlane, plane_of
+
+
+Beside = TypeVar("Beside", bound=Alike)
 
 
 def _neighborhood(settings: dict, neighbours: int) -> tuple[int, int, float]:
@@ -83,18 +89,22 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 @dataclass(frozen=True)
 class KrigingStructure:
     """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
-    that are kriged together."""
+    that are kriged together. plane: around which heights are kriged; None: around their mean."""
 
     variogram: Variogram
     neighbours: int
     dips: DipUse
     warnings: tuple[str, ...] = ()
     sheets: SheetModel | None = None
+    plane: RegionalPlane | None = None
 
 
 def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
     they may be in a file."""
+    if task.settings.get("drift") == "auto":
+        plane = _regional_plane(task)
+        return replace(structure(_around(task, plane), are_apart), plane=plane)
     if task.companions is not None:
         return _joint_structure(task, task.companions)
     settings = task.settings
@@ -125,6 +135,73 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
     warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
     return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+
+
+def _regional_plane(task: Task) -> RegionalPlane | None:
+    """The plane that the data of a task show together with those of surfaces that are parallel to its own."""
+    points, dips = [task.points], [task.dips]
+    if (beside := task.companions or task.alike) is not None:
+        points, dips = beside.data(task.points, task.dips)
+    each_way = [
+        None if slopes is None else (slopes.gradients, _spacing(own, slopes) if len(own) else 1.0)
+        for own, slopes in zip(points, dips, strict=True)
+    ]
+    return plane_of(points, each_way)
+
+
+def _around(task: Task, plane: RegionalPlane | None) -> Task:
+    """A task whose heights are those above a plane, with a constant drift."""
+    task = replace(task, settings={**task.settings, "drift": "constant"})
+    if plane is None:
+        return task
+
+    def above(beside: Beside) -> Beside:
+        points = [plane.taken_from(each) for each in beside.points]
+        return replace(beside, points=points, dips=[plane.slopes_from(each) for each in beside.dips])
+
+    bounds = task.bounds and replace(task.bounds, places=plane.taken_from(task.bounds.places))
+    return replace(
+        task,
+        points=plane.taken_from(task.points),
+        dips=plane.slopes_from(task.dips),
+        bounds=bounds,
+        companions=task.companions and above(task.companions),
+        alike=task.alike and above(task.alike),
+    )
+
+
+def _around_plane(task: Task, known: KrigingStructure) -> Result:
+    """krige around the plane of a structure."""
+    plane = known.plane
+    result = krige(_around(task, plane), replace(known, plane=None))
+    if plane is None:
+        return result
+    places = task.points[:, :2] if task.left_out else task.nodes
+    z, variance = result.z + plane.at(places)[: len(result.z)], result.variance
+    if variance is None or task.companions is not None or len(task.points) > MOST_AT_ONCE:
+        return replace(result, z=z)
+    away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
+    if task.left_out:
+        without = [_regional_plane(_without(task, number)) for number in range(len(task.points))]
+        slopes = np.array([np.zeros(2) if each is None else each.slope for each in without])
+        z = z + dot(slopes - plane.slope, away)
+    return replace(result, z=z, variance=variance + plane.variance(away))
+
+
+def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> np.ndarray:
+    """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
+    of an error of the slope is theirs."""
+    steps = RegionalPlane(axis, np.zeros((2, 2)), task.points[0, :2])
+    data = np.column_stack([task.points[:, :2], steps.at(task.points[:, :2])])
+    dips = task.dips and replace(task.dips, gradients=np.tile(axis, (len(task.dips), 1)))
+    flat = replace(task, points=data, dips=dips, settings={**task.settings, "drift": "constant"}, bounds=None)
+    return steps.at(task.points[:, :2] if task.left_out else task.nodes) - krige(
+        flat, replace(known, plane=None)
+    ).z
+
+
+def _without(task: Task, number: int) -> Task:
+    return replace(task, points=np.delete(task.points, number, axis=0))
 
 
 def thinned(method: str, task: Task, points: np.ndarray) -> np.ndarray:
@@ -184,7 +261,7 @@ def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
         return _of_model(alone, *companions.model, points, count)
     spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
     fitted = likeliest(alone.run, alone.settings, companions, data, spacing)
-    if fitted is not None:
+    if fitted is not None and fitted["sill"] > 0:  # data in one plane leave nothing
         given = task.settings["variogram"]
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
         variogram = variogram if given is None else Variogram.from_settings(given)
@@ -297,6 +374,8 @@ def krige(task: Task, known: KrigingStructure | None = None) -> Result:
     settings = task.settings
     if known is None:
         known = structure(task)
+    if settings.get("drift") == "auto":
+        return _around_plane(task, known)
     warnings = list(known.warnings)
     if task.companions is not None:
         z, variance, alone = _cokrige(task, task.companions, known)

@@ -17,7 +17,7 @@ from .method_options import OptionRefused
 from .setting import Setting, Settings, Words
 from .variogram import VARIOGRAMS
 
-DEFAULT_METHOD = "kriging"
+DEFAULT_METHOD = "universal_kriging"
 # how a ready mesh is continued to faults that it does not reach, unless it has a method
 CONTINUATION, CONTINUATION_OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
 DEFAULT_NEIGHBOURS = 16
@@ -68,7 +68,11 @@ EXTRAPOLATE: Words = {
     "nearest": ("Nearest Point", "Beyond the points, the elevation of the nearest one"),
     "none": ("None", "The surface ends where the points end"),
 }
-_DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A second-order surface")}
+_DRIFTS: Words = {
+    "auto": ("Automatic", "A plane, as far as the points show one: few of them, or rough ones, give less slope"),
+    "linear": ("Linear", "A plane"),
+    "quadratic": ("Quadratic", "A second-order surface"),
+}
 _NEIGHBOURS = Setting(
     DEFAULT_NEIGHBOURS,
     "whole",
@@ -222,12 +226,12 @@ METHODS: dict[str, Method] = {
         "from_neighbours.krige",
         {
             "drift": Setting(
-                "linear",
+                "auto",
                 "word",
                 "Drift",
                 "Form of the trend",
                 _DRIFTS,
-                more='or `"quadratic"`',
+                more='a plane as far as the points show one; or `"linear"`, or `"quadratic"`',
             ),
             **_NEIGHBOURHOOD_OF_KRIGING,
             **_VARIOGRAM,
