@@ -138,7 +138,10 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
 
 
 def _regional_plane(task: Task) -> RegionalPlane | None:
-    """The plane that the data of a task show together with those of surfaces that are parallel to its own."""
+    """The plane that the data of a task show together with those of surfaces that are parallel to its own;
+    None for many points: they show what is near, and heights depend on what is near alone."""
+    if len(task.points) > MOST_AT_ONCE:
+        return None
     points, dips = [task.points], [task.dips]
     if (beside := task.companions or task.alike) is not None:
         points, dips = beside.data(task.points, task.dips)
@@ -173,12 +176,15 @@ def _around(task: Task, plane: RegionalPlane | None) -> Task:
 def _around_plane(task: Task, known: KrigingStructure) -> Result:
     """krige around the plane of a structure."""
     plane = known.plane
-    result = krige(_around(task, plane), replace(known, plane=None))
+    above = _around(task, plane)
+    result = krige(above, replace(known, plane=None))
     if plane is None:
         return result
     places = task.points[:, :2] if task.left_out else task.nodes
-    z, variance = result.z + plane.at(places)[: len(result.z)], result.variance
-    if variance is None or task.companions is not None or len(task.points) > MOST_AT_ONCE:
+    z, variance = result.z + plane.at(places), result.variance
+    if not task.left_out:
+        _honor_exactly(task, above.points, result.z, z)
+    if variance is None or task.companions is not None:
         return replace(result, z=z)
     away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
     if task.left_out:
@@ -188,6 +194,18 @@ def _around_plane(task: Task, known: KrigingStructure) -> Result:
     return replace(result, z=z, variance=variance + plane.variance(away))
 
 
+def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndarray) -> None:
+    """Gives nodes on points the points' heights where these were met above the plane, without rounding."""
+    points, nodes = task.points, task.nodes
+    near = np.flatnonzero(np.isin(nodes[:, 0], points[:, 0]))
+    own = np.flatnonzero(np.isin(points[:, 0], nodes[near, 0]))
+    number = {tuple(place): at for place, at in zip(points[own, :2].tolist(), own.tolist(), strict=True)}
+    for node in near.tolist():
+        at = number.get(tuple(nodes[node].tolist()))
+        if at is not None and kriged[node] == above[at, 2]:
+            z[node] = points[at, 2]
+
+
 def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> np.ndarray:
     """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
     of an error of the slope is theirs."""
@@ -195,9 +213,10 @@ def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> n
     data = np.column_stack([task.points[:, :2], steps.at(task.points[:, :2])])
     dips = task.dips and replace(task.dips, gradients=np.tile(axis, (len(task.dips), 1)))
     flat = replace(task, points=data, dips=dips, settings={**task.settings, "drift": "constant"}, bounds=None)
-    return steps.at(task.points[:, :2] if task.left_out else task.nodes) - krige(
-        flat, replace(known, plane=None)
-    ).z
+    return (
+        steps.at(task.points[:, :2] if task.left_out else task.nodes)
+        - krige(flat, replace(known, plane=None)).z
+    )
 
 
 def _without(task: Task, number: int) -> Task:

@@ -74,21 +74,25 @@ def plane_of(
             squares += np.array([1, 0, 1]) * len(slopes) * length**2
             products += length**2 * slopes.sum(axis=0)
             total += length**2 * float((slopes * slopes).sum())
-    if center is None or free < 0:
+    if center is None:
         return None
     xx, xy, yy = squares.tolist()
     angle = float(atan2(np.array([2 * xy]), np.array([xx - yy]))[0]) / 2
     c, s = float(cos(angle)), float(sin(angle))
     axes = np.array([[c, s], [-s, c]])
     spread = np.array([c * c * xx + 2 * c * s * xy + s * s * yy, s * s * xx - 2 * c * s * xy + c * c * yy])
-    shown = spread > (_IN_LINE if free else _NEAR_LINE) * spread.max()
-    fitted = np.where(shown, dot(axes, products) / np.where(shown, spread, 1.0), 0.0)
-    gain = float((spread * fitted * fitted).sum())
-    error = max(total - gain, 0.0) / free if free else 0.0
+    shown = spread > (_IN_LINE if free > 0 else _NEAR_LINE) * spread.max()
+    along = np.where(shown, spread, 1.0)
+    fitted = np.where(shown, dot(axes, products) / along, 0.0)
+    gain = float((along * fitted * fitted).sum())
+    error = max(total - gain, 0.0) / free if free > 0 else 0.0
     varies = (gain - 2 * error) / float(spread.sum() or 1.0)
     if not varies > 0:
         return None
-    kept = np.where(shown, spread * varies / (spread * varies + error), 0.0)
+    kept = np.where(shown, along * varies / (along * varies + error), 0.0)
     slope = axes.T[:, 0] * (kept * fitted)[0] + axes.T[:, 1] * (kept * fitted)[1]
-    variances = np.where(shown, error * kept / np.where(shown, spread, 1.0), varies)
-    return RegionalPlane(slope, (axes.T * variances) @ axes, center)
+    variances = np.where(shown, error * kept / along, varies)
+    c2, s2, cs = c * c, s * s, c * s
+    p, q = variances.tolist()
+    covariance = np.array([[c2 * p + s2 * q, cs * (p - q)], [cs * (p - q), s2 * p + c2 * q]])
+    return RegionalPlane(slope, covariance, center)

@@ -69,7 +69,10 @@ EXTRAPOLATE: Words = {
     "none": ("None", "The surface ends where the points end"),
 }
 _DRIFTS: Words = {
-    "auto": ("Automatic", "A plane, as far as the points show one: few of them, or rough ones, give less slope"),
+    "auto": (
+        "Automatic",
+        "A plane, as far as the points show one: few of them, or rough ones, give less slope",
+    ),
     "linear": ("Linear", "A plane"),
     "quadratic": ("Quadratic", "A second-order surface"),
 }
