@@ -30,7 +30,6 @@ from .companions import (
 from .interpolation import Result, Task
 from .regional_plane import RegionalPlane, plane_of
 
-
 Beside = TypeVar("Beside", bound=Alike)
 
 

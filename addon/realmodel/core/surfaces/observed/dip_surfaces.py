@@ -3,8 +3,8 @@
 
 A block was deposited on the surface below it, whatever this had cut before, and lies parallel to it; it lies
 parallel to the surface above it unless that came as an erosion surface and cut it. So surfaces that cut part
-the others into runs that are conformable with one another, each with its unconformity as the lowest. Where all
-surfaces cut, as by default, their rules do not say which of them are unconformities: none parts but the
+the others into runs that are conformable with one another, each with its unconformity as the lowest. Where
+all surfaces cut, as by default, their rules do not say which of them are unconformities: none parts but the
 youngest, which may be the ground.
 """
 
