@@ -172,6 +172,11 @@ def _around(task: Task, plane: RegionalPlane | None) -> Task:
     )
 
 
+def around_its_plane(task: Task) -> Task:
+    """A task with the drift "auto" as ordinary kriging takes it: what lies above its plane."""
+    return _around(task, _regional_plane(task))
+
+
 def _around_plane(task: Task, known: KrigingStructure) -> Result:
     """krige around the plane of a structure."""
     plane = known.plane

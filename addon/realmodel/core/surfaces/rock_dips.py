@@ -20,6 +20,7 @@ from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
+    DEFAULT_OPTIONS,
     METHODS,
     SURFACE_OPTIONS,
     checked_options,
@@ -196,11 +197,11 @@ def _by_blocks(
 def _heights_by_dips(work: Work, entry: RockInput, number: int, dips: Dips, counts: np.ndarray) -> np.ndarray:
     """(D,) heights of a surface of few points at dips, from its points and the dips that count for it."""
     surface, plan = entry.rock.surfaces[number], np.ascontiguousarray(dips.positions)
-    own = [] if surface.known_dips() is None else [surface.known_dips()]
-    slopes = Dips.joined([*own, dips.some(counts)])
-    slopes = Dips(slopes.positions, slopes.gradients) if len(slopes) else None
+    own = surface.known_dips()
+    joined = Dips.joined([*([] if own is None else [own]), dips.some(counts)])
+    slopes = Dips(joined.positions, joined.gradients) if len(joined) else None
     with naming(surface_item(entry.rock, surface), surface.shape_source):
-        settings = checked_options(DEFAULT_METHOD, {})
+        settings = checked_options(DEFAULT_METHOD, DEFAULT_OPTIONS)
         return heights(DEFAULT_METHOD, Task(work, surface.point_array(), plan, settings, dips=slopes)).z
 
 
