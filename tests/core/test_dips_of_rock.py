@@ -133,8 +133,8 @@ def test_a_dip_without_a_name_counts_as_far_as_no_unconformity_parts_it():
 
 def test_where_each_surface_cuts_a_warning_says_what_dips_count_for():
     found, warnings = counted(rock_of(["erosional"] * 3, dips_of(z=np.array([5.0, 15.0]), count=2)))
-    assert found == [["S0"], ["S1"]]
-    assert any("2 dips of blocks count for the surface under their block only" in text for text in warnings)
+    assert found == [["S0", "S1"], ["S0", "S1"]], "all but the youngest, which may be the ground"
+    assert any("2 dips of blocks count for unconformities, too" in text for text in warnings)
 
 
 def test_the_map_shows_the_block_of_a_dip_without_a_name(tmp_path):

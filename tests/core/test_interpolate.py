@@ -208,7 +208,7 @@ def test_surfaces_interpolated_on_one_mesh(basin, tmp_path):
     assert np.array_equal(floor[0][:, :2], top[0][:, :2])
     assert model.surface(1)[0].shape == (4, 3)
     methods = [result.method if result else None for result in model.interpolations]
-    assert methods == ["idw", None, "kriging"]
+    assert methods == ["idw", None, "universal_kriging"]
     assert model.interpolations[2].variogram == Variogram("gaussian", 8.0, 0.5)
     # the region is 55 in area; the ready mesh is clipped by it
     thickness = model.volume / 55.0

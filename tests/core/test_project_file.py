@@ -185,7 +185,11 @@ CASES = {
         10,
         "'sill' must be more than 0",
     ),
-    "drift of ordinary kriging": (POINTS + 'drift = "linear"\n', 10, "belongs to universal_kriging"),
+    "drift of ordinary kriging": (
+        POINTS + 'method = "kriging"\ndrift = "linear"\n',
+        11,
+        "belongs to universal_kriging",
+    ),
     "unknown drift": (POINTS + 'method = "universal_kriging"\ndrift = 2\n', 11, "'drift' cannot be 2"),
     "radius 0": (POINTS + "radius = 0\n", 10, "more than 0"),
     "octants with decimals": (POINTS + "octants = 1.5\n", 10, "whole number"),

@@ -327,9 +327,10 @@ def test_variances_know_of_the_other_sheets():
 def test_cross_validation_knows_of_the_other_sheets():
     surfaces = surfaces_of([30, 10, 30])
     points = [surface.points for surface in surfaces]
-    task = Task(Work(), points[1], np.empty((0, 2)), checked_options("kriging", {}))
+    method, settings = surfaces[1].method_options()
+    task = Task(Work(), points[1], np.empty((0, 2)), settings)
     joint = replace(task, companions=Companions(1, points, [None] * 3))
-    found, plain = (validate("kriging", each, 10) for each in (joint, task))
+    found, plain = (validate(method, each, 10) for each in (joint, task))
     assert found.rmse < 0.5 * plain.rmse
     model = build(Project("p", [rock_of(surfaces)]))
     assert surface_quality(model, 1).cross_validation.rmse == pytest.approx(found.rmse)

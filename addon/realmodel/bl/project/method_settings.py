@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from ...core.settings.methods import METHODS, OPTIONS, STRUCTURE
+from ...core.settings.methods import DEFAULT_OPTIONS, METHODS, OPTIONS, STRUCTURE
 from ...core.settings.setting import property_name, switch_name
 from .settings import number, rock_of, set_number
 
@@ -96,6 +96,8 @@ def set_options(row, method, options):
     stored as text."""
     if method is not None:
         row.method = method
+        for key in DEFAULT_OPTIONS.keys() & METHODS[method].options.keys():  # of a row without a method
+            set_value(row, key, OPTIONS, METHODS[method].options[key].default)
     others = {}
     for key, given in options.items():
         if key == "variogram" and given is not None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
-from ..base.algebra import are_among
+from ..base.algebra import are_among, dot
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, METHODS, NEIGHBOURS_OF_FITTED
@@ -16,6 +17,7 @@ from ..settings.variogram import Variogram, fit_warnings
 from .companions import (
     MOST_AT_ONCE,
     MOST_NEIGHBOURS,
+    Alike,
     Companions,
     JointData,
     SheetModel,
@@ -26,6 +28,9 @@ from .companions import (
     pooled,
 )
 from .interpolation import Result, Task
+from .regional_plane import RegionalPlane, plane_of
+
+Beside = TypeVar("Beside", bound=Alike)
 
 
 def _neighborhood(settings: dict, neighbours: int) -> tuple[int, int, float]:
@@ -83,18 +88,22 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 @dataclass(frozen=True)
 class KrigingStructure:
     """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
-    that are kriged together."""
+    that are kriged together. plane: around which heights are kriged; None: around their mean."""
 
     variogram: Variogram
     neighbours: int
     dips: DipUse
     warnings: tuple[str, ...] = ()
     sheets: SheetModel | None = None
+    plane: RegionalPlane | None = None
 
 
 def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
     they may be in a file."""
+    if task.settings.get("drift") == "auto":
+        plane = _regional_plane(task)
+        return replace(structure(_around(task, plane), are_apart), plane=plane)
     if task.companions is not None:
         return _joint_structure(task, task.companions)
     settings = task.settings
@@ -125,6 +134,97 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
     warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
     return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+
+
+def _regional_plane(task: Task) -> RegionalPlane | None:
+    """The plane that the data of a task show together with those of surfaces that are parallel to its own;
+    None for many points: they show what is near, and heights depend on what is near alone."""
+    if len(task.points) > MOST_AT_ONCE:
+        return None
+    points, dips = [task.points], [task.dips]
+    if (beside := task.companions or task.alike) is not None:
+        points, dips = beside.data(task.points, task.dips)
+    each_way = [
+        None if slopes is None else (slopes.gradients, _spacing(own, slopes) if len(own) else 1.0)
+        for own, slopes in zip(points, dips, strict=True)
+    ]
+    return plane_of(points, each_way)
+
+
+def _around(task: Task, plane: RegionalPlane | None) -> Task:
+    """A task whose heights are those above a plane, with a constant drift."""
+    task = replace(task, settings={**task.settings, "drift": "constant"})
+    if plane is None:
+        return task
+
+    def above(beside: Beside) -> Beside:
+        points = [plane.taken_from(each) for each in beside.points]
+        return replace(beside, points=points, dips=[plane.slopes_from(each) for each in beside.dips])
+
+    bounds = task.bounds and replace(task.bounds, places=plane.taken_from(task.bounds.places))
+    return replace(
+        task,
+        points=plane.taken_from(task.points),
+        dips=plane.slopes_from(task.dips),
+        bounds=bounds,
+        companions=task.companions and above(task.companions),
+        alike=task.alike and above(task.alike),
+    )
+
+
+def around_its_plane(task: Task) -> Task:
+    """A task with the drift "auto" as ordinary kriging takes it: what lies above its plane."""
+    return _around(task, _regional_plane(task))
+
+
+def _around_plane(task: Task, known: KrigingStructure) -> Result:
+    """krige around the plane of a structure."""
+    plane = known.plane
+    above = _around(task, plane)
+    result = krige(above, replace(known, plane=None))
+    if plane is None:
+        return result
+    places = task.points[:, :2] if task.left_out else task.nodes
+    z, variance = result.z + plane.at(places), result.variance
+    if not task.left_out:
+        _honor_exactly(task, above.points, result.z, z)
+    if variance is None or task.companions is not None:
+        return replace(result, z=z)
+    away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
+    if task.left_out:
+        without = [_regional_plane(_without(task, number)) for number in range(len(task.points))]
+        slopes = np.array([np.zeros(2) if each is None else each.slope for each in without])
+        z = z + dot(slopes - plane.slope, away)
+    return replace(result, z=z, variance=variance + plane.variance(away))
+
+
+def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndarray) -> None:
+    """Gives nodes on points the points' heights where these were met above the plane, without rounding."""
+    points, nodes = task.points, task.nodes
+    near = np.flatnonzero(np.isin(nodes[:, 0], points[:, 0]))
+    own = np.flatnonzero(np.isin(points[:, 0], nodes[near, 0]))
+    number = {tuple(place): at for place, at in zip(points[own, :2].tolist(), own.tolist(), strict=True)}
+    for node in near.tolist():
+        at = number.get(tuple(nodes[node].tolist()))
+        if at is not None and kriged[node] == above[at, 2]:
+            z[node] = points[at, 2]
+
+
+def _from_neighbours(task: Task, known: KrigingStructure, axis: np.ndarray) -> np.ndarray:
+    """(N,) how far nodes, or points left out, lie along an axis from where their neighbours put them: so much
+    of an error of the slope is theirs."""
+    steps = RegionalPlane(axis, np.zeros((2, 2)), task.points[0, :2])
+    data = np.column_stack([task.points[:, :2], steps.at(task.points[:, :2])])
+    dips = task.dips and replace(task.dips, gradients=np.tile(axis, (len(task.dips), 1)))
+    flat = replace(task, points=data, dips=dips, settings={**task.settings, "drift": "constant"}, bounds=None)
+    return (
+        steps.at(task.points[:, :2] if task.left_out else task.nodes)
+        - krige(flat, replace(known, plane=None)).z
+    )
+
+
+def _without(task: Task, number: int) -> Task:
+    return replace(task, points=np.delete(task.points, number, axis=0))
 
 
 def thinned(method: str, task: Task, points: np.ndarray) -> np.ndarray:
@@ -184,7 +284,7 @@ def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
         return _of_model(alone, *companions.model, points, count)
     spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
     fitted = likeliest(alone.run, alone.settings, companions, data, spacing)
-    if fitted is not None:
+    if fitted is not None and fitted["sill"] > 0:  # data in one plane leave nothing
         given = task.settings["variogram"]
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
         variogram = variogram if given is None else Variogram.from_settings(given)
@@ -297,6 +397,8 @@ def krige(task: Task, known: KrigingStructure | None = None) -> Result:
     settings = task.settings
     if known is None:
         known = structure(task)
+    if settings.get("drift") == "auto":
+        return _around_plane(task, known)
     warnings = list(known.warnings)
     if task.companions is not None:
         z, variance, alone = _cokrige(task, task.companions, known)

@@ -25,6 +25,7 @@ from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
+    DEFAULT_OPTIONS,
     METHODS,
     checked_options,
 )
@@ -206,8 +207,9 @@ class Surface(Shaped):
         Raises OptionRefused."""
         if self.method is None and not self.interpolated:
             return CONTINUATION, checked_options(CONTINUATION, {**CONTINUATION_OPTIONS, **self.options})
-        method = self.method or DEFAULT_METHOD
-        return method, checked_options(method, self.options)
+        if self.method is None:
+            return DEFAULT_METHOD, checked_options(DEFAULT_METHOD, {**DEFAULT_OPTIONS, **self.options})
+        return self.method, checked_options(self.method, self.options)
 
 
 @dataclass

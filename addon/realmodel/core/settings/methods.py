@@ -17,7 +17,8 @@ from .method_options import OptionRefused
 from .setting import Setting, Settings, Words
 from .variogram import VARIOGRAMS
 
-DEFAULT_METHOD = "kriging"
+# of a surface that names no method
+DEFAULT_METHOD, DEFAULT_OPTIONS = "universal_kriging", {"drift": "auto"}
 # how a ready mesh is continued to faults that it does not reach, unless it has a method
 CONTINUATION, CONTINUATION_OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
 DEFAULT_NEIGHBOURS = 16
@@ -68,7 +69,14 @@ EXTRAPOLATE: Words = {
     "nearest": ("Nearest Point", "Beyond the points, the elevation of the nearest one"),
     "none": ("None", "The surface ends where the points end"),
 }
-_DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A second-order surface")}
+_DRIFTS: Words = {
+    "linear": ("Linear", "A plane"),
+    "quadratic": ("Quadratic", "A second-order surface"),
+    "auto": (
+        "Automatic",
+        "A plane, as far as the points show one: few of them, or rough ones, give less slope",
+    ),
+}
 _NEIGHBOURS = Setting(
     DEFAULT_NEIGHBOURS,
     "whole",
@@ -227,7 +235,8 @@ METHODS: dict[str, Method] = {
                 "Drift",
                 "Form of the trend",
                 _DRIFTS,
-                more='or `"quadratic"`',
+                more='or `"quadratic"`; or `"auto"`, a plane as far as the points show one, the default '
+                "where no method is named",
             ),
             **_NEIGHBOURHOOD_OF_KRIGING,
             **_VARIOGRAM,

@@ -3,6 +3,7 @@
 Those of kind "other" are read, checked and shown by code of their own; so are parts of some more."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..base.units import METERS, UNIT_NAMES
@@ -11,7 +12,7 @@ from .directions import checked_direction
 from .mesh_sizes import edge_length_fault, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
 from .method_options import OptionRefused
-from .methods import DEFAULT_METHOD, METHODS, OPTIONS
+from .methods import DEFAULT_METHOD, DEFAULT_OPTIONS, METHODS, OPTIONS
 from .rules import DEFAULT_RULE, RULES
 from .series import FIELD, KINDS, resolution_fault
 from .setting import Setting
@@ -227,7 +228,8 @@ SURFACE = {
         tip="How elevations are interpolated from the points",
         words=_labels(METHODS),
     ),
-    **OPTIONS,
+    **OPTIONS,  # those of a new row are those of a surface that names no method
+    **{key: replace(OPTIONS[key], default=given) for key, given in DEFAULT_OPTIONS.items()},
     "minimum_thickness": Setting(
         kind="length",
         label="Minimum Thickness",

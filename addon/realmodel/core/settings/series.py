@@ -17,7 +17,7 @@ KINDS = {
     SHEETS: ("Sheets", "Sheets with one elevation at each position, interpolated together"),
 }
 
-SHEET_METHODS = ("kriging", "universal_kriging", "dsi")  # by which sheets are interpolated together
+SHEET_METHODS = ("universal_kriging", "kriging", "dsi")  # by which sheets are interpolated together
 
 
 def resolution_fault(resolution: Any) -> str | None:

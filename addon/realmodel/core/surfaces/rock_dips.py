@@ -20,6 +20,7 @@ from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
+    DEFAULT_OPTIONS,
     METHODS,
     SURFACE_OPTIONS,
     checked_options,
@@ -29,6 +30,9 @@ from .observed.derived import BlockNumbers
 from .observed.dip_surfaces import beside_blocks, blocks_at, runs_of_blocks
 from .rock_input import RockInput
 from .wrong_sides import heights_at
+
+_ROUNDS = 8  # surfaces that have not settled then do not
+_SHOWN_BY_POINTS = 10  # fewer do not show without dips where a surface is
 
 
 def apply_dips(work: Work, entry: RockInput, ground: int | None, mapped: np.ndarray | None) -> None:
@@ -79,7 +83,10 @@ def _of_rock(
         runs = runs_of_blocks([surface.rule for surface in rock.surfaces], ground)
         alike = (runs[0 if rock.base_elevation is not None else 1 :] == runs[-1]).all()
         shown = None if mapped is None else mapped[without]
-        counts[without] = runs[-1] if alike else runs[_blocks_of(work, entry, dips.some(without), shown)]
+        if alike:
+            counts[without] = runs[-1]
+        else:
+            counts[without] = _by_blocks(work, entry, dips.some(without), shown, runs)
     is_known &= dips.in_use
     counts[~dips.in_use] = False
     entry.warnings += _of_default_rules(rock, int((is_known & (surfaces == "")).sum()))
@@ -125,8 +132,8 @@ def _of_default_rules(rock: Rock, count: int) -> list[BuildWarning]:
     if not count or len(rules) < 2 or not all(RULES[rule].cuts for rule in rules[1:]):
         return []
     text = (
-        f"{count} dips of blocks count for the surface under their block only, as each surface cuts the "
-        "block beneath it: give those that are parallel to it the rule conformable"
+        f"{count} dips of blocks count for unconformities, too, as all surfaces have a rule that cuts: give "
+        "those that are parallel to the beds beneath them the rule conformable, or name the surfaces of dips"
     )
     return [BuildWarning(text, "dips", rock.name)]
 
@@ -161,23 +168,54 @@ def _why_none(surface: Surface) -> str:
     )
 
 
-def _blocks_of(work: Work, entry: RockInput, dips: Dips, shown: np.ndarray | None) -> np.ndarray:
-    """(D,) the block that each dip lies in: that which a map shows, or by the surfaces as they are without
-    dips; one without a height lies at the top of what is there."""
+def _by_blocks(
+    work: Work, entry: RockInput, dips: Dips, shown: np.ndarray | None, runs: np.ndarray
+) -> np.ndarray:
+    """(D, S) bool: the surfaces that dips count for, by the block that each lies in: that which a map shows,
+    or by the surfaces; one without a height lies at the top of what is there. Surfaces of few points need
+    dips to be known: all of them to begin with, then those of the blocks that this gave, until these stay.
+    runs: of runs_of_blocks."""
+    rules = [surface.rule for surface in entry.rock.surfaces]
     plan = np.ascontiguousarray(dips.positions)
-    found = np.array([_first_heights(work, entry, number, plan) for number in range(len(entry.surfaces))])
-    blocks = blocks_at([surface.rule for surface in entry.rock.surfaces], found, dips.heights)
-    return blocks if shown is None else np.where(shown == "", blocks, BlockNumbers(entry.rock).of(shown))
+    known = [_first_heights(work, entry, number, plan) for number in range(len(rules))]
+    counts = np.ones((len(dips), len(rules)), bool)
+    counts[:, ~runs.any(axis=0)] = False
+    for _ in range(_ROUNDS):
+        found = [
+            _heights_by_dips(work, entry, number, dips, counts[:, number]) if z is None else z
+            for number, z in enumerate(known)
+        ]
+        blocks = blocks_at(rules, np.array(found), dips.heights)
+        if shown is not None:
+            blocks = np.where(shown == "", blocks, BlockNumbers(entry.rock).of(shown))
+        before, counts = counts, runs[blocks]
+        if all(z is not None for z in known) or np.array_equal(counts, before):
+            break
+    return counts
 
 
-def _first_heights(work: Work, entry: RockInput, number: int, plan: np.ndarray) -> np.ndarray:
-    """(N,) heights of a surface at places (N, 2) as its points alone show them, NaN where it has none."""
+def _heights_by_dips(work: Work, entry: RockInput, number: int, dips: Dips, counts: np.ndarray) -> np.ndarray:
+    """(D,) heights of a surface of few points at dips, from its points and the dips that count for it."""
+    surface, plan = entry.rock.surfaces[number], np.ascontiguousarray(dips.positions)
+    own = surface.known_dips()
+    joined = Dips.joined([*([] if own is None else [own]), dips.some(counts)])
+    slopes = Dips(joined.positions, joined.gradients) if len(joined) else None
+    with naming(surface_item(entry.rock, surface), surface.shape_source):
+        settings = checked_options(DEFAULT_METHOD, DEFAULT_OPTIONS)
+        return heights(DEFAULT_METHOD, Task(work, surface.point_array(), plan, settings, dips=slopes)).z
+
+
+def _first_heights(work: Work, entry: RockInput, number: int, plan: np.ndarray) -> np.ndarray | None:
+    """(N,) heights of a surface at places (N, 2) as its points alone show them, NaN where it has none; None
+    where its points are few and it uses dips."""
     surface, shape = entry.rock.surfaces[number], entry.surfaces[number]
     if not surface.interpolated and shape is not None:
         return heights_at(work, shape, plan)
     points = surface.point_array()
     method, settings = surface.method_options()
     if len(points):
+        if uses_dips(surface) and len(points) < _SHOWN_BY_POINTS:
+            return None
         method, settings = CONTINUATION, checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     elif any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS) or METHODS[method].on_mesh:
         return np.full(len(plan), np.nan)

@@ -11,7 +11,7 @@ import numpy as np
 from ...base.elementary import exp
 from ...base.work import native_module
 from ...settings.variogram import Variogram
-from ..from_neighbours import dips_of_fit
+from ..from_neighbours import around_its_plane, dips_of_fit
 from ..interpolation import Task
 from .turning_bands import Noise
 
@@ -36,12 +36,15 @@ class LikelyVariograms:
         Stein 1993, "A Bayesian analysis of kriging", Technometrics 35)."""
         if len(task.points) > _MOST or fitted.structures:
             return None
+        drift = settings.get("drift", "constant")
+        if drift == "auto":
+            task, drift = around_its_plane(task), "constant"
         along = fitted.anisotropy or settings.get("anisotropy")
         found = task.run(
             native_module().likely_variograms,
             task.points,
             (along["ratio"], along["azimuth"]) if along else (1.0, 0.0),
-            settings.get("drift", "constant"),
+            drift,
             dips_of_fit(task),
             task.bounds is not None and len(task.bounds) > 0,
         )

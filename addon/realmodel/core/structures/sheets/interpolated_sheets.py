@@ -604,4 +604,4 @@ def _settled(surface: Surface, found: Interpolation) -> Surface:
         return surface
     options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
     options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
-    return replace(surface, method=found.method, options=options)
+    return replace(surface, method=surface.method and found.method, options=options)

@@ -3,7 +3,9 @@
 
 A block was deposited on the surface below it, whatever this had cut before, and lies parallel to it; it lies
 parallel to the surface above it unless that came as an erosion surface and cut it. So surfaces that cut part
-the others into runs that are conformable with one another, each with its unconformity as the lowest.
+the others into runs that are conformable with one another, each with its unconformity as the lowest. Where
+all surfaces cut, as by default, their rules do not say which of them are unconformities: none parts but the
+youngest, which may be the ground.
 """
 
 from __future__ import annotations
@@ -17,6 +19,9 @@ from ...settings.rules import RULES
 
 def _parting(rules: Sequence[str], ground: int | None) -> list[bool]:
     """Whether each surface parts what is above it from what is below it."""
+    last = len(rules) - 1 if ground is None else ground
+    if all(RULES[rule].cuts for rule in rules[1:]):
+        return [number in (last, ground) and number > 0 for number in range(len(rules))]
     return [RULES[rule].cuts or number == ground for number, rule in enumerate(rules)]
 
 
