@@ -49,8 +49,8 @@ def _azimuth(name, description, default=0.0):
         description=f"{description}, clockwise from north, the Y axis",
         subtype="ANGLE",
         default=math.radians(default),
-        min=-2 * math.pi,
-        max=2 * math.pi,
+        soft_min=-2 * math.pi,
+        soft_max=2 * math.pi,
     )
 
 
@@ -232,8 +232,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def cancel(self, context):
         self._end_preview()
-        if self._job is not None:
-            super().cancel(context)
+        super().cancel(context)
 
     def begin(self, context):
         shape = self._shape
