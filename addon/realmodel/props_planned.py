@@ -30,8 +30,8 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
     azimuth: FloatProperty(
         name="Azimuth",
         description="Degrees clockwise from north",
-        min=0.0,
-        max=360.0,
+        soft_min=0.0,
+        soft_max=360.0,
         precision=1,
         options=set(),
         update=changes.planned_hole,

@@ -90,17 +90,19 @@ class BoreholeRequest:
         """Stages the file. Returns the summary of the borehole for the terminal."""
         progress(1.0, f"writing {self.file.name}")
         found: Sequence[HoleInterval | Interval]
+        remarks: Sequence[str] = ()
         with outputs.file(self.file) as file:
             if isinstance(self.what, HoleAxis):
                 axis = self.what
                 hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
                 planned_hole_writer(self.file)(hole, file)
-                found = hole.intervals
+                found, remarks = hole.intervals, hole.remarks
             else:
                 found = model.borehole(*self.what)
                 borehole_writer(self.file)(model, found, file)
         length = sum(interval.length for interval in found)
-        return f"borehole {self.file.name}: {counted(len(found), 'interval')}, {length:.2f} of rock"
+        line = f"borehole {self.file.name}: {counted(len(found), 'interval')}, {length:.2f} of rock"
+        return "\n  ".join([line, *remarks])
 
 
 @dataclass

@@ -44,8 +44,8 @@ def run(options: argparse.Namespace) -> None:
     source = OpenedFile.of(options.project)
     project = source.project
     _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
-    if options.export_field is not None and not any(rock.has_fields for rock in project.rocks):
-        raise UsageError("--export-field: none of the series of the project is of the kind 'field'")
+    if project is not None:
+        _require_fields(options, project)
     by_dask = options.ensemble is not None or options.tiles is not None
     progress = TerminalProgress(sys.stdout, options.quiet, time_left=by_dask)
     if options.estimate:
@@ -65,6 +65,7 @@ def run(options: argparse.Namespace) -> None:
             for request in requests:
                 request.read()
             model = source.model(options.cells, options.threads, progress, options.stage, options.memory)
+            _require_fields(options, model.project)
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
             holes = _left_out_holes(options, model, progress)
@@ -100,6 +101,11 @@ def run(options: argparse.Namespace) -> None:
         lines.append(cleaned_line(cells))
     made = [each for each in (model, mesh, cells) if each is not None]
     _print(options, [warning for each in made for warning in each.warnings], lines)
+
+
+def _require_fields(options: argparse.Namespace, project) -> None:
+    if options.export_field is not None and not any(rock.has_fields for rock in project.rocks):
+        raise UsageError("--export-field: none of the series of the project is of the kind 'field'")
 
 
 def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> None:

@@ -94,13 +94,12 @@ def ensemble_table(ensemble) -> str:
     """A line for each block, youngest first: its volume with the interpolated heights, and of the volumes of
     all realizations the mean, the standard deviation and percentiles."""
     headings = (*_HEADINGS_OF_ENSEMBLE, *(f"P{percent}" for percent in PERCENTILES))
-    percentiles = ensemble.percentiles()
+    percentiles, deviations = ensemble.percentiles(), ensemble.volume_deviations()
     library = ensemble.model.project.library
     rows = []
     for number, block in reversed(list(enumerate(ensemble.model.blocks))):
         drawn = ensemble.volumes[:, number]
-        deviation = drawn.std(ddof=1) if len(drawn) > 1 else 0.0
-        figures = (block.volume, drawn.mean(), deviation, *percentiles[:, number])
+        figures = (block.volume, drawn.mean(), deviations[number], *percentiles[:, number])
         rows.append(
             [
                 block.name,
@@ -182,7 +181,9 @@ def _share(part: float, whole: float) -> str:
 
 
 def _figure(volume: float) -> str:
-    """Seven significant digits, without an exponent where that can be read."""
+    """Seven significant digits, without an exponent where that can be read; "-" where it is not known."""
+    if volume != volume:
+        return "-"
     if volume and not 1e-3 <= abs(volume) < 1e12:
         return f"{volume:.6e}"
     digits = max(0, 6 - len(str(int(abs(volume)))) + 1) if volume else 0

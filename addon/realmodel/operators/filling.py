@@ -49,8 +49,8 @@ def _azimuth(name, description, default=0.0):
         description=f"{description}, clockwise from north, the Y axis",
         subtype="ANGLE",
         default=math.radians(default),
-        min=-2 * math.pi,
-        max=2 * math.pi,
+        soft_min=-2 * math.pi,
+        soft_max=2 * math.pi,
     )
 
 

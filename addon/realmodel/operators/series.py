@@ -162,8 +162,8 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
         name="Dip Direction",
         description="Degrees clockwise from north (+y)",
         default=90.0,
-        min=0.0,
-        max=360.0,
+        soft_min=0.0,
+        soft_max=360.0,
         precision=1,
     )
     overturned: BoolProperty(

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..bl.host.notices import in_panel_words
 from ..bl.project import library_rows, units
 from ..bl.scene import planned_holes
 from ..core import RealModelError
@@ -87,6 +88,8 @@ def _draw_table(layout, scene, row):
         "",
     )
     hint(layout, f"From: along the hole; Depth: below its collar; in {unit}.")
+    for text in hole.remarks:
+        hint(layout, in_panel_words(text))
 
 
 def _line(layout, *texts):

@@ -29,7 +29,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
             column.prop(group.view, "surfaces", text="Part")
         column.prop(group, "color_by")
         if group.color_by == "UNCERTAINTY" and group.view.shade_limits[1] == 0.0:
-            hint(layout, "No surface has a standard deviation. Kriging computes one.")
+            hint(layout, "No surface has a standard deviation. Kriging of enough points gives one.")
         _stage(layout, context.scene)
         column = layout.column(align=True)
         column.prop(group, "explode", slider=True)

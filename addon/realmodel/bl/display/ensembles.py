@@ -53,13 +53,13 @@ def put(scene, found, samples, blocks, seed):
         }
     )
     if group.block not in [row["name"] for row in rows]:
-        group.block = max(rows, key=lambda row: row["deviation"] / (row["mean"] or 1.0))["name"]
+        group.block = max(rows, key=lambda row: (row["deviation"] or 0.0) / (row["mean"] or 1.0))["name"]
     group.realization = min(group.realization, len(blocks))
     recolor(scene)
 
 
 def _rows(found):
-    percentiles = found.percentiles()
+    percentiles, deviations = found.percentiles(), found.volume_deviations()
     for number, block in enumerate(found.model.blocks):
         drawn = found.volumes[:, number]
         yield {
@@ -68,7 +68,7 @@ def _rows(found):
             "property": int(block.property),
             "interpolated": block.volume,
             "mean": float(drawn.mean()),
-            "deviation": float(drawn.std(ddof=1)),
+            "deviation": None if np.isnan(deviations[number]) else float(deviations[number]),
             "percentiles": percentiles[:, number].tolist(),
         }
 

@@ -92,6 +92,7 @@ def keep(scene, row, hole):
         {
             "of": _of(scene, row),
             "unit": hole.unit,
+            "remarks": hole.remarks,
             "names": hole.block_names,
             "properties": hole.properties,
             "intervals": [astuple(each) for each in hole.intervals],
@@ -117,6 +118,7 @@ def kept(row):
         found["names"],
         found["properties"],
         found["unit"],
+        tuple(found.get("remarks", ())),
         **arrays,
     )
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self, TypeVar
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, UsageError
 from ..heights import Interpolation
 from ..project.project import Project
 from ..structures.parts.parts import Structures
@@ -185,9 +185,21 @@ class ModelData:
         """(C,) float64: the volume of each cell, model units cubed."""
         return self.complex.cell_volumes(self.threads)
 
-    def block_boundary(self, block: int) -> BlockBoundary:
-        """The closed boundary of one block, all its connected parts together."""
-        return self.complex.block_boundary(block)
+    def block_boundary(self, block: int | str) -> BlockBoundary:
+        """The closed boundary of one block, all its connected parts together. block: its number from 0, or
+        its name. Raises UsageError for an unknown name or number, for a name that several blocks have, and
+        for a block of which nothing is left."""
+        names = [each.name for each in self.blocks]
+        found = [n for n, name in enumerate(names) if block in ((name,) if isinstance(block, str) else (n,))]
+        if len(found) != 1:
+            raise UsageError(
+                f"there are {len(found)} blocks {block!r}: give its number"
+                if found
+                else f"there is no block {block!r}; blocks are {', '.join(names)}, numbered from 0"
+            )
+        if not self.blocks[found[0]].cells:
+            raise UsageError(f"block '{names[found[0]]}' is absent: nothing of it is left in the model")
+        return self.complex.block_boundary(found[0])
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As CellComplex.face_corners."""

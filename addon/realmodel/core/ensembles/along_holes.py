@@ -12,6 +12,7 @@ from ..base.work import Work
 from ..model.planned_hole import PlannedHole
 from ..proof.closed_form import ClosedForm, blocks_of_all
 from ..results.planned_holes import HoleAxis, HoleContact, mean_share
+from ..results.volume_uncertainty import missing_deviations
 from .realization import Realizer
 
 _STEPS = 500  # places along a hole
@@ -39,6 +40,11 @@ def hole_of_realizations(work: Work, realizer: Realizer, count: int, hole: Plann
         for each in hole.intervals
     ]
     spread = [_spread(contact, hole.contacts, contacts) for contact in hole.contacts]
+    lacking = missing_deviations(realizer.model)
+    spread = [
+        replace(each, deviation=None) if own.deviation is None and own.surface in lacking else each
+        for each, own in zip(spread, hole.contacts, strict=True)
+    ]
     return replace(hole, intervals=intervals, contacts=spread, depths=depths, probability=shares)
 
 

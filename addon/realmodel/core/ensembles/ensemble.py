@@ -15,6 +15,7 @@ from ..model.build import build
 from ..model.model import Model
 from ..model.planned_hole import PlannedHole
 from ..project.project import Project
+from ..results.volume_uncertainty import missing_deviations, without_deviation
 from .along_holes import hole_of_realizations
 from .places import Probabilities, blocks_at
 from .realization import Realizer
@@ -80,8 +81,9 @@ class Ensemble:
     seed, correlation: as of `ensemble`. model: with the interpolated heights. volumes: (R, B) float64, of
     each block in each realization. surface_mean, surface_deviation: for each surface (V,) float64 at the
     nodes of the planar mesh, or where faults divide the rock mass at the vertices of its sheets, the mean of
-    the heights and their standard deviation, NaN where not all realizations have a height; None for ready
-    meshes and level sets. places: (N, 3). probability: (N, B) float64, of each block at each place.
+    the heights and their standard deviation, NaN where not all realizations have a height, and the deviation
+    where the data show no variogram; None for ready meshes and level sets. places: (N, 3). probability:
+    (N, B) float64, of each block at each place.
     """
 
     model: Model
@@ -99,12 +101,18 @@ class Ensemble:
         count = len(sums.volumes)
         means: list[np.ndarray | None] = []
         deviations: list[np.ndarray | None] = []
-        for given, total, squares in zip(heights(realizer.model), sums.heights, sums.squares, strict=True):
+        model, lacking = realizer.model, missing_deviations(realizer.model)
+        for number, (given, total, squares) in enumerate(
+            zip(heights(model), sums.heights, sums.squares, strict=True)
+        ):
             if given is None or total is None or squares is None:
                 means.append(None)
                 deviations.append(None)
                 continue
             means.append(given + total / count)
+            if model.surface_names[number] in lacking:
+                deviations.append(np.full(len(given), np.nan))
+                continue
             rest = np.maximum(squares - total**2 / count, 0.0)
             deviations.append(np.sqrt(rest / max(1, count - 1)))
         return cls(
@@ -122,6 +130,15 @@ class Ensemble:
     def block_names(self) -> list[str]:
         """(B,) the names of the blocks, as of the model."""
         return [block.name for block in self.model.blocks]
+
+    def volume_deviations(self) -> np.ndarray:
+        """(B,) float64: the standard deviation of each block's volume; NaN of one realization, and where the
+        data of a surface that bounds the block show no variogram."""
+        if len(self.volumes) < 2:
+            return np.full(len(self.model.blocks), np.nan)
+        found = self.volumes.std(axis=0, ddof=1)
+        found[without_deviation(self.model)] = np.nan
+        return found
 
     def percentiles(self, percent: Iterable[float] = PERCENTILES) -> np.ndarray:
         """(len(percent), B) float64: volumes that so many percent of the realizations do not exceed."""

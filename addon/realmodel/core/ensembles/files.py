@@ -44,6 +44,7 @@ def _report(ensemble: Ensemble) -> dict:
     """Volumes in model units cubed, heights in model units."""
     percentiles = ensemble.percentiles()
     blocks = []
+    deviations = ensemble.volume_deviations().tolist()
     for number, block in enumerate(ensemble.model.blocks):
         drawn = ensemble.volumes[:, number]
         counts, edges = np.histogram(drawn, _BINS)
@@ -53,7 +54,7 @@ def _report(ensemble: Ensemble) -> dict:
                 "rock": ensemble.model.project.rocks[block.rock].name,
                 "interpolated": block.volume,
                 "mean": float(drawn.mean()),
-                "deviation": float(drawn.std(ddof=1)) if len(drawn) > 1 else None,
+                "deviation": deviations[number] if np.isfinite(deviations[number]) else None,
                 **{f"p{p}": float(percentiles[row, number]) for row, p in enumerate(PERCENTILES)},
                 "histogram": {"edges": edges.tolist(), "counts": counts.tolist()},
             }
@@ -66,7 +67,7 @@ def _report(ensemble: Ensemble) -> dict:
                 {
                     "name": name,
                     "deviation_mean": float(known.mean()) if len(known) else None,
-                    "deviation_largest": float(known.max(initial=0.0)),
+                    "deviation_largest": float(known.max()) if len(known) else None,
                 }
             )
     return {

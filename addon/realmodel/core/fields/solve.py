@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.algebra import dot, norm
 from ..base.errors import InputRefused, place_text
 from ..base.stored_objects import NOT_STORED
 from ..base.work import NativeError, Work, refused_as
@@ -232,7 +233,7 @@ def _wrong_order(error: NativeError, data: LevelSetData) -> InputRefused:
     return InputRefused(
         f"near {_place(error)} it lies on the older side of surface '{older}', which is listed as older",
         item=f"surface '{younger}'",
-        advice="exchange the two, or correct the polarity of the dips",
+        advice=_advice_on_order(data, "exchange the two"),
         place=error.place,
     )
 
@@ -242,8 +243,27 @@ def _against_order(error: NativeError, data: LevelSetData) -> InputRefused:
         f"at {len(error.items)} of {len(data.dips)} dips rock gets younger the other way than from the first "
         f"to the last of them, as at {_place(error)}",
         item=f"surfaces '{data.names[0]}' to '{data.names[-1]}'",
-        advice="list the oldest surface first, or correct the polarity of the dips",
+        advice=_advice_on_order(data, "list the oldest surface first"),
         place=error.place,
+    )
+
+
+def _advice_on_order(data: LevelSetData, change: str) -> str:
+    """What to do where surfaces and dips seem to be in the wrong order. change: where they are. They are in
+    order where most contacts of a surface lie, from the nearest one of the surface listed before it, to the
+    side to which rock gets younger at the nearest dip: then no other list helps."""
+    votes = 0.0
+    for older in range(len(data.names) - 1):
+        lower, upper = (data.contacts[data.contact_surfaces == number] for number in (older, older + 1))
+        for place in upper if len(lower) and len(data.dips) else ():
+            away = place - lower[norm(lower - place).argmin()]
+            normal = data.normals[norm(data.dips - place).argmin()]
+            votes += np.sign(dot(away, normal))
+    if votes <= 0:
+        return f"{change}, or correct the polarity of the dips"
+    return (
+        "the surfaces are in the order that the dips say, but a field through all contacts and dips turns "
+        'over: look for wrong ones, give how far contacts may be off, or choose the kind "sheets"'
     )
 
 

@@ -22,14 +22,11 @@ _BOUNDS: dict[str, tuple[float, float]] = {
     "thickness": (0.0, math.inf),
     "variation": (0.0, 1.0),
     "dip": (0.0, STEEPEST),
-    "dip_direction": (-360.0, 360.0),
     "fold_amplitude": (0.0, math.inf),
     "fold_wavelength": (0.0, math.inf),
-    "fold_axis": (-360.0, 360.0),
     "axial_dip": (RECUMBENT, UPRIGHT),
     "faults": (0, MOST_FAULTS),
     "throw": (0.0, math.inf),
-    "fault_strike": (-360.0, 360.0),
     "unconformity": (0.0, 0.95),
     "gap": (0.0, math.inf),
     "pegs": (0, MOST_PEGS),
@@ -90,6 +87,8 @@ class Strata:
     def __post_init__(self) -> None:
         for name in (each.name for each in fields(self) if each.name in _BOUNDS):
             _check(name, getattr(self, name))
+        for name in ("dip_direction", "fold_axis", "fault_strike"):
+            _number(name, getattr(self, name))
         if self.base is not None:
             _number("base", self.base)
         if self.palette not in PALETTES:

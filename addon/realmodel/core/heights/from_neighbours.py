@@ -13,7 +13,7 @@ from ..base.algebra import are_among, dot
 from ..base.work import native_module
 from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, METHODS, NEIGHBOURS_OF_FITTED
-from ..settings.variogram import Variogram, fit_warnings
+from ..settings.variogram import Variogram, fit_warnings, missing_data
 from .companions import (
     MOST_AT_ONCE,
     MOST_NEIGHBOURS,
@@ -50,6 +50,7 @@ class DipUse:
         return None if dips is None else (dips.positions, dips.gradients, self.baseline, self.neighbours)
 
 
+_TERMS = {"constant": 0, "linear": 2, "quadratic": 5}  # of a drift, beside its mean
 _FEWEST_DIPS = 2
 _MOST_WITH_ERRORS = 1000  # points with errors that all count at each node
 _COARSER = 1.25  # cells by which points are thinned out, from one attempt to the next
@@ -88,7 +89,8 @@ def _spacing(points: np.ndarray, dips: Dips) -> float:
 @dataclass(frozen=True)
 class KrigingStructure:
     """The variogram of kriging, its number of neighbours, how dips count, and warnings. sheets: of surfaces
-    that are kriged together. plane: around which heights are kriged; None: around their mean."""
+    that are kriged together. plane: around which heights are kriged; None: around their mean. missing: why no
+    variance follows from the variogram, or None."""
 
     variogram: Variogram
     neighbours: int
@@ -96,6 +98,7 @@ class KrigingStructure:
     warnings: tuple[str, ...] = ()
     sheets: SheetModel | None = None
     plane: RegionalPlane | None = None
+    missing: str | None = None
 
 
 def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
@@ -115,9 +118,10 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     anisotropy = settings["anisotropy"]
     along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
     has_bounds = task.bounds is not None and len(task.bounds) > 0
-    fitted = None
+    fitted, data = None, ([task.points], [task.dips])
     if native_module().fits_by_likelihood(len(task.points), task.dips is not None, has_bounds, task.error):
         fitted = _fitted_alike(task, along)
+        data = data if fitted is None or task.alike is None else task.alike.data(task.points, task.dips)
     fitted = fitted or task.run(
         native_module().fit_variogram,
         task.points,
@@ -133,7 +137,17 @@ def structure(task: Task, are_apart: bool = False) -> KrigingStructure:
     variogram = Variogram.from_fit(fitted, anisotropy is None).with_least_nugget(task.error)
     has_trend = "drift" in settings or task.error > 0  # with errors ranges are those of trends
     warnings = tuple(fit_warnings(variogram, task.points, has_trend, task.dips is not None))
-    return KrigingStructure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
+    use, missing = dip_use(task, variogram, neighbours), _missing(task.settings, variogram, *data)
+    return KrigingStructure(variogram, neighbours, use, warnings, missing=missing)
+
+
+def _missing(
+    settings: dict, variogram: Variogram, points: Sequence[np.ndarray], dips: Sequence[Dips | None]
+) -> str | None:
+    """missing_data of the data of surfaces that vary alike: each has a mean, and they have one slope."""
+    terms = len([each for each in points if len(each)]) + _TERMS[settings.get("drift", "constant")]
+    count = sum(len(each) for each in dips if each is not None)
+    return missing_data(variogram, sum(map(len, points)), count, terms)
 
 
 def _regional_plane(task: Task) -> RegionalPlane | None:
@@ -188,14 +202,14 @@ def _around_plane(task: Task, known: KrigingStructure) -> Result:
     z, variance = result.z + plane.at(places), result.variance
     if not task.left_out:
         _honor_exactly(task, above.points, result.z, z)
-    if variance is None or task.companions is not None:
+    if task.companions is not None or (variance is None and not task.left_out):
         return replace(result, z=z)
     away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
     if task.left_out:
         without = [_regional_plane(_without(task, number)) for number in range(len(task.points))]
         slopes = np.array([np.zeros(2) if each is None else each.slope for each in without])
         z = z + dot(slopes - plane.slope, away)
-    return replace(result, z=z, variance=variance + plane.variance(away))
+    return replace(result, z=z, variance=None if variance is None else variance + plane.variance(away))
 
 
 def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndarray) -> None:
@@ -282,20 +296,27 @@ def _joint_structure(task: Task, companions: Companions) -> KrigingStructure:
     count = len(data.points) + 2 * len(data.of_dips)
     if companions.model is not None:
         return _of_model(alone, *companions.model, points, count)
+    given = task.settings["variogram"]
+
+    def with_missing(found: KrigingStructure) -> KrigingStructure:
+        if given is not None:
+            return found
+        return replace(found, missing=_missing(task.settings, found.variogram, points, dips))
+
     spacing = 1.0 if alone.dips is None else _spacing(pooled(points, np.zeros(len(points))), alone.dips)
     fitted = likeliest(alone.run, alone.settings, companions, data, spacing)
     if fitted is not None and fitted["sill"] > 0:  # data in one plane leave nothing
-        given = task.settings["variogram"]
         variogram = Variogram.from_fit(fitted, task.settings["anisotropy"] is None)
         variogram = variogram if given is None else Variogram.from_settings(given)
         model = likeliest_model(fitted, variogram, int(np.argmax([len(each) for each in points])))
         found = _of_model(alone, variogram, model, points, count)
         if fitted["points"] == len(data.points):
-            return found
-        return replace(found, sheets=replace(model, offsets=mean_offsets(alone, found, points, dips)))
+            return with_missing(found)
+        offsets = mean_offsets(alone, found, points, dips)
+        return with_missing(replace(found, sheets=replace(model, offsets=offsets)))
     offsets = first_offsets(task.work, points)
     variogram = structure(replace(alone, points=pooled(points, offsets))).variogram
-    return _of_model(alone, variogram, plain_model(offsets, variogram), points, count)
+    return with_missing(_of_model(alone, variogram, plain_model(offsets, variogram), points, count))
 
 
 def _of_model(
@@ -403,7 +424,7 @@ def krige(task: Task, known: KrigingStructure | None = None) -> Result:
     if task.companions is not None:
         z, variance, alone = _cokrige(task, task.companions, known)
         warnings += without_near_points(alone, len(z))
-        return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
+        return _result(z, variance, known, warnings)
     arguments = (
         known.variogram.native(settings["anisotropy"]),
         _neighborhood(settings, known.neighbours),
@@ -417,7 +438,15 @@ def krige(task: Task, known: KrigingStructure | None = None) -> Result:
         z, variance, _ = task.run(native.krige, task.points, _free_nodes(task), *arguments)
         variance = _of_surface(task, variance, known)
         warnings += _beyond_radius(task)
-    return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
+    return _result(z, variance, known, warnings)
+
+
+def _result(z: np.ndarray, variance: np.ndarray, known: KrigingStructure, warnings: list[str]) -> Result:
+    """The variances only where the data show the variogram that they follow from."""
+    if known.missing is not None:
+        warnings = [*warnings, known.missing]
+    shown = variance if known.missing is None else None
+    return Result(z, shown, known.variogram, warnings, neighbours=known.neighbours)
 
 
 def without_near_points(alone: int, nodes: int) -> list[str]:

@@ -145,7 +145,7 @@ def _directed(center: np.ndarray, base: float, settings: dict, plans: Callable) 
     dip = settings["dip"]
     if dip is not None:
         down = math.radians(dip)
-        return Plane(center, base, math.radians(settings["dip_direction"]), -sin(down) / cos(down))
+        return Plane(center, base, math.radians(settings["dip_direction"] % 360.0), -sin(down) / cos(down))
     xx, xy, yy = (_total(plan[:, a] * plan[:, b] for plan in plans()) for a, b in ((0, 0), (0, 1), (1, 1)))
     azimuth = 0.5 * atan2(2 * xy, yy - xx)  # in which they spread most
     azimuths = azimuth, azimuth + math.pi / 2

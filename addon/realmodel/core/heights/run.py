@@ -17,6 +17,8 @@ from .from_triangulation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 from .mis_ties import without_mis_ties
 
+_SAME_HEIGHT = 1e-9  # of a height
+
 
 def heights(method: str, task: Task) -> Interpolation:
     """interpolate within a work that is already running. Points may contradict one another."""
@@ -37,7 +39,9 @@ def heights(method: str, task: Task) -> Interpolation:
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     warnings = [*([mis_ties] if mis_ties else []), *of_dips]
-    warnings += [*(few_points(points, method) if task.dips is None else []), *elsewhere(points, nodes)]
+    if task.dips is None and task.companions is None:
+        warnings += few_points(points, method, result.z)
+    warnings += elsewhere(points, nodes)
     warnings += result.warnings
     if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
         warnings += runs_away(points, result.z, method, _rise(task))
@@ -84,8 +88,9 @@ def refused_points(error: NativeError) -> InputRefused:
     return InputRefused(str(error), item="points", place=error.place)
 
 
-def few_points(points: np.ndarray, method: str) -> list[str]:
-    """A warning if the points are too few for the method (Method.has_shape)."""
+def few_points(points: np.ndarray, method: str, z: np.ndarray) -> list[str]:
+    """A warning if the points are too few for the method (Method.has_shape). z: the heights that it gave,
+    which may follow other data, too."""
     if not METHODS[method].has_shape:
         return []
     if not len(points):
@@ -98,6 +103,9 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
         if len(plan) and (plan != other).any():
             return []
     if other is None:
+        off = np.abs(z[np.isfinite(z)] - points[0, 2])
+        if off.max(initial=0.0) > _SAME_HEIGHT * max(1.0, abs(points[0, 2])):
+            return []
         return ["there is one point only: the surface is its height everywhere"]
     return ["there are two points only: they do not show the slope across their line"]
 

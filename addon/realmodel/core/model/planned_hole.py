@@ -8,7 +8,14 @@ from pathlib import Path
 from ..base.atomic import Outputs
 from ..cells.model_data import ModelData
 from ..exporters.boreholes import planned_hole_writer
-from ..results.planned_holes import HoleAxis, PlannedHoleData, contacts_between, intervals_on, on_surfaces
+from ..results.planned_holes import (
+    HoleAxis,
+    PlannedHoleData,
+    contacts_between,
+    intervals_on,
+    on_surfaces,
+    remarks_on,
+)
 from .cutting import section
 
 
@@ -33,7 +40,8 @@ def planned_hole(
 ) -> PlannedHole:
     """What a straight hole would meet: the blocks by depth along it, and the contacts with the surfaces that
     they lie on. Where the heights of a surface have a variance (kriging), its contacts have a standard
-    deviation; Ensemble.planned_hole says more.
+    deviation, and where its data show no variogram `remarks` say what is missing; Ensemble.planned_hole says
+    more.
 
     collar: (x, y, z), model units, also beside or above the model. azimuth: degrees clockwise from north
     (+y). dip: degrees below the horizontal, 90 straight down. Raises UsageError, BuildFailed.
@@ -46,11 +54,13 @@ def planned_hole(
     east, north = axis.heading.tolist()
     found = section(model, axis.collar, (north, -east, 0.0), model.threads)
     intervals = intervals_on(found, axis)
+    contacts = on_surfaces(model, contacts_between(intervals, axis), axis)
     return PlannedHole(
         axis,
         intervals,
-        on_surfaces(model, contacts_between(intervals, axis), axis),
+        contacts,
         [block.name for block in model.blocks],
         [block.property for block in model.blocks],
         model.project.units,
+        remarks_on(model, contacts),
     )

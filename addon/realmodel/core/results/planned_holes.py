@@ -17,6 +17,7 @@ from ..base.errors import UsageError
 from ..cells.model_data import ModelData
 from ..notebook import data_frame
 from .sections.section_data import SectionData
+from .volume_uncertainty import missing_deviations
 
 if TYPE_CHECKING:
     import pandas
@@ -54,7 +55,7 @@ class HoleAxis:
     @property
     def heading(self) -> np.ndarray:
         """(2,) of length 1: where it goes in plan."""
-        turn = np.radians(self.azimuth)
+        turn = np.radians(self.azimuth % 360.0)
         return np.array([float(sin(turn)), float(cos(turn))])
 
     @property
@@ -112,7 +113,8 @@ class PlannedHoleData:
 
     axis: where it goes. intervals, contacts: along it, from the collar. block_names, properties: (B,) of the
     model's blocks. depths (N,), probability (N, B) float64: of each block at depths along the hole, as an
-    ensemble says; None without one. unit: of lengths.
+    ensemble says; None without one. unit: of lengths. remarks: sentences that say why contacts with a surface
+    have no standard deviation.
     """
 
     axis: HoleAxis
@@ -121,6 +123,7 @@ class PlannedHoleData:
     block_names: list[str]
     properties: list[int]
     unit: str = ""
+    remarks: tuple[str, ...] = ()
     depths: np.ndarray | None = field(default=None, repr=False)
     probability: np.ndarray | None = field(default=None, repr=False)
 
@@ -247,6 +250,12 @@ def on_surfaces(model: ModelData, contacts: Sequence[HoleContact], axis: HoleAxi
                 deviation = None if np.isnan(height) else height * abs(float(normal[2])) / nearing
             found[row] = replace(contacts[row], surface=model.surface_names[number], deviation=deviation)
     return found
+
+
+def remarks_on(model: ModelData, contacts: Sequence[HoleContact]) -> tuple[str, ...]:
+    """Why contacts have no standard deviation where the data of their surfaces show no variogram."""
+    met = {each.surface for each in contacts if each.deviation is None}
+    return tuple(f"{name}: {text}" for name, text in missing_deviations(model).items() if name in met)
 
 
 def _containing(

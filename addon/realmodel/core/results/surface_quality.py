@@ -16,11 +16,12 @@ from ..heights import Task
 from ..heights.cross_validation import CrossValidation, distinct_points, validate
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
-from ..settings.variogram import RANGE_BEYOND, Variogram
+from ..settings.variogram import NO_DEVIATION, RANGE_BEYOND, Variogram
 from ..surfaces.observed.conformable import alike_of
 from ..surfaces.observed.sheet_series import companions_of
 
 DEFAULT_FOLDS = 10
+_OF_VARIANCES = RANGE_BEYOND, NO_DEVIATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ def surface_quality(
             smallest_angles(vertices, triangles),
             mean,
             most,
-            tuple(text for text in (result.warnings if result else ()) if text.startswith(RANGE_BEYOND)),
+            tuple(text for text in (result.warnings if result else ()) if text.startswith(_OF_VARIANCES)),
         )
 
     return run(task, progress, cancel, threads=threads)

@@ -7,11 +7,12 @@ import numpy as np
 
 from ..base.work import native_module
 from ..cells.model_data import ModelData
+from ..settings.variogram import lacks_deviation
 
 
 def volume_deviations(model: ModelData) -> np.ndarray:
     """(B,) float64: what the standard deviation of each block's volume is at most, model units cubed; NaN
-    where no surface of known variance bounds the block.
+    where no surface of known variance bounds the block, or one whose data show no variogram.
 
     The error of a volume is the sum of the errors of heights over the block's contacts. Its standard
     deviation is largest where all these errors are alike: then it is the integral of the standard deviation
@@ -43,7 +44,25 @@ def volume_deviations(model: ModelData) -> np.ndarray:
             blocks = side[inside]
             found[np.unique(blocks)] = np.nan_to_num(found[np.unique(blocks)])
             found += np.bincount(blocks, (here * area[faces])[inside], len(found))
+    found[without_deviation(model)] = np.nan
     return found
+
+
+def without_deviation(model: ModelData) -> np.ndarray:
+    """(B,) bool: the blocks that a surface bounds whose data show no variogram, so that nothing says how much
+    their volumes vary."""
+    missing = missing_deviations(model)
+    lacking = [number for number, name in enumerate(model.surface_names) if name in missing]
+    sides = model.face_blocks[np.isin(model.face_surface, lacking)]
+    sides = sides[sides[:, 0] != sides[:, 1]]
+    return np.isin(np.arange(len(model.blocks)), sides)
+
+
+def missing_deviations(model: ModelData) -> dict[str, str]:
+    """By the names of the surfaces whose data show no variogram (in some compartment): what is missing."""
+    return {
+        each.surface: each.text for each in model.warnings if each.surface and lacks_deviation([each.text])
+    }
 
 
 def plan_areas(model: ModelData, faces: np.ndarray | None = None) -> np.ndarray:

@@ -39,7 +39,8 @@ def unit_vector(degrees: float) -> np.ndarray:
     """(2,) the vector of length 1 in a direction; exact along the axes."""
     if degrees % 90.0 == 0.0:
         return np.array(_QUARTERS[int(degrees // 90.0) % 4])
-    return np.array([sin(math.radians(degrees)), cos(math.radians(degrees))])
+    angle = math.radians(degrees % 360.0)  # so that 361 is the same as 1
+    return np.array([sin(angle), cos(angle)])
 
 
 def degrees_text(vector: np.ndarray) -> str:

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..base.errors import counted
 from ..base.units import number_text
 
 # f(t) of each model, t = h / range, along the azimuth. The factors of the last two make f(1) = 0.95.
@@ -43,6 +44,10 @@ NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
 RANGE_BEYOND = "the range of the fitted variogram"  # begins the warning that concerns variances alone
+NO_DEVIATION = "no standard deviation is given"  # begins the warning where data show no variogram
+# Of data, beyond the terms of a trend: two standard deviations of fewer hold less than 90 % of the errors
+# (Student's distribution), and two contacts of nearly equal height would seem certain.
+_LEAST_FREE = 5
 _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill
 
 
@@ -179,6 +184,26 @@ def _longest(structures: Sequence[Structure]) -> float:
     return max([part.range for part in structures if part.model != "wave"] or [structures[0].range])
 
 
+def missing_data(variogram: Variogram, points: int, dips: int, terms: int) -> str | None:
+    """A warning where data are too few, or too equal, to show how heights vary: no standard deviation follows
+    from a variogram that is fitted to them. points, dips: how many; a dip counts as the two slopes that it
+    is. terms: of the trends that are fitted with it."""
+    least = _LEAST_FREE + terms
+    if points + 2 * dips < least:
+        there = counted(points, "point") + (f" and {counted(dips, 'dip')}" if dips else "")
+        missing = f"a variogram takes {least} points or more (a dip counts as two), and the data are {there}"
+    elif not dips and not variogram.experimental()[1].any():
+        missing = "near points have equal heights, so they show no variogram"
+    else:
+        return None
+    return f"{NO_DEVIATION}: {missing}; measure more, or set a variogram by hand"
+
+
+def lacks_deviation(warnings: Iterable[str]) -> list[str]:
+    """Those of an interpolation's warnings that say why it gives no standard deviation."""
+    return [text for text in warnings if NO_DEVIATION in text]  # a compartment may be named before
+
+
 def fit_warnings(
     variogram: Variogram, points: np.ndarray, has_trend: bool = False, has_dips: bool = False
 ) -> list[str]:
@@ -188,9 +213,9 @@ def fit_warnings(
     lags, _, counts = variogram.experimental()
     pairs = int(counts.sum())
     if pairs < _FEW_PAIRS and not has_dips:
-        number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
+        number = f"only {counted(pairs, 'pair')}" if pairs else "no pair"
         warnings.append(
-            f"the variogram is fitted to only {number} of points, so heights far from them, and how certain "
+            f"the variogram is fitted to {number} of points, so heights far from them, and how certain "
             "they are, say little; set one by hand, or use the method 'plane' or 'tin'"
         )
     elif pairs >= _FEW_PAIRS and variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:

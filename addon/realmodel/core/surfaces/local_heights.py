@@ -275,7 +275,7 @@ def local_heights(
                 native.mean_spacing(without_mis_ties(given)[0])  # it refuses them
         warnings = [
             *([mis_ties] if mis_ties else []),
-            *few_points(points, method),
+            *few_points(points, method, np.empty(0)),
             *elsewhere(points, extent),
         ]
         found = LocalHeights(method, settings, nodes, grid=grid)

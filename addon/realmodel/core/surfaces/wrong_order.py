@@ -17,7 +17,7 @@ from ..base.errors import number_list, place_text
 from ..project.project import Rock
 from ..settings.rules import RULES
 from .shared_places import is_raster, places_of
-from .wrong_sides import WrongPoints
+from .wrong_sides import WrongPoints, points_that_lie
 
 _MOST = 20_000  # points that are picked; more are a survey, and may be of another time
 
@@ -67,7 +67,7 @@ def _warning(rock: Rock, older: int, wrong: WrongPoints, holes: list[str]) -> Bu
     row = surface.point_row(wrong.worst)
     names = number_list([f"'{rock.surfaces[younger].name}'" for younger in wrong.others])
     text = (
-        f"{len(wrong.items)} of its {len(surface.point_array())} points lie above those of {names} at the "
+        f"{points_that_lie(len(wrong.items), len(surface.point_array()))} above those of {names} at the "
         f"same place, the farthest by {wrong.by:.4g}: point {row} at {place_text(wrong.place)}"
     )
     if holes:

@@ -202,11 +202,30 @@ class WrongPoints:
         is_meant = ends and self.is_part_of_survey(count)
         advice = f"; its rule is {surface.rule}: it ends there, and no action is needed" if is_meant else ""
         text = (
-            f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
-            f"{self.by:.4g}: point {surface.point_row(self.worst)} at {place_text(self.place)}{advice}"
+            f"{points_that_lie(len(self.items), count)} {side} {names}, the farthest by "
+            f"{self.by:.4g}: point {surface.point_row(self.worst)} at {place_text(self.place)}"
+            f"{advice or self._of_extrapolated(rock)}"
         )
         kind = "ends" if is_meant else "wrong_side"
         return BuildWarning(text, kind, rock.name, surface.name, self.rows(surface))
+
+    def _of_extrapolated(self, rock: Rock) -> str:
+        """What to add where the farthest point is beside the data of surfaces that it lies beyond."""
+        place = np.array([self.place[:2]])
+        named = []
+        for number in self.others:
+            points = rock.surfaces[number].known_points()
+            if len(points) and native_module().outside_hull(points, place)[0]:
+                named.append(f"'{rock.surfaces[number].name}'")
+        if not named:
+            return ""
+        be = "is" if len(named) == 1 else "are"
+        return f"; {' and '.join(named)} {be} extrapolated there, and may be wrong instead"
+
+
+def points_that_lie(some: int, count: int) -> str:
+    """'its only point lies', or '2 of its 5 points lie'."""
+    return "its only point lies" if count == 1 else f"{some} of its {count} points lie"
 
 
 def listed(

@@ -75,8 +75,6 @@ class HoleDirections:
         azimuth = 0.0
         if row.has("azimuth"):
             azimuth = row.number("azimuth")
-            if not -360 <= azimuth <= 360:
-                raise row.refuse(f"azimuth is {azimuth:g}", "it is in degrees clockwise from north")
         elif angle not in ((0.0, 180.0) if name == "inclination" else (90.0, -90.0)):
             raise row.refuse(f"the azimuth is missing where {name} is {angle:g}")
         self._stations.setdefault(hole, []).append(_Station(row, depth, angle, azimuth))

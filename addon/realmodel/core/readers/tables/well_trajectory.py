@@ -17,7 +17,7 @@ _STRAIGHT = 1e-12  # radians
 def direction(inclination: float, azimuth: float) -> Direction:
     """inclination: degrees from the vertical, 0 straight down, 90 level, 180 straight up. azimuth: degrees
     clockwise from north (+y)."""
-    tilt, turn = np.radians(inclination), np.radians(azimuth)
+    tilt, turn = np.radians(inclination), np.radians(azimuth % 360.0)
     return sin(tilt) * sin(turn), sin(tilt) * cos(turn), cos(tilt)
 
 

@@ -21,6 +21,7 @@ from ...heights.run import few_points, runs_away
 from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
+from ...settings.variogram import lacks_deviation
 from ...surfaces.local_heights import is_local
 from ...surfaces.observed.conformable import conformable_run
 from ...surfaces.observed.sheet_series import sheets_beside
@@ -272,10 +273,17 @@ class InterpolatedSurface:
         }
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
         settled = _settled(constrained, self.made[common][0])
+        shows_none = bool(lacks_deviation(self.made[common][0].warnings))
         counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
         def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
+            values = heights_of(sides, some)
+            if shows_none:  # the variogram that is settled counts as given
+                values[:, 1] = np.nan
+            return values
+
+        def heights_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
             away = np.zeros(len(own), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
@@ -461,7 +469,8 @@ class InterpolatedSurface:
         region = Sheet(np.ascontiguousarray(nodes), np.empty((0, 3), np.int32))
         one = self._from_points(family, (), points, surface, region)
         result = one.interpolation(self.number)
-        for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
+        method, z = result.method, result.z
+        for text in (*few_points(points, method, z), *runs_away(points, z, method)):
             warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
             self.entry.divided().warn(list(family.members), warning)
         return np.column_stack([result.z, *one.attributes[self.number].values()])
