@@ -6,6 +6,7 @@ only. Nothing of Blender is imported before `register()` is called.
 """
 
 import sys
+from pathlib import Path
 
 bl_info = {
     "name": "RealModel",
@@ -26,6 +27,10 @@ def register():
             "RealModel needs Python 3.11 or newer, and this Blender has "
             f"{sys.version_info.major}.{sys.version_info.minor}: use Blender 4.1 or newer"
         )
+    if __name__ == "realmodel" and (Path(__file__).parent / "wheels").is_dir():
+        from .core.base.missing_native import explanation
+
+        raise RuntimeError(explanation(ImportError()))
     from . import handlers, operators, preferences, props, ui
     from .bl import display
     from .bl.field import shown

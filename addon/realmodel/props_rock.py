@@ -3,6 +3,7 @@
 
 import bpy
 from bpy.props import (
+    BoolProperty,
     CollectionProperty,
     EnumProperty,
     FloatProperty,
@@ -91,6 +92,16 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     hole_picks: StringProperty(options={"HIDDEN"})  # JSON of the picks of boreholes
     hole_ends: StringProperty(options={"HIDDEN"})  # JSON: where holes end
     interval_values: StringProperty(options={"HIDDEN"})  # arrays of the columns of tables of intervals
+    ground: StringProperty(
+        name="Ground",
+        description="File with the heights of the ground: a raster, points or a mesh. The youngest surface, "
+        "whichever it is, is made from it, where it is made from nothing else",
+        subtype="FILE_PATH",
+        update=changes.ground,
+    )
+    ground_is_raster: BoolProperty(options={"HIDDEN"})
+    ground_stored: StringProperty(options={"HIDDEN"})  # the data of its file
+    ground_stamp: StringProperty(options={"HIDDEN"})
     map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
     observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
     dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips

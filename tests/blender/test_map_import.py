@@ -9,7 +9,10 @@ from realmodel.bl.field import map_settings
 from realmodel.bl.objects import built_models
 from realmodel.bl.project import observed_blocks, project_settings
 from realmodel.bl.scene import data_objects
+from realmodel.core import load_project
+from realmodel.core.base.work import run
 from realmodel.core.results.layer_values import at_places
+from realmodel.core.surfaces.prepare import read_rocks
 from realmodel.operators import boreholes
 
 VALLEY = SAMPLES / "mapped_valley"
@@ -21,6 +24,20 @@ class MapImport(PanelCase):
     def read(self, **options):
         given = {"map_block": "FORMATION", "map_ground": str(VALLEY / "ground.asc"), "names": NAMES}
         ops.boreholes_read(filepath=str(VALLEY / "map.geojson"), **given | options)
+
+    def order(self, names):
+        rows = self.rock.surfaces
+        for at, name in enumerate(names):
+            self.rock.active_surface = rows.find(name)
+            while rows.find(name) > at:
+                ops.surface_move(direction="DOWN")
+                self.rock.active_surface = rows.find(name)
+
+    def made_of_ground(self):
+        """The names of the surfaces of the project that have points or a mesh of their own."""
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        made = project_settings.read_project(project_settings.compose(self.scene, depsgraph)).rocks[0]
+        return [each.name for each in made.surfaces if each.method == "grid" or not each.interpolated], made
 
     @property
     def rock(self):
@@ -46,8 +63,8 @@ class MapImport(PanelCase):
         self.assertGreater(len(seen), 500)
         self.assertEqual(set(seen.blocks), set(ORDER))
         self.assertTrue((seen.holes == "").all())
-        self.assertTrue(self.rock.surfaces[-1].filepath.endswith("ground.asc"))
-        self.assertEqual(self.rock.surfaces[-1].method, "grid")
+        self.assertTrue(self.rock.ground.endswith("ground.asc"))
+        self.assertEqual([row.filepath for row in self.rock.surfaces], [""] * 5)
         self.assertEqual(data_objects.objects(self.scene), [], "no dots that would hide the map")
         ops.region_around()
         x = [point.co[0] for point in self.rock.region.data.splines[0].points]
@@ -137,14 +154,9 @@ class MapImport(PanelCase):
     def test_a_map_makes_a_model_without_a_borehole(self):
         self.read()
         rows = self.rock.surfaces
-        while [s.name for s in rows] != ORDER:
-            for at, name in enumerate(ORDER):
-                self.rock.active_surface = rows.find(name)
-                while rows.find(name) > at:
-                    ops.surface_move(direction="DOWN")
+        self.order(ORDER)
         for row in rows:
             row.method = "natural_neighbour"
-        rows[-1].source, rows[-1].filepath = "POINTS_FILE", str(VALLEY / "ground.asc")
         ops.region_around()
         self.rock.base_elevation, self.rock.edge_length = -100.0, 150.0
         self.model.view.show_misfits = True
@@ -155,3 +167,45 @@ class MapImport(PanelCase):
         lift = (places[:, 2] - ground)[~np.isnan(ground)]
         self.assertGreater(lift.min(), 1.0, "not within the coarse triangles of the ground")
         self.assertEqual(len(bpy.context.scene.realmodel.misfits) > 0, self.model.view.misfit_count > 0)
+
+    def test_the_ground_stays_on_top_in_any_order(self):
+        """It is of the rock mass, and never of a place in the list; also after a build, and saved."""
+        self.read()
+        ops.region_around()
+        for order in (ORDER, ["Marl", *ORDER[:3], "Basalt"][::-1], ORDER):
+            self.order(order)
+            made, rock = self.made_of_ground()
+            self.assertEqual(made, [order[-1]])
+            self.assertGreater(len(rock.surfaces[-1].point_array()), 1000)
+            self.assertTrue(all(each.own_points() is None for each in rock.surfaces[:-1]))
+            self.assertEqual([row.source for row in self.rock.surfaces], ["NONE"] * 5)
+        ops.surface_add(empty=True, name="Soil")
+        self.assertEqual(self.made_of_ground()[0], ["Soil"])
+        ops.surface_remove()
+        for row in self.rock.surfaces:
+            row.method = "natural_neighbour"
+        self.rock.base_elevation, self.rock.edge_length = -100.0, 200.0
+        ops.build()
+        self.save_and_open()
+        self.rock.ground = str(self.folder / "gone.asc")  # a file that is not there is read when it is built
+        self.refused(ops.build, "gone.asc")
+        self.rock.ground = str(VALLEY / "ground.asc")
+        self.order(["Basalt", *ORDER[:-1]])
+        self.assertEqual(self.made_of_ground()[0], ["Marl"])
+
+    def test_the_ground_of_a_project_is_that_of_its_rock_mass(self):
+        ops.open_project(filepath=str(VALLEY / "project.toml"), build=False)
+        self.assertTrue(self.rock.ground.endswith("ground.asc"))
+        youngest = self.rock.surfaces[-1].name
+        made, rock = self.made_of_ground()
+        self.assertIn(youngest, made)
+        given = load_project(VALLEY / "project.toml")
+        expected = run(lambda work: read_rocks(work, given))[0].rock
+        for own, other in zip(rock.surfaces, expected.surfaces, strict=True):
+            self.assertEqual((own.name, own.method, own.options), (other.name, other.method, other.options))
+            self.assertTrue(np.array_equal(own.point_array(), other.point_array()), own.name)
+        self.assertTrue(np.array_equal(rock.observations.seen_on, expected.observations.seen_on))
+        ops.surface_move(direction="DOWN")
+        self.assertNotIn(youngest, self.made_of_ground()[0])
+        moved = self.made_of_ground()[1]
+        self.assertEqual(set(moved.observations.seen_on) - {""}, {self.rock.surfaces[-1].name})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a user reads where the compiled part is missing: it depends on whose copy it is."""
 
+import re
 import subprocess
 import sys
 
@@ -95,3 +96,34 @@ def test_core_can_be_imported_without_it(tmp_path):
         [sys.executable, "-c", program], env={"PYTHONPATH": str(missing_native.PACKAGE.parent)}, check=False
     )
     assert done.returncode == 0
+
+
+def test_the_zip_of_extensions_as_an_add_on_names_the_other_one(tmp_path):
+    """Both where Blender enables it and where a script builds."""
+    addon, source = tmp_path / "realmodel", missing_native.PACKAGE
+    (addon / "wheels").mkdir(parents=True)
+    for name in ("__init__.py", "core"):
+        (addon / name).symlink_to(source / name)
+    text = (source.parents[1] / "scripts" / "packaging" / "make_zip.py").read_text(encoding="utf-8")
+    (addon / "_native.py").write_text(re.search(r'NATIVE_OF_WHEEL = b"""\\\n(.*?)"""', text, re.DOTALL)[1])
+    program = (
+        "import sys, pathlib, realmodel\n"
+        "from realmodel.core.base import missing_native, work\n"
+        "missing_native.PACKAGE = pathlib.Path(realmodel.__file__).parent\n"  # and not where the link leads
+        "missing_native.explanation.__defaults__ = (missing_native.PACKAGE,)\n"
+        "for use in (work.native_module, realmodel.register):\n"
+        "    try:\n"
+        "        use()\n"
+        "    except (work.BuildFailed, RuntimeError) as failure:\n"
+        "        print(failure)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={"PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    lines = done.stdout.splitlines()
+    assert len(lines) == 2
+    assert all("install realmodel-VERSION-" in line and "without -extension" in line for line in lines)

@@ -3,8 +3,10 @@
 script."""
 
 import contextlib
+from pathlib import PurePath
 
 from ..core import RealModelError
+from ..core.readers import RASTER_ENDINGS
 from . import display
 from .field import handle, hole_validation
 from .objects import viewports
@@ -118,6 +120,15 @@ def region(rock, context):
     data_objects.update(rock.id_data)
     if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
         viewports.frame_items(shown, viewports.spaces(context))  # the first visible data
+    setting(rock, context)
+
+
+def ground(rock, context):
+    """The file of the ground was changed: its stored data are discarded."""
+    if settings.is_filling():
+        return
+    rock.ground_stored = rock.ground_stamp = ""
+    rock.ground_is_raster = PurePath(rock.ground).suffix.lower() in RASTER_ENDINGS
     setting(rock, context)
 
 

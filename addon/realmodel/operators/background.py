@@ -62,6 +62,7 @@ class InBackground(Reporting):
             self._leave(context)
             self.tell_done(self._job.finish())
         except Cancelled:
+            self._leave(context)
             self.report({"WARNING"}, "Cancelled: the scene is as it was")
             return {"CANCELLED"}
         except Exception as error:
@@ -71,7 +72,10 @@ class InBackground(Reporting):
         return {"FINISHED"}
 
     def cancel(self, context):
-        """Called when Blender ends the operator: another file is opened, or the window is closed."""
+        """Called when Blender ends the operator: by Esc in its dialog, before there is work, or as another file
+        is opened or the window is closed."""
+        if self._job is None:
+            return
         self._job.cancel()
         self._job.leave()
         self._leave(context)

@@ -37,7 +37,7 @@ from ..core.settings.series import FIELD
 from ..core.surfaces.field_data import left_out_texts
 from ..props_schema import items
 from ..ui.panel import wrapped
-from .imports import FilesImportHelper, arrived
+from .imports import FilesImportHelper, arrived, chosen_files
 from .reporting import Reporting, a_rock, a_surface, chosen_path, file_filter, require_file
 from .rocks import add_rock
 
@@ -47,6 +47,36 @@ _MOST_DETAILED = 8  # chosen files of which columns and codes are shown
 _MOST_CODES = 20
 _ICON = 5  # letters that are as wide as an icon
 _kinds = caches.new(most=64)  # by file and columns: what is shown of chosen tables
+
+
+def _of_map(properties, ask, *arguments):
+    """The contents of the first of the chosen maps; none where it cannot be read."""
+    path = _first_map(properties)
+    try:
+        return [] if path is None else ask(path, *arguments)
+    except RealModelError:
+        return []
+
+
+def _first_map(properties):
+    return next((path for path in chosen_files(properties) if field_tables.is_map(path)), None)
+
+
+def _series(context):
+    row = settings.active_rock(context.scene)
+    return [] if row is None else [series.name for series in row.series]
+
+
+def _surfaces(context):
+    row = settings.active_rock(context.scene)
+    return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
+
+
+def _rasters(properties):
+    """The names of the rasters beside the first of the chosen maps."""
+    path = _first_map(properties)
+    beside = sorted(path.parent.iterdir()) if path is not None and path.parent.is_dir() else []
+    return [each.name for each in beside if each.suffix.lower() in RASTER_ENDINGS]
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelper):
@@ -66,19 +96,21 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     map_layer: StringProperty(
         name="Map Layer",
         description="Layer of a GeoPackage that has the polygons; empty: its only one",
-        search=lambda self, _context, _text: self.of_map(contents.layer_names),
+        search=lambda properties, _context, _text: _of_map(properties, contents.layer_names),
     )
     map_block: StringProperty(
         name="Block Column",
         description="Attribute of the polygons that names the block, or its code; empty: the only one, or "
         "that with a usual name",
-        search=lambda self, _context, _text: self.of_map(contents.column_names, self.map_layer or None),
+        search=lambda properties, _context, _text: _of_map(
+            properties, contents.column_names, properties.map_layer or None
+        ),
     )
     map_ground: StringProperty(
         name="Ground",
         description="Surface of the list that is the ground of the map, or a file of it beside the map or "
         "anywhere: a raster, points or a mesh; empty: the youngest surface",
-        search=lambda self, context, _text: [*self.surfaces(context), *self.rasters()],
+        search=lambda properties, context, _text: [*_surfaces(context), *_rasters(properties)],
     )
     map_accuracy: FloatProperty(
         name="Accuracy",
@@ -130,7 +162,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         name="Dips Of Series",
         description="Series that the dips are of, of a field at any angle and with polarity, whatever their "
         "rows name; empty: that of the active surface where it is a field, for rows without a name",
-        search=lambda self, context, _text: self.of_series(context),
+        search=lambda _properties, context, _text: _series(context),
         options={"SKIP_SAVE"},
     )
     add_surfaces: BoolProperty(
@@ -139,28 +171,6 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         "of intervals is the block beneath its surface",
         default=True,
     )
-
-    def of_map(self, ask, *arguments):
-        """The contents of the first of the chosen maps; none where it cannot be read."""
-        path = next((path for path in self.paths() if field_tables.is_map(path)), None)
-        try:
-            return [] if path is None else ask(path, *arguments)
-        except RealModelError:
-            return []
-
-    def of_series(self, context):
-        row = settings.active_rock(context.scene)
-        return [] if row is None else [series.name for series in row.series]
-
-    def surfaces(self, context):
-        row = settings.active_rock(context.scene)
-        return [] if row is None else [surface.name for surface in reversed(row.surfaces)]
-
-    def rasters(self):
-        """The names of the rasters beside the first of the chosen maps."""
-        path = next((path for path in self.paths() if field_tables.is_map(path)), None)
-        beside = [] if path is None else sorted(path.parent.iterdir())
-        return [each.name for each in beside if each.suffix.lower() in RASTER_ENDINGS]
 
     def act(self, context):
         scene = context.scene
@@ -198,7 +208,8 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             map_settings.keep(rock, draped)
             given.append(draped.vertices)
             if ground := map_settings.take_ground(rock, file):
-                warnings.append(f"'{ground}' is the ground of the map; check the order of the surfaces")
+                text = "is made from the ground, as the youngest surface; check the order of the surfaces"
+                warnings.append(f"'{ground}' {text}")
         for values in found.values:
             interval_values.add(rock, values)
             given.append(values.begins)
@@ -237,13 +248,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
     def _of_maps(self, context, paths):
         """The keys of MapFile. Raises InputRefused where the column of blocks is not said."""
         maps = [path for path in paths if field_tables.is_map(path)]
-        names = self.of_map(contents.column_names, self.map_layer or None)
+        names = _of_map(self, contents.column_names, self.map_layer or None)
         block = self.map_block.strip() or field_tables.block_attribute(names)
         if maps and not block:
             advice = f"choose Block Column: it has {', '.join(map(str, names))}" if names else None
             raise InputRefused("it is not said which attribute names the blocks", file=maps[0], advice=advice)
         ground = self.map_ground.strip()
-        if ground and ground not in self.surfaces(context) and maps:
+        if ground and ground not in _surfaces(context) and maps:
             path = _beside(maps[0], ground)
             require_file(path)
             ground = str(path)
@@ -270,7 +281,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             box.label(text="Choose all tables at once", icon="INFO")
         layout.use_property_split = True
         has_maps = any(field_tables.is_map(path) for path in shown)
-        of_series = ("series",) if self.of_series(context) else ()
+        of_series = ("series",) if _series(context) else ()
         for name in (*(_OF_MAPS if has_maps else ()), *of_series, *_SHOWN):
             layout.prop(self, name)
 
@@ -292,7 +303,7 @@ def shown_kind(path, columns, map_layer="", map_block=""):
             named = reading_text.named_columns(columns)
             kind = "boreholes" if is_object_file(path) else "map" if field_tables.is_map(path) else None
             if kind == "map":
-                contained = _of_map(path, map_layer.strip() or None, map_block.strip())
+                contained = _map_contents(path, map_layer.strip() or None, map_block.strip())
             else:
                 contained = () if kind else _contained(*table_contents(path, named))
             _kinds[key] = kind or table_kind(path, named), "CHECKMARK", contained
@@ -301,7 +312,7 @@ def shown_kind(path, columns, map_layer="", map_block=""):
     return _kinds[key]
 
 
-def _of_map(path, layer, block):
+def _map_contents(path, layer, block):
     names = contents.column_names(path, layer)
     block = block or field_tables.block_attribute(names)
     if not block:

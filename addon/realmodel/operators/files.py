@@ -19,7 +19,7 @@ from ..bl.jobs.export_job import ExportJob
 from ..bl.jobs.mesh_job import MeshJob
 from ..bl.project import results
 from ..bl.scene import live, scene_export
-from ..core import InputRefused, UsageError
+from ..core import BuildFailed, InputRefused, UsageError
 from ..core.base.atomic import Outputs
 from ..core.base.build_warning import BuildWarning
 from ..core.exporters import FORMATS
@@ -28,6 +28,7 @@ from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import model_report, write_report
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, file_filter, not_building, object_mode
+from .start import invoke
 
 _MODELS = tuple(
     (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
@@ -147,7 +148,11 @@ class ExportingInBackground(InBackground, Exporting):
         if not self._browsed or bpy.app.background:
             return super().execute(context)
         given = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
-        getattr(bpy.ops.realmodel, self.command)("INVOKE_DEFAULT", is_chosen=True, **given)
+        try:
+            invoke(getattr(bpy.ops.realmodel, self.command), self, is_chosen=True, **given)
+        except BuildFailed as error:  # what the other operator reported
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         return {"FINISHED"}
 
     def act(self, context):

@@ -232,8 +232,7 @@ class REALMODEL_OT_fill_with_strata(InBackground, bpy.types.Operator):
 
     def cancel(self, context):
         self._end_preview()
-        if self._job is not None:
-            super().cancel(context)
+        super().cancel(context)
 
     def begin(self, context):
         shape = self._shape

@@ -56,6 +56,16 @@ class _Given:
     places: np.ndarray | None = None
 
 
+def chosen_files(properties):
+    """The paths of the files that an operator with `files` was given; of its properties alone, which is all
+    that Blender gives to the function that proposes texts for one of them."""
+    names = [file.name for file in properties.files if file.name]
+    if names and properties.directory:
+        return [project_settings.absolute(os.path.join(properties.directory, name)) for name in names]
+    path = project_settings.absolute(properties.filepath)
+    return [] if path is None else [path]
+
+
 class FilesImportHelper(ImportHelper):
     """Chooses one file, or several; with a path, as of a dropped file, no file browser opens."""
 
@@ -63,12 +73,16 @@ class FilesImportHelper(ImportHelper):
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     filename_ext = ""
 
-    def paths(self):
-        names = [file.name for file in self.files if file.name]
-        if names and self.directory:
-            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
-        path = project_settings.absolute(self.filepath)
-        return [] if path is None else [path]
+    paths = chosen_files
+
+
+def _looked_at(properties):
+    """Previews of the tables among the chosen files."""
+    for path in chosen_files(properties):
+        if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
+            with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
+                if not is_mesh_file(path):
+                    yield preview_table(path)
 
 
 class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper):
@@ -109,7 +123,9 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
     split_column: StringProperty(
         name="Column",
         description="The column whose values name the surfaces; empty: the first one that may",
-        search=lambda self, _context, _text: [name for p in self._previews for name in p.splits],
+        search=lambda properties, _context, _text: [
+            name for preview in _looked_at(properties) for name in preview.splits
+        ],
         options={"SKIP_SAVE"},
     )
     filter_glob: file_filter(*_ENDINGS)
@@ -153,7 +169,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             folder = self._folder or os.path.dirname(bpy.data.filepath) or os.path.expanduser("~")
             self.filepath = os.path.join(folder, "")  # no name of a .blend as a proposal
             return ImportHelper.invoke(self, context, event)
-        self._previews = list(self._looked_at())
+        self._previews = list(_looked_at(self))
         if not self._previews:
             return self.execute(context)
         self.split = self._previews[0].is_plain
@@ -182,15 +198,6 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             column.enabled = self.split
             column.prop(self, "split_column")
             column.label(text=f"{counted(len(values), 'value')}: {', '.join(values)}"[:90])
-
-    def _looked_at(self):
-        for path in self.paths():
-            if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
-                with contextlib.suppress(
-                    InputRefused
-                ):  # files that are no tables are refused when they are read
-                    if not is_mesh_file(path):
-                        yield preview_table(path)
 
     def _given(self, context):
         """The surfaces to add, the oldest first, and warnings about them. Raises InputRefused."""

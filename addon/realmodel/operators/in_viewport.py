@@ -30,8 +30,10 @@ class Pointing(Reporting):
         self.leave(context, {"CANCELLED"})
 
     def leave(self, context, result):
-        context.window.cursor_modal_restore()
-        context.workspace.status_text_set(None)
+        if context.window is not None:  # it may be closed
+            context.window.cursor_modal_restore()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
         return result
 
 

@@ -11,6 +11,7 @@ from ..bl.display import viewpoints
 from ..bl.objects.viewports import CAMERA_ELEVATION
 from ..bl.pictures import animation, capture, first_picture, picture
 from .reporting import Reporting, a_model, a_model_or_beds
+from .start import invoke
 
 
 def _size(scene):
@@ -131,6 +132,6 @@ class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
 
     def act(self, context):
         if context.scene.camera is None:
-            bpy.ops.realmodel.set_up_picture()
+            invoke(bpy.ops.realmodel.set_up_picture, self)
         how = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"  # with a window it stays alive
         bpy.ops.render.render(how)

@@ -162,6 +162,7 @@ def _open(scene, path):
     _begin(scene, project.name)
     project_settings.fill(scene, project)
     map_settings.keep_of_project(scene, given)
+    map_settings.take_ground_of_project(scene, given)
     data_objects.update(scene)
     region_size.ask()
     live.touch(scene)

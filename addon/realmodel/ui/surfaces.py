@@ -29,6 +29,8 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
         if rock is None:
             _draw_adding(layout)
             return
+        if rock.ground or rock.ground_stored or rock.map:
+            file_field(layout, rock, "ground")
         row = layout.row()
         row.template_list("REALMODEL_UL_surfaces", "", rock, "surfaces", rock, "active_surface", rows=4)
         buttons = row.column(align=True)
@@ -78,6 +80,9 @@ def _draw_surface(layout, context, surface):
         if project_settings.stored_shape(surface) and not surface.filepath:
             hint(layout, "The data are stored in the .blend.")
     rock = settings.active_rock(context.scene)
+    if (rock.ground or rock.ground_stored) and surface.name == rock.surfaces[-1].name:
+        made = project_settings.is_of_ground(surface)
+        hint(layout, "Made from the ground." if made else "Made from its own data, not from the ground.")
     if len(rock.series):
         layout.prop(surface, "series")
     if series_settings.is_level_set(surface):

@@ -7,13 +7,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ...core import InputRefused, Project, Rock, Surface
-from ...core.readers import RASTER_ENDINGS, UnitNames, is_mesh_file
+from ...core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ...core.readers import RASTER_ENDINGS, UnitNames
 from ...core.readers.maps.unit_polygons import read_unit_polygons
 from ...core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
 from ..host import caches
 from ..objects import stored_arrays, viewports
-from ..project import project_settings, settings
+from ..project import method_settings, project_settings, settings
 from ..scene import data_objects
 
 _known = caches.new(most=8)  # by text
@@ -40,21 +40,31 @@ def keep_of_project(scene, project):
 
 
 def take_ground(row, given):
-    """The youngest surface is made from the file of the ground of a MapFile, where it is made from nothing
-    yet. Returns its name, or None."""
-    if not given.ground or not len(row.surfaces):
+    """The file of the ground of a MapFile is the ground of the row of a rock mass. Returns the name of the
+    surface that is made from it: the youngest, where it is made from nothing else; or None."""
+    if not given.ground or given.ground in [each.name for each in row.surfaces]:
         return None
-    surface, path = row.surfaces[-1], Path(given.ground)
-    if given.ground in [each.name for each in row.surfaces] or not path.is_file():
-        return None
-    if surface.source not in ("NONE", "POINTS_FILE") or surface.filepath or surface.stored:
-        return None
+    row.ground = str(given.ground)
+    row.ground_is_raster = Path(given.ground).suffix.lower() in RASTER_ENDINGS
+    youngest = row.surfaces[-1] if len(row.surfaces) else None
+    return youngest.name if youngest is not None and project_settings.is_of_ground(youngest) else None
+
+
+def take_ground_of_project(scene, given):
+    """The data of surfaces that were made from the grounds of the maps of a project, as it is in its file, go
+    to their rock masses: so the ground stays on top where surfaces are moved."""
     with settings.filling():
-        surface.source = "MESH_FILE" if is_mesh_file(path) else "POINTS_FILE"
-        surface.filepath = str(path)
-        if path.suffix.lower() in RASTER_ENDINGS:
-            surface.method = "grid"
-    return surface.name
+        for rock, row in zip(given.rocks, scene.realmodel.rocks, strict=True):
+            ground = rock.ground_file
+            has_options = isinstance(ground, (PointFile, MeshFile))  # those stay with the surface
+            if ground is None or has_options or with_ground(rock) is rock:
+                continue
+            surface = row.surfaces[-1]
+            row.ground, row.ground_is_raster = str(ground), surface.method == "grid"
+            if row.ground_is_raster and not method_settings.options_of(surface):
+                surface.property_unset("method")  # of the ground, and not of this surface
+            project_settings.forget_shape(surface)
+            surface.source, surface.filepath = "NONE", ""
 
 
 def keep(row, draped):
@@ -85,7 +95,7 @@ def _begun(scene, row, given):
     depsgraph = viewports.updated_layer(scene).depsgraph
     rock = Rock("rock mass" if row is None else row.name, [])
     names = [] if row is None else [each.name for each in row.surfaces]
-    ground = given.ground or (names[-1] if names else "")
+    ground = given.ground or (row.ground if row is not None else "") or (names[-1] if names else "")
     if ground in names:
         surface = row.surfaces[ground]
         points = data_objects.row_points(scene, surface, depsgraph)

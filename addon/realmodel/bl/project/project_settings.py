@@ -17,6 +17,7 @@ from ...core.base.errors import naming
 from ...core.base.work import run
 from ...core.project.fingerprint import fingerprint
 from ...core.project.project import surface_item
+from ...core.readers import is_mesh_file
 from ...core.results.automatic_library import with_library
 from ...core.settings.methods import CONTINUATION
 from ...core.settings.schema import MESH_READING, READING, ROCK, SURFACE
@@ -123,6 +124,8 @@ def compose(scene, depsgraph, whole=True):
         rock = Rock(row.name, [], base_elevation=base, hole_picks=picks, hole_ends=ends)
         with naming(rock.item):
             rock.observations = observed_blocks.of_rock(row)
+            if row.ground and len(row.surfaces) and rock.observations is not None:
+                rock.observations = _on_youngest(rock.observations, row.surfaces[-1].name)
             rock.dips = surface_dips.of_row(row)
             rock.series = series_settings.of_rock(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
@@ -148,7 +151,7 @@ def compose(scene, depsgraph, whole=True):
 
 def files(scene):
     """The files that a scene's model is made from."""
-    paths = [row.region_file for row in scene.realmodel.rocks]
+    paths = [path for row in scene.realmodel.rocks for path in (row.region_file, row.ground)]
     paths += [
         row.filepath for _, row in settings.interface_rows(scene) if row.source not in settings.OF_OBJECTS
     ]
@@ -165,6 +168,11 @@ def _is_to_be_read(source, composed, place, entry, named, path, kept):
         composed.read[place] = now
     composed.files[id(entry)] = named, now if is_read else kept
     return is_read
+
+
+def _on_youngest(observations, name):
+    """Observations of which those that were seen on the ground name the surface that is made from it."""
+    return replace(observations, on=np.where(observations.seen_on == "", "", name))
 
 
 def _plain_surface(row, fields):
@@ -219,8 +227,52 @@ def _stored_rings(source, composed, number, rock, row):
     return [arrays[f"ring{n}"] for n in range(len(arrays))]
 
 
+def is_of_ground(row):
+    """Whether a surface is made from the ground of its rock mass: the youngest one, where it is made from
+    nothing else. So the ground stays on top, whichever surface is moved there."""
+    rock = settings.rock_of(row)
+    if not (rock.ground or rock.ground_stored) or row.path_from_id() != rock.surfaces[-1].path_from_id():
+        return False
+    is_free = row.source == "NONE" or (row.source == "POINTS_FILE" and not (row.filepath or row.stored))
+    return is_free and not series_settings.is_level_set(row)
+
+
+def _take_ground(source, composed, place, surface, row):
+    """Makes a surface from the ground of its rock mass."""
+    rock = settings.rock_of(row)
+    path, stored, is_read = absolute(rock.ground), rock.ground_stored, False
+    if "triangles" in stored_arrays.unpack(stored) if stored else is_mesh_file(path):
+        _as_ready(surface)
+    elif rock.ground_is_raster and surface.method != "grid":
+        surface.method, surface.options = "grid", {}
+    if path is not None:
+        named = copy.copy(surface)
+        _name_ground(named, path)
+        kept = rock.ground_stamp if stored else None
+        is_read = _is_to_be_read(source, composed, place, surface, named, path, kept)
+    if is_read:
+        _name_ground(surface, path)
+    else:
+        _take_stored(surface, stored, row)
+
+
+def _name_ground(surface, path):
+    if is_mesh_file(path):
+        surface.mesh = MeshFile(path)
+    else:
+        surface.points = PointFile(path)
+
+
+def _as_ready(surface):
+    """Unsets what a surface that is made of a mesh does not have."""
+    surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
+    for key in _OF_INTERPOLATED:
+        setattr(surface, key, SURFACE[key].default)
+
+
 def _shape(source, composed, place, surface, row):
-    if row.source == "NONE":
+    of_ground = isinstance(surface, Surface) and is_of_ground(row)
+    if row.source == "NONE" and not of_ground:
         return
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
         _from_object(source, composed, place, surface, row)
@@ -236,13 +288,14 @@ def _shape(source, composed, place, surface, row):
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
-                surface.method, surface.options, surface.dips, surface.left_out = None, {}, None, None
-                for key in _OF_INTERPOLATED:
-                    setattr(surface, key, SURFACE[key].default)
+                _as_ready(surface)
             base = _made_of(source.scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
+    if of_ground:
+        _take_ground(source, composed, place, surface, row)
+        return
     if row.source in settings.LINE_OBJECTS:
         _lines_of_object(source, composed, surface, row)
         return
@@ -290,6 +343,11 @@ def keep_shape(row, text, stamp):
     """Stores the shape of a row in the .blend, and the stamp of the file that it was read from."""
     setattr(row, _stored_key(row), text)
     row.stored_stamp = stamp
+
+
+def keep_ground(row, text, stamp):
+    """The same of the ground of a rock mass."""
+    row.ground_stored, row.ground_stamp = text, stamp
 
 
 def forget_shape(row):

@@ -251,6 +251,8 @@ def _keep(scene, prepared):
         row = settings.row_at(scene, place)
         if place[1] is None:
             row.region_stored, row.region_stamp = text, stamp
+        elif stamp and settings.kind_of(row) == "surface" and project_settings.is_of_ground(row):
+            project_settings.keep_ground(settings.rock_of(row), text, stamp)
         else:
             project_settings.keep_shape(row, text, stamp)
     scene.realmodel.view.compartments = prepared.compartments

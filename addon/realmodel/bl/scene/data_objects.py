@@ -11,8 +11,8 @@ from itertools import pairwise
 import bpy
 import numpy as np
 
-from ...core import InputRefused, PointFile, RealModelError, Surface
-from ...core.readers import read_mesh, read_point_file, read_region
+from ...core import InputRefused, MeshFile, PointFile, RealModelError, Surface
+from ...core.readers import is_mesh_file, read_mesh, read_point_file, read_region
 from ...core.readers.fault_sticks import read_fault_points
 from ...core.readers.fault_trace import read_fault_trace
 from .. import display
@@ -89,6 +89,8 @@ def points_of(scene, rock, depsgraph):
 def row_points(scene, row, depsgraph):
     """(P, 3) float64 in model coordinates: the points of a surface, or the vertices of its ready mesh; None
     where there are none yet. Raises InputRefused."""
+    if project_settings.is_of_ground(row):
+        return _ground_points(scene, settings.rock_of(row))
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT") and row.object is not None:
         return project_settings.shapes.points(row.object, depsgraph) + project_settings.model_origin(scene)
     if row.source == "POINTS_FILE":
@@ -101,6 +103,17 @@ def row_points(scene, row, depsgraph):
     given = Surface(row.name)
     project_settings.name_file(given, row, path)
     return read_mesh(given.mesh).in_model(given.mesh, scene.realmodel.units)[0]
+
+
+def _ground_points(scene, rock):
+    """row_points of the ground of the row of a rock mass."""
+    if rock.ground_stored:
+        arrays = stored_arrays.unpack(rock.ground_stored)
+        return arrays["points" if "points" in arrays else "vertices"]
+    path, units = project_settings.absolute(rock.ground), scene.realmodel.units
+    if is_mesh_file(path):
+        return read_mesh(MeshFile(path)).in_model(MeshFile(path), units)[0]
+    return read_point_file(PointFile(path), units)[0]
 
 
 def read_points(scene, row):
