@@ -25,8 +25,8 @@ ADDON = ROOT / "addon" / "realmodel"
 TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
 LARGEST = 18e6  # bytes
 INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
-# In the zip with wheels: the add-on finds its native module in the package that Blender installed from them. As
-# an add-on, not an extension, it has the name of that package itself.
+# In the zip with wheels: the add-on finds its native module in the package that Blender installed from them.
+# As an add-on, not an extension, it has the name of that package itself.
 NATIVE_OF_WHEEL = b"""\
 if __name__ == "realmodel._native":
     raise ImportError("this zip is for the extensions of Blender 4.2 and newer alone")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Realizations of a model: they honor the data, spread as kriging says, and depend on the seed alone."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -332,3 +332,20 @@ def test_sums_keep_their_order():
 def test_wrong_requests(arguments, said):
     with pytest.raises(UsageError, match=said):
         ensemble(project(), **arguments)
+
+
+def test_realizations_are_made_once_for_all_holes(monkeypatch):
+    """The next hole meets the same ones: it builds nothing, and says what it would have said first."""
+    points = [[0, 0, 1], [4, 0, 2], [4, 4, 2], [0, 4, 1], [2, 2, 3], [1, 3, 2]]
+    ground = Surface("ground", points=points, method="kriging", block="soil")
+    square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    project = Project("p", [Rock("hill", [ground], region=square, edge_length=1, base_elevation=-9)])
+    found = ensemble(project, 3, seed=1)
+    fresh = Ensemble(*(getattr(found, each.name) for each in fields(found)))
+    expected = fresh.planned_hole((1.5, 1.0, 6.0), length=8.0)
+    monkeypatch.setattr(Realizer, "_interpolated", None)
+    for hole in (found, fresh, found):
+        again = hole.planned_hole((1.5, 1.0, 6.0), length=8.0)
+        assert again.contacts == expected.contacts
+        assert again.probability.tobytes() == expected.probability.tobytes()
+    found.planned_hole((2.5, 1.0, 6.0), length=8.0)

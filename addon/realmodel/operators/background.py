@@ -72,8 +72,8 @@ class InBackground(Reporting):
         return {"FINISHED"}
 
     def cancel(self, context):
-        """Called when Blender ends the operator: by Esc in its dialog, before there is work, or as another file
-        is opened or the window is closed."""
+        """Called when Blender ends the operator: by Esc in its dialog, before there is work, or as another
+        file is opened or the window is closed."""
         if self._job is None:
             return
         self._job.cancel()

@@ -7,9 +7,19 @@ import numpy as np
 from ...core.ensembles import Realizer, section_samples
 from ...core.ensembles.ensemble import realized
 from ..display import cuts, ensembles, explosion, shown_models
+from ..host import caches
 from ..host.thread_job import ThreadJob
 from ..objects import shapes
 from ..project import project_settings, settings
+
+_realizers = caches.new(most=1)  # by the stamp of the model and the seed
+
+
+def realizer_of(model, stamp, seed):
+    """The core's Realizer of an ensemble of the model of a scene, with what it knows of its realizations."""
+    if (stamp, seed) not in _realizers:
+        _realizers[stamp, seed] = Realizer(model, seed)
+    return _realizers[stamp, seed]
 
 
 class EnsembleJob(ThreadJob):
@@ -52,7 +62,7 @@ class EnsembleJob(ThreadJob):
                 blocks.append(np.where(there, sums.counts.argmax(axis=1), -1).astype(np.int16))
                 self._done += 1
 
-            realizer = Realizer(model, self._seed)
+            realizer = realizer_of(model, self._request.stamp, self._seed)
             found = realized(job, realizer, self._count, samples.places, each)
         return found, samples, np.stack(blocks)
 

@@ -5,12 +5,12 @@ thread."""
 import bpy
 
 from ...core import BuildFailed, InputRefused
-from ...core.ensembles import Realizer
 from ...core.ensembles.along_holes import hole_of_realizations
 from ..display import ensembles, shown_models
 from ..host.thread_job import ThreadJob
 from ..project import settings
 from ..scene import planned_holes
+from .ensemble_job import realizer_of
 
 
 class PlannedJob(ThreadJob):
@@ -34,7 +34,8 @@ class PlannedJob(ThreadJob):
             model = self._request.make()
             hole = model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
         with job.part(shown_models.BUILT, 1.0):
-            return hole_of_realizations(job, Realizer(model, self._seed), self._count, hole)
+            realizer = realizer_of(model, self._request.stamp, self._seed)
+            return hole_of_realizations(job, realizer, self._count, hole)
 
     def _put(self, hole):
         scene = bpy.data.scenes.get(self._scene)

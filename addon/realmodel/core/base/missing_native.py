@@ -62,11 +62,11 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
         missing = f"the native module for Python {version} cannot be loaded ({error})"
     else:
         missing = f"the native module for Python {version} is missing"
-    if (package / "wheels").is_dir() and package.name == __name__.partition(".")[0]:  # not as an extension
+    if (package / "wheels").is_dir() and package.name == __name__.partition(".")[0]:  # no extension
         which = f"realmodel-VERSION-{system.platform}.zip" if system else "the other one"
         return (
-            "this zip is for the extensions of Blender 4.2 and newer, and was installed as an add-on, where its "
-            f"native module is not found: remove it, and install {which}, without -extension in its name"
+            "this zip is for the extensions of Blender 4.2 and newer, and was installed as an add-on, where "
+            f"its native module is not found: remove it, and install {which}, without -extension in its name"
         )
     if (package.parents[1] / "scripts" / "build.sh").is_file():
         # Inside Blender sys.executable may be another interpreter than the one that runs.

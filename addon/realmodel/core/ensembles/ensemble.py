@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -115,7 +116,7 @@ class Ensemble:
                 continue
             rest = np.maximum(squares - total**2 / count, 0.0)
             deviations.append(np.sqrt(rest / max(1, count - 1)))
-        return cls(
+        found = cls(
             realizer.model,
             realizer.seed,
             realizer.correlation,
@@ -125,6 +126,13 @@ class Ensemble:
             places,
             sums.counts / count,
         )
+        found._realizer = realizer
+        return found
+
+    @cached_property
+    def _realizer(self) -> Realizer:
+        """That made its realizations, or makes them again for the first hole."""
+        return Realizer(self.model, self.seed, self.correlation)
 
     @property
     def block_names(self) -> list[str]:
@@ -168,7 +176,7 @@ class Ensemble:
         Raises as Model.planned_hole, Cancelled.
         """
         hole = self.model.planned_hole(collar, azimuth, dip, length)
-        realizer = Realizer(self.model, self.seed, self.correlation)
+        realizer = self._realizer
         count = len(self.volumes)
         return run(
             lambda work: hole_of_realizations(work, realizer, count, hole),

@@ -18,11 +18,13 @@ from ..heights.realizations.sheet_draws import SeriesDraw
 from ..heights.realizations.turning_bands import FieldArea, Noise
 from ..model.model import Model
 from ..proof.closed_form import ClosedForm, closed_forms
+from ..structures.parts.parts import Structures
 from ..structures.setup import make_surfaces
 from ..surfaces.observed.sheet_series import sheets_beside
 from ..surfaces.rock_input import RockInput
 
 _INTERPOLATED, _INTERSECTED = 0.5, 0.98  # of the time
+_MOST_BYTES = 256_000_000  # of the closed forms of realizations that are kept
 
 
 @dataclass
@@ -38,6 +40,8 @@ class Realizer:
     seed: int = 0
     correlation: float = 0.0
     _known: dict[tuple[int, int], dict] = field(default_factory=dict, repr=False)
+    _forms: dict[int, list[ClosedForm]] = field(default_factory=dict, repr=False)
+    _size: int = field(default=0, repr=False)  # of these, in bytes
 
     def __post_init__(self) -> None:
         self.model.require_project("an ensemble")
@@ -73,14 +77,27 @@ class Realizer:
 
     def closed_forms(self, work: Work, number: int) -> list[ClosedForm]:
         """The closed form of each rock mass of a realization by its number: which block is where, without
-        its cells. work: of `run`. Raises InputRefused, Cancelled."""
-        inputs, structures = self._interpolated(work, number)
-        return closed_forms(replace(self.model, rock_inputs=inputs, structures=structures))
+        its cells. They are kept, as far as memory is worth it: the next hole meets the same. work: of `run`.
+        Raises InputRefused, Cancelled."""
+        if number in self._forms:
+            return self._forms[number]
+        return self._keep(number, *self._interpolated(work, number))
+
+    def _keep(self, number: int, inputs: list[RockInput], structures: Structures) -> list[ClosedForm]:
+        found = closed_forms(replace(self.model, rock_inputs=inputs, structures=structures))
+        sheets = {id(each): each for form in found for row in form.sheets for each in row if each is not None}
+        size = sum(each.vertices.nbytes + each.triangles.nbytes for each in sheets.values())
+        size += sum(each.values.nbytes for form in found for own in form.fields for each in own.fields)
+        if self._size + size <= _MOST_BYTES:
+            self._forms[number] = found
+            self._size += size
+        return found
 
     def _make(self, work: Work, number: int, cells: str) -> Model:
         began = time.perf_counter()
         with work.part(0.0, _INTERPOLATED):
             inputs, structures = self._interpolated(work, number)
+            self._keep(number, inputs, structures)
         interpolated = time.perf_counter()
         with work.part(_INTERPOLATED, _INTERSECTED):
             built = intersect(work, inputs, cells, structures)

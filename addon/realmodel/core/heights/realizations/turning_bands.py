@@ -44,6 +44,7 @@ class Noise:
     def __init__(self, seed: tuple[int, ...], older: Noise | None = None, correlation: float = 0.0):
         self._seed, self._older, self._correlation = seed, older, correlation
         self._drawn: dict[int, np.ndarray] | None = None  # by part, for a younger surface
+        self.processes: dict[tuple, np.ndarray] = {}  # along the lines of its fields, asked again and again
         if older is not None and correlation:
             older._drawn = {}
 
@@ -138,10 +139,15 @@ class GaussianField:
         for batch in range(LINES // _LINES_AT_ONCE):
             work.check()
             lines = slice(batch * _LINES_AT_ONCE, (batch + 1) * _LINES_AT_ONCE)
-            values = np.empty((_LINES_AT_ONCE, kept))
-            for row in range(_LINES_AT_ONCE):
-                line = number * LINES + lines.start + row
-                values[row] = _process(spectrum, samples, self.noise, line)[:kept]
+            key = (number, lines.start, part.model, part.range, length, samples, kept)
+            values = self.noise.processes.get(key)
+            if values is None:
+                values = np.empty((_LINES_AT_ONCE, kept))
+                for row in range(_LINES_AT_ONCE):
+                    line = number * LINES + lines.start + row
+                    values[row] = _process(spectrum, samples, self.noise, line)[:kept]
+                if kept <= _MOST_KEPT:
+                    self.noise.processes[key] = values
             field += work.native(
                 native_module().line_sums,
                 local,
