@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from realmodel.core import (
     Boreholes,
+    Dips,
+    Observations,
     Project,
     Rock,
     Series,
@@ -14,9 +16,11 @@ from realmodel.core import (
     UsageError,
     build,
 )
+from realmodel.core.base.work import run
 from realmodel.core.fields.solve import LevelSetData, _against_order
 from realmodel.core.readers.tables.dips import gradient_of, normal_of
 from realmodel.core.results.planned_holes import HoleAxis
+from realmodel.core.surfaces.prepare import read_rocks
 
 _SQUARE = [[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]]
 _PLAN = np.array([[100.0, 100.0], [900.0, 200.0], [500.0, 800.0], [300.0, 500.0]])
@@ -116,3 +120,26 @@ def test_boundaries_of_blocks_by_name():
             model.block_boundary(unknown)
     with pytest.raises(UsageError, match="'B block' is absent"):
         model.block_boundary("B block")
+
+
+def test_a_map_alone_is_said_to_be_a_skin():
+    """Where there are dips, holes or points, too, nothing is said."""
+    places = [[x, y, 590.0] for x in (100.0, 400.0, 600.0, 900.0) for y in (200.0, 800.0)]
+    seen = Observations(places, ["A"] * 4 + ["B"] * 4)
+    ground = _flat("ground", 600.0)
+    in_hole = Observations([*places, [500, 500, 300]], ["A"] * 4 + ["B"] * 5, [""] * 8 + ["h"])
+    dips = Dips(_PLAN[:1], gradient_of(5.0, 90.0)[None])
+
+    def said(a=None, seen=seen, **options):
+        rows = [a or Surface("A"), Surface("B", rule="conformable"), ground]
+        project = Project(
+            "p", [Rock("r", rows, region=_SQUARE, edge_length=200.0, observations=seen, **options)]
+        )
+        (entry,) = run(lambda work: read_rocks(work, project))
+        return [w.text for w in entry.warnings if "no more than a skin" in w.text]
+
+    assert len(said()) == 1 and "where 'A' and 'B' are," in said()[0]
+    assert "where 'B' is," in said(Surface("A", points=_plane(_PLAN, 300.0, (0, 0))))[0]
+    assert not said(seen=in_hole)
+    assert not said(dips=dips)
+    assert not said(Surface("A", dips=dips))

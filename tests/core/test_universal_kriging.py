@@ -214,7 +214,7 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, drift, 
         assert "the same position in plan" in str(error)
         return
     assert np.isfinite(result.z).all()
-    assert (result.variance >= 0).all()
+    assert result.variance is None or (result.variance >= 0).all()  # few or equal points show none
     assert isinstance(result.variogram, Variogram)
 
 

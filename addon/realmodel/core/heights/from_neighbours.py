@@ -202,14 +202,14 @@ def _around_plane(task: Task, known: KrigingStructure) -> Result:
     z, variance = result.z + plane.at(places), result.variance
     if not task.left_out:
         _honor_exactly(task, above.points, result.z, z)
-    if variance is None or task.companions is not None:
+    if task.companions is not None or (variance is None and not task.left_out):
         return replace(result, z=z)
     away = np.column_stack([_from_neighbours(task, known, axis) for axis in np.eye(2)])
     if task.left_out:
         without = [_regional_plane(_without(task, number)) for number in range(len(task.points))]
         slopes = np.array([np.zeros(2) if each is None else each.slope for each in without])
         z = z + dot(slopes - plane.slope, away)
-    return replace(result, z=z, variance=variance + plane.variance(away))
+    return replace(result, z=z, variance=None if variance is None else variance + plane.variance(away))
 
 
 def _honor_exactly(task: Task, above: np.ndarray, kriged: np.ndarray, z: np.ndarray) -> None:

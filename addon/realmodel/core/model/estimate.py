@@ -21,6 +21,7 @@ from ..structures.setup import mesh_inputs
 from ..surfaces.prepare import read_rocks
 from ..surfaces.rock_input import RockInput
 
+BYTES_OF_ANY = 10_000_000  # that any build takes: tables, what threads work in, modules that are loaded
 # Bytes for each triangle of the surfaces: a little more than the dearest benchmark took, by cells
 # and by whether all surfaces stand on one plan mesh.
 _MOST_BYTES = {
@@ -37,7 +38,7 @@ _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points ar
 # to the power of two thirds, that are in one layer of a lattice. The bytes are a quarter more than was taken;
 # columns as dense as the lattice divide these triangles, sparser ones fewer.
 _TRIANGLES_IN_LAYER = 16
-_BYTES_OF_LEVEL_SET, _BYTES_OF_DIVIDED = 800, 3000
+_BYTES_OF_LEVEL_SET, _BYTES_OF_DIVIDED = 1000, 6000
 # Of a node on each combination of sides of faults: values and numbers; for each fault its side and its
 # coordinate, which is there twice while it is made
 _BYTES_OF_SIDES, _BYTES_OF_FAULT = 40, 25
@@ -154,7 +155,8 @@ def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> in
         field.triangles * (_BYTES_OF_LEVEL_SET + _BYTES_OF_DIVIDED * field.density * (cells == "columns"))
         for field in fields
     )
-    return bytes_of_stacks * _times(structures) + round(of_level_sets) + sum(field.system for field in fields)
+    system = sum(field.system for field in fields)
+    return BYTES_OF_ANY + bytes_of_stacks * _times(structures) + round(of_level_sets) + system
 
 
 @dataclass(frozen=True)
@@ -206,9 +208,11 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
         advice.append(f'ask for cells="blocks" (at most {memory_text(blocks)})')
     triangles = sum(map(_triangles, inputs))
     triangles += sum(field.triangles for entry in inputs for field in _fields(entry, structures))
-    fitting = float(f"{0.9 * triangles * free / needed:.1e}")
+    room = max(free - BYTES_OF_ANY, 0.01 * free)
+    share = room / (needed - BYTES_OF_ANY)
+    fitting = float(f"{0.9 * triangles * share:.1e}")
     coarser = f"use surfaces of {fitting:,.0f} triangles in all instead of {triangles:,}"
-    times = f"{(needed / (0.9 * free)) ** 0.5:.1f} times as long"
+    times = f"{(0.9 * share) ** -0.5:.1f} times as long"
     if any(_fields(entry, structures) for entry in inputs):
         coarser += f", or a resolution of series {times}"
     elif any(entry.rock.interpolates for entry in inputs):

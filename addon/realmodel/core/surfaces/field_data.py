@@ -17,7 +17,7 @@ from ..project.series import Series
 from ..project.structure_history import body_times
 from ..readers import Picks, UnitNames, read_boreholes, read_dips_of_rock, read_observed_places
 from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
-from ..settings.dips import Dips
+from ..settings.dips import Dips, SpaceDips
 from ..settings.series import SHEETS
 from .map_data import blocks_on_map, read_map, with_ground
 from .observed.contradictions import without_contradictions
@@ -78,6 +78,8 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
         found.append(observed)
         left_out += not_used
     observations = Observations.joined(found).along_holes() if found else None
+    if observations is not None and not (picks.holes or rock.hole_picks):
+        map_warnings += _on_the_ground_alone(rock, observations, dips, series)
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
         _with_points(_without_picks(surface, picks), number, picks.points.pop(surface.name, None), derived)
@@ -99,6 +101,31 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
     return FieldData(
         read, picks, surfaces, list(picks.points), left_out, map_warnings, given.ground_number, mapped
     )
+
+
+def _on_the_ground_alone(
+    rock: Rock, observations: Observations, dips: Dips | None, series: Sequence[Series]
+) -> list[str]:
+    """A warning where outcrops or a map alone say where surfaces are: nothing shows them below the ground."""
+    slopes = [dips, *(each.dips for each in series), *(surface.dips for surface in rock.surfaces)]
+    if (observations.holes != "").any() or any(map(_are_some, slopes)):
+        return []
+    shown = [
+        surface.name
+        for surface in rock.surfaces[:-1]
+        if surface.has_points and surface.points is None and (surface.is_level_set or surface.needs_points)
+    ]
+    if not shown:
+        return []
+    names = number_list([f"'{name}'" for name in shown])
+    return [
+        f"only outcrops or a map say where {names} {'is' if len(shown) == 1 else 'are'}, and nothing says "
+        "what is below the ground, so blocks may be no more than a skin: add dips, boreholes or points"
+    ]
+
+
+def _are_some(dips: object) -> bool:
+    return dips is not None and not (isinstance(dips, (Dips, SpaceDips)) and not len(dips))
 
 
 def _dips(project: Project, rock: Rock, units: UnitNames) -> tuple[Dips | None, list[LeftOut]]:
