@@ -262,7 +262,7 @@ def write_files(folder: Path):
     )
     (folder / "two.geojson").write_text(f'{{"type": "FeatureCollection", "features": [{squares}]}}')
     write_contours(folder / "contours.gpkg")
-    (folder / "mesh.off").write_text("OFF\n4 2 0\n390 -5 1\n510 -5 1\n510 90 2\n390 90 2\n3 0 1 2\n3 0 2 3\n")
+    (folder / "mesh.off").write_text("OFF\n4 2 0\n118 -2 1\n156 -2 1\n156 28 2\n118 28 2\n3 0 1 2\n3 0 2 3\n")
 
 
 LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (35, 36, "B"))

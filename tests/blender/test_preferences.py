@@ -63,7 +63,7 @@ class Preferences(PanelCase):
         self.live_is_done()
         for pause in (0.0, 0.4):
             self.chosen.live_pause = pause
-            live.touch(self.scene)
+            self.model.rocks[0].surfaces[1].block = f"after {pause}"
             self.live_is_done()
             self.assertGreaterEqual(live.measured[self.scene.name], pause)
         self.chosen.live_pause = 60.0

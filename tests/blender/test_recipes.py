@@ -26,7 +26,8 @@ class Recipe(PanelCase):
         bpy.ops.wm.read_homefile(use_factory_startup=True)
 
     def no_warnings(self):
-        self.assertEqual(notices.read(self.model.warnings), [])
+        found = [each for each in notices.read(self.model.warnings) if "it erodes" not in str(each)]
+        self.assertEqual(found, [], "but for the contacts that the ground erodes, as it should")
 
     def rendered(self):
         """The brightness of a small picture, as F12 makes it."""

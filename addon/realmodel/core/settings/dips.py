@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -220,6 +220,19 @@ class Dips:
         where = place_text(tuple(places[differ[0]].tolist()))
         many = "1 position has" if len(differ) == 1 else f"{len(differ)} positions have"
         return kept, f"{many} several dips, one at {where}: their mean slope is used"
+
+
+SomeDips = TypeVar("SomeDips", SpaceDips, Dips)
+
+
+def as_given(dips: SomeDips) -> SomeDips:
+    """The same in the order of the table or the arrays that they come from."""
+    if dips.rows is None:
+        return dips
+    order = np.argsort(dips.rows)
+    arrays = {each.name: getattr(dips, each.name) for each in fields(dips)}
+    ordered = {name: None if array is None else np.asarray(array)[order] for name, array in arrays.items()}
+    return replace(type(dips)(**ordered), rows=None)
 
 
 def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:

@@ -26,6 +26,7 @@ from ..readers.rasters.geotiff import geotiff_system
 from ..readers.tables.dips import DIPS
 from ..readers.tables.hole_tables import OBSERVED, other_units_in
 from ..settings.crs import epsg_code
+from ..settings.dips import Dips, SpaceDips, as_given
 from ..settings.mesh_sizes import AUTO
 from ..settings.series import SHEETS
 from .distant_points import require_points_near
@@ -156,7 +157,13 @@ def with_arrays(project: Project) -> Project:
                 if met is not None:
                     surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
                 surfaces.append(surface)
-            rocks.append(replace(field.rock, surfaces=surfaces))
+            series = [
+                replace(each, dips=as_given(each.dips)) if isinstance(each.dips, (Dips, SpaceDips)) else each
+                for each in field.rock.series
+            ]
+            dips = field.rock.dips
+            dips = as_given(dips) if isinstance(dips, Dips) else dips
+            rocks.append(replace(field.rock, surfaces=surfaces, series=series, dips=dips))
         return rocks
 
     return replace(project, rocks=run(task))
