@@ -278,7 +278,7 @@ def test_contradicting_points_are_named(basin, write):
     write("top.csv", "0,0,1\n5,5,2\n0,0,3\n")
     with pytest.raises(InputRefused) as raised:
         build(load_project(path))
-    assert "top.csv: rock 'basin', surface 'top', points: points 0 and 2" in str(raised.value)
+    assert "top.csv: rock 'basin', surface 'top', points: points 0 and 1" in str(raised.value)
 
 
 def test_a_surface_ends_with_its_points_where_no_extrapolation_is_wanted(basin, write):

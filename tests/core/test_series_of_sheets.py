@@ -236,7 +236,7 @@ def test_dips_of_the_series_that_name_a_block_or_a_surface():
     given = [surface.rock_dips for surface in model.rock_inputs[0].rock.surfaces]
     rows = [[0, 2, 3], [0, 1, 2], [0, 4]]  # those over and under the block of S1, the base under that of S0
     for each, expected in zip(given[:3], rows, strict=True):
-        assert np.array_equal(each.positions, plan[expected])
+        assert sorted(each.positions.tolist()) == sorted(plan[expected].tolist())
     assert given[3] is None
     (left_out,) = [each for each in model.rock_inputs[0].left_out if each.kind == "dip_series"]
     assert "'cover'" in left_out.text
@@ -317,7 +317,7 @@ def test_contacts_of_others_bound_a_sheet():
 
 
 def test_variances_know_of_the_other_sheets():
-    surfaces = surfaces_of([40, 4, 40])
+    surfaces = surfaces_of([40, 8, 40])
     together = build(Project("p", [rock_of(surfaces)]))
     apart = build(Project("p", [rock_of(alone(surfaces))]))
     variance = [np.median(model.rock_inputs[0].attributes[1]["variance"]) for model in (together, apart)]
@@ -326,7 +326,7 @@ def test_variances_know_of_the_other_sheets():
 
 def test_cross_validation_knows_of_the_other_sheets():
     surfaces = surfaces_of([30, 10, 30])
-    points = [surface.points for surface in surfaces]
+    points = [surface.points[np.lexsort(surface.points.T[::-1])] for surface in surfaces]  # as they are read
     method, settings = surfaces[1].method_options()
     task = Task(Work(), points[1], np.empty((0, 2)), settings)
     joint = replace(task, companions=Companions(1, points, [None] * 3))
