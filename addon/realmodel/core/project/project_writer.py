@@ -22,7 +22,7 @@ from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..base.units import MODEL_UNIT
 from ..readers import UnitNames
-from ..settings.dips import Dips, SpaceDips
+from ..settings.dips import Dips, SpaceDips, as_given
 from ..settings.meshers import DEFAULT_MESHER
 from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
@@ -269,6 +269,7 @@ def points_text(points: ArrayLike) -> bytes:
 
 def dips_text(dips: Dips) -> bytes:
     """Dips as CSV: their slopes, of which angles would not give back each bit."""
+    dips = as_given(dips)
     columns: list = [*dips.positions.T.tolist(), *dips.gradients.T.tolist()]
     names = ["x", "y", "slope_x", "slope_y"]
     if np.isfinite(dips.heights).any():
@@ -307,6 +308,7 @@ def _block_codes(rock: Rock) -> dict[str, str]:
 
 def space_dips_text(dips: SpaceDips) -> bytes:
     """Dips in space as CSV: their normals, of which angles would not give back each bit."""
+    dips = as_given(dips)
     names, numbers = "x,y,z,normal_x,normal_y,normal_z", np.hstack([dips.positions, dips.normals])
     if dips.in_use.all():
         return f"{names}\n".encode() + _rows(numbers, ",")

@@ -79,7 +79,6 @@ class SurfaceInput:
             if surface.has_points:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
                 points, rows = self._in_order(points, in_memory if arrays is None else arrays.gather)
-                rows = rows if arrays is None else None
                 read = replace(
                     surface, points=points, dips=self._dips(step), shape_file=file, point_rows=rows
                 )
