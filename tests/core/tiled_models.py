@@ -3,6 +3,7 @@
 
 import contextlib
 import pickle
+import re
 import unittest.mock
 from concurrent.futures import Future
 
@@ -44,8 +45,13 @@ def assert_same_warnings(tiled, whole):
     """But for those that only a model built in one piece has."""
     not_in_tiles = {"residual", "extrapolation", "eroded"}
     assert not not_in_tiles & {warning.kind for warning in tiled.warnings}
-    wanted = [str(warning) for warning in whole.warnings if warning.kind not in not_in_tiles]
-    assert sorted(map(str, tiled.warnings)) == sorted(wanted)
+    wanted = [warning for warning in whole.warnings if warning.kind not in not_in_tiles]
+    assert sorted(map(_as_in_tiles, tiled.warnings)) == sorted(map(_as_in_tiles, wanted))
+
+
+def _as_in_tiles(warning):
+    """Without the rows of points, and where surfaces are extrapolated: tiles do not know them."""
+    return re.sub(r"point \d+ at", "point at", str(warning).partition("; '")[0])
 
 
 def assert_same_blocks(tiled, whole, allowed=None):
