@@ -263,7 +263,7 @@ def _takes_part(entry: RockInput, number: int) -> bool:
         and surface.tie
         and surface.minimum_thickness is None
         and surface.known_dips() is None
-        and not surface.is_along_bounds
+        and not surface.has_bounds
         and not needed_surfaces(entry.rock, number)
         and not dies_out.any()
     )
