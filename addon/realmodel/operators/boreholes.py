@@ -262,7 +262,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             "block": block,
             "layer": self.map_layer.strip() or None,
             "ground": ground or None,
-            "accuracy": self.map_accuracy or None,
+            "accuracy": settings.plain(self.map_accuracy) or None,
         }
 
     def draw(self, context):

@@ -163,14 +163,11 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
     separator = table.layout.separator
     body = table.raw[table.layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
-    if (
-        given.decimal is None
-        and separator != ","
-        and not any("." in entry for entry in body[:20_000].split() if is_number(entry))
-    ):
-        decimal = (
-            "," if any(is_number(part, ",") and "," in part for part in _parts(body, separator)) else "."
-        )
+    if given.decimal is None and separator != ",":
+        entries = list(_parts(body, separator))
+        has_points = any("." in entry and is_number(entry) for entry in entries)
+        has_commas = any("," in entry and is_number(entry, ",") for entry in entries)
+        decimal = "," if has_commas and not has_points else "."
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
