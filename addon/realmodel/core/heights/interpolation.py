@@ -23,8 +23,8 @@ from .companions import Alike, Companions
 @dataclass(frozen=True, repr=False)
 class Interpolation(ShortRepr):
     """z (N,) heights, NaN where there are none; variance (N,) of the error, NaN where it is not known, None
-    where the method gives none; the method used; the variogram, None where the method has none; warnings,
-    sentences about the points.
+    where the method gives none, or the data show no variogram; the method used; the variogram, None where the
+    method has none; warnings, sentences about the points.
 
     extrapolated: share of the nodes that lie outside the convex hull of the points, or outside a grid.
     reason: why a method was chosen, where "auto" chose it. neighbours: how many points at most counted at a
