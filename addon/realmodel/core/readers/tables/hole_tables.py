@@ -92,6 +92,7 @@ _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows tha
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
+_MOST_TURNED = 720.0  # degrees
 _LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
@@ -152,6 +153,13 @@ class Row:
         value = float(entry.replace(",", "."))
         if not np.isfinite(value):
             raise self.refuse(f"{column} is {entry}, not a finite number")
+        return value
+
+    def azimuth(self, column: str) -> float:
+        """An angle in plan, degrees: also one beyond 360, but none that stands for no value."""
+        value = self.number(column)
+        if abs(value) > _MOST_TURNED:
+            raise self.refuse(f"{column} is {value:g}", "it is in degrees clockwise from north")
         return value
 
 
