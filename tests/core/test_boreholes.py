@@ -243,3 +243,14 @@ def test_a_surface_that_no_hole_met(write):
     rock.boreholes = None
     with pytest.raises(InputRefused, match="neither points nor a mesh"):
         build(Project("x", [rock]))
+
+
+def test_a_point_in_another_column_is_no_decimal_comma(tmp_path):
+    """Entries are told apart by the separator, as the numbers are read."""
+    file = tmp_path / "picks.csv"
+    file.write_text("hole;x;y;z;surface;depth\nB1;100,5;200,5;7,25;Top 1.5;1,5\n")
+    found = read_boreholes(Boreholes(picks=file))
+    assert found.points["Top 1.5"].tolist() == [[100.5, 200.5, 5.75]]
+    file.write_text("hole;x;y;z;surface;depth\nB1;100.5;200.5;7;Top;1,5\n")
+    with pytest.raises(InputRefused, match="depth is not a number: '1,5'"):
+        read_boreholes(Boreholes(picks=file))

@@ -2,6 +2,8 @@
 """The geological map and contours: exact polygons, as readers that nobody here wrote read them."""
 
 import json
+import sqlite3
+import struct
 import subprocess
 import sys
 from collections import Counter
@@ -10,10 +12,10 @@ from random import Random
 
 import numpy as np
 import pytest
-from realmodel.core import Model, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import InputRefused, Model, Project, Rock, Surface, UsageError, build, load_project
 from realmodel.core.base.work import native_module
 from realmodel.core.cells.cell_complex import CellComplex
-from realmodel.core.readers import read_shapes
+from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.maps.geojson import read_geojson
 from realmodel.core.results.contours import checked_interval, contours
 from realmodel.core.results.geological_map import geological_map
@@ -282,3 +284,39 @@ def test_a_wrong_interval_writes_nothing(two_layers, tmp_path):
         with pytest.raises(UsageError, match="take a longer interval"):
             two_layers.save(tmp_path / name, contour_interval=1e-9)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "system", ["urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:EPSG::4326", "EPSG:4258"]
+)
+def test_degrees_are_no_lengths(tmp_path, system):
+    """A file that says that it is in degrees is refused, unless its numbers cannot be degrees."""
+    file = tmp_path / "a.geojson"
+    for ring, is_refused in (
+        ([[7.1, 48.1], [7.2, 48.1], [7.2, 48.2], [7.1, 48.1]], True),
+        ([[0, 0], [3100, 0], [3100, 2000], [0, 0]], False),
+    ):
+        content = {"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": system}}}
+        shape = {"type": "Polygon", "coordinates": [ring]}
+        content["features"] = [{"type": "Feature", "properties": {}, "geometry": shape}]
+        file.write_text(json.dumps(content))
+        if is_refused:
+            with pytest.raises(InputRefused, match="degrees of longitude and latitude"):
+                read_region(file)
+        else:
+            assert len(read_region(file)[0]) == 1
+    file.write_text(json.dumps(content).replace(system, "EPSG:25832").replace("3100", "31"))
+    assert len(read_region(file)[0]) == 1
+    base = sqlite3.connect(tmp_path / "a.gpkg")
+    base.execute("CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, srs_id INT)")
+    columns = "srs_id INT, organization_coordsys_id INT, definition TEXT"
+    base.execute(f"CREATE TABLE gpkg_spatial_ref_sys ({columns})")
+    base.execute("INSERT INTO gpkg_geometry_columns VALUES ('a', 'geom', 7)")
+    base.execute("INSERT INTO gpkg_spatial_ref_sys VALUES (7, 4326, 'GEOGCS[]')")
+    base.execute("CREATE TABLE a (fid INTEGER PRIMARY KEY, geom BLOB)")
+    line = struct.pack("<BII4d", 1, 2, 2, 7.0, 48.0, 7.1, 48.1)
+    base.execute("INSERT INTO a VALUES (NULL, ?)", (b"GP" + struct.pack("<BBi", 0, 1, 7) + line,))
+    base.commit()
+    base.close()
+    with pytest.raises(InputRefused, match="degrees of longitude and latitude"):
+        read_shapes(MapLayer(tmp_path / "a.gpkg"))

@@ -3,7 +3,18 @@
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Model, Project, Rock, Surface, build, load_project
+from realmodel.core import (
+    Boreholes,
+    Dips,
+    InputRefused,
+    Model,
+    Project,
+    Rock,
+    Surface,
+    UsageError,
+    build,
+    load_project,
+)
 from realmodel.core.project.project_writer import save_project
 
 SURFACES = """\
@@ -328,3 +339,31 @@ def test_the_coordinate_system_comes_back(project, tmp_path):
     assert Model.load(tmp_path / "m.npz").project.crs == "EPSG:25832"
     with pytest.raises(InputRefused, match="crs: 'crs' must be a code"):
         build(Project(name="x", rocks=from_arrays().rocks, crs="here"))
+
+
+def test_projects_of_arrays_are_compared():
+    def made(x=0.0):
+        points = np.array([[x, 0.0, 1.0], [1.0, 1.0, 2.0]])
+        dips = Dips([[0.0, 0.0]], [[0.1, 0.0]])
+        return Project("p", [Rock("r", [Surface("A", points=points, dips=dips)], region=np.eye(3)[:, :2])])
+
+    assert made() == made() != made(0.5)
+    assert made().rocks.index(made().rocks[0]) == 0
+    assert made().rocks[0] in [made(0.5).rocks[0], made().rocks[0]]
+    assert made() != "p"
+
+
+def test_what_is_not_read_is_not_left_out_when_it_is_saved(tmp_path):
+    square = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    surface = Surface("A", method="constant", options={"value": 1.0})
+    (tmp_path / "picks.csv").write_text("hole,x,y,z,surface,depth\nB1,0,0,5,A,1\n")
+    (tmp_path / "river.geojson").write_text('{"type": "LineString", "coordinates": [[0, 0], [1, 1]]}')
+    for key, given in (
+        ("boreholes", Boreholes(picks=tmp_path / "picks.csv")),
+        ("constraints", [tmp_path / "river.geojson"]),
+        ("constraints", ["LINESTRING (0 0, 1 1)"]),
+    ):
+        rock = Rock("r", [surface], region=square, edge_length=1.0, **{key: given})
+        with pytest.raises(UsageError, match=rf"{key} was not read yet"):
+            save_project(Project("p", [rock]), tmp_path / "p.toml")
+        assert not (tmp_path / "p.toml").exists()

@@ -20,7 +20,7 @@ def begin_again(walk):
 
 def invoked(walk, operator, **arguments):
     with bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW")):
-        operator("INVOKE_DEFAULT", **arguments)
+        return operator("INVOKE_DEFAULT", **arguments)
 
 
 def import_horizons(walk):

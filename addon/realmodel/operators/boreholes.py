@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Import of boreholes, observed blocks and dips: what a rock mass is made from, in several tables at once."""
 
+import os
+
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
@@ -75,7 +77,7 @@ def _surfaces(context):
 def _rasters(properties):
     """The names of the rasters beside the first of the chosen maps."""
     path = _first_map(properties)
-    beside = sorted(path.parent.iterdir()) if path is not None and path.parent.is_dir() else []
+    beside = sorted(path.parent.iterdir()) if path is not None and os.path.isdir(path.parent) else []
     return [each.name for each in beside if each.suffix.lower() in RASTER_ENDINGS]
 
 
@@ -262,13 +264,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
             "block": block,
             "layer": self.map_layer.strip() or None,
             "ground": ground or None,
-            "accuracy": self.map_accuracy or None,
+            "accuracy": settings.plain(self.map_accuracy) or None,
         }
 
     def draw(self, context):
         layout = self.layout
         box = layout.box().column(align=True)
-        shown = [path for path in self.paths() if path.is_file()]
+        shown = [path for path in self.paths() if os.path.isfile(path)]
         for path in shown:
             text, icon, contained = shown_kind(path, self.columns, self.map_layer, self.map_block)
             box.label(text=f"{path.name}: {text}", icon=icon)
@@ -292,7 +294,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
 def _beside(table, given):
     """The path of another table, which may stand beside one; None where none is given."""
     path = project_settings.absolute(given)
-    return table.parent / given.strip() if path is not None and not path.is_file() else path
+    return table.parent / given.strip() if path is not None and not os.path.isfile(path) else path
 
 
 def shown_kind(path, columns, map_layer="", map_block=""):

@@ -17,7 +17,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl.display import shown_models
 from ..bl.jobs.export_job import ExportJob
 from ..bl.jobs.mesh_job import MeshJob
-from ..bl.project import results
+from ..bl.project import results, settings
 from ..bl.scene import live, scene_export
 from ..core import BuildFailed, InputRefused, UsageError
 from ..core.base.atomic import Outputs
@@ -206,9 +206,9 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
             self.model(context),
             path,
             surfaces_only=self.surfaces_only,
-            cell_size=self.cell_size[:] if any(self.cell_size) else None,
-            contour_interval=self.contour_interval or None,
-            tolerance=self.cell_tolerance or None,
+            cell_size=tuple(map(settings.plain, self.cell_size)) if any(self.cell_size) else None,
+            contour_interval=settings.plain(self.contour_interval) or None,
+            tolerance=settings.plain(self.cell_tolerance) or None,
         )
 
     def tell_done(self, path):
@@ -257,10 +257,10 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     def begin(self, context):
         self._request = MeshRequest(
             self.target(),
-            self.edge_length or None,
-            self.minimum_thickness or None,
+            settings.plain(self.edge_length) or None,
+            settings.plain(self.minimum_thickness) or None,
             self.layers or None,
-            self.layer_thickness or None,
+            settings.plain(self.layer_thickness) or None,
             self.elements.lower(),
         )
         model = self.model(context)

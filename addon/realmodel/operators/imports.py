@@ -79,7 +79,7 @@ class FilesImportHelper(ImportHelper):
 def _looked_at(properties):
     """Previews of the tables among the chosen files."""
     for path in chosen_files(properties):
-        if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
+        if os.path.isfile(path) and path.suffix.lower() in TABLE_ENDINGS:
             with contextlib.suppress(InputRefused):  # files that are no tables are refused when they are read
                 if not is_mesh_file(path):
                     yield preview_table(path)

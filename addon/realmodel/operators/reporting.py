@@ -6,6 +6,8 @@ sentence. Blender shows it at the grayed-out button; in a script it is the text 
 looked at whenever the panel is drawn, so they read nothing but the scene.
 """
 
+import os
+
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
 from ..bl.display import cuts
@@ -41,6 +43,9 @@ class Reporting:
             return self.act(context) or {"FINISHED"}
         except RealModelError as error:
             self.report({"ERROR"}, build_job.message(error))
+            return {"CANCELLED"}
+        except OSError as error:  # what was typed can be no path, or nothing can be read or written there
+            self.report({"ERROR"}, f"{str(error.filename or '')[:200]}: {error.strerror}; check the path")
             return {"CANCELLED"}
 
 
@@ -188,5 +193,5 @@ def file_filter(*endings):
 
 def require_file(path):
     """Raises InputRefused where there is no such file."""
-    if not path.is_file():
+    if not os.path.isfile(path):  # also where it can be no path
         raise InputRefused(f"file not found: {path}", advice="check the path")

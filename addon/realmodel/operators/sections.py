@@ -250,7 +250,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
             self.layout.prop(self, name)
 
     def write(self, context, path):
-        width = self.hole_width
+        width = settings.plain(self.hole_width)
         if self.along == "PLANE":
             found = sections.by_plane(context.scene, *_plane_of(self, context))
         elif self.along == "HOLES":

@@ -14,7 +14,8 @@ from ...core import InputRefused
 from ...core.exporters.npz import write_arrays
 from ..host import caches
 
-_BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
+# MemoryError: a few bytes of a damaged file may say that they are far more
+_BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, MemoryError, zipfile.BadZipFile, zlib.error)
 
 
 def _bytes_of(arrays):

@@ -213,7 +213,12 @@ def number(row, key):
     exact = json.loads(row.exact).get(key) if row.exact else None
     if exact is not None and np.float32(exact) == shown:
         return exact
-    return float(str(shown))
+    return plain(shown)
+
+
+def plain(value):
+    """A typed number, of 32 bits in Blender, as the shortest decimal that it stands for: 0.1 is 0.1."""
+    return float(str(np.float32(value)))
 
 
 def set_number(row, key, value):

@@ -186,9 +186,12 @@ class ModelData:
         return self.complex.cell_volumes(self.threads)
 
     def block_boundary(self, block: int | str) -> BlockBoundary:
-        """The closed boundary of one block, all its connected parts together. block: its number from 0, or
-        its name. Raises UsageError for an unknown name or number, for a name that several blocks have, and
-        for a block of which nothing is left."""
+        """The closed boundary of one block, all its connected parts together. block: its name, or its number
+        from 0; that of a block of which nothing is left has no faces.
+
+        Raises UsageError for an unknown one, and for a name of several blocks or of one of which nothing is
+        left.
+        """
         names = [each.name for each in self.blocks]
         found = [n for n, name in enumerate(names) if block in ((name,) if isinstance(block, str) else (n,))]
         if len(found) != 1:
@@ -197,7 +200,7 @@ class ModelData:
                 if found
                 else f"there is no block {block!r}; blocks are {', '.join(names)}, numbered from 0"
             )
-        if not self.blocks[found[0]].cells:
+        if isinstance(block, str) and not self.blocks[found[0]].cells:
             raise UsageError(f"block '{names[found[0]]}' is absent: nothing of it is left in the model")
         return self.complex.block_boundary(found[0])
 

@@ -175,6 +175,7 @@ class Ensemble:
 
         Raises as Model.planned_hole, Cancelled.
         """
+        self.model.require_project("an ensemble")
         hole = self.model.planned_hole(collar, azimuth, dip, length)
         realizer = self._realizer
         count = len(self.volumes)

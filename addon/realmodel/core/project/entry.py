@@ -6,8 +6,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.toml_table import Source
@@ -18,7 +21,31 @@ from .library import Library
 Refuse = Callable[..., InputRefused]
 
 
-class Entry:
+def same(one: Any, other: Any) -> bool:
+    """Whether two values are equal, also where they are arrays, or have some: these are equal as a whole."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        one, other = np.asarray(one), np.asarray(other)
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
+    if is_dataclass(one) and type(one) is type(other):
+        known = [each.name for each in fields(one) if each.compare]
+        return all(same(getattr(one, name), getattr(other, name)) for name in known)
+    return bool(one == other)
+
+
+class Compared:
+    """A dataclass (eq=False) whose fields may be arrays."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return same(self, other) if type(self) is type(other) else NotImplemented
+
+
+class Entry(Compared):
     """A rock mass, a surface, a fault or a body."""
 
     kind = ""  # the word for it in messages

@@ -34,6 +34,7 @@ from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE
 from ..settings.series import FIELD
 from .entry import (
+    Compared,
     Entry,
 )
 from .library import Library
@@ -46,7 +47,7 @@ MOST_CONTACTS = 10_000  # points of a surface; more are a survey, which a mesh n
 BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
 
 
-@dataclass
+@dataclass(eq=False)
 class Surface(Shaped):
     """One bounding surface of the layers.
 
@@ -212,7 +213,7 @@ class Surface(Shaped):
         return self.method, checked_options(self.method, self.options)
 
 
-@dataclass
+@dataclass(eq=False)
 class Rock(Entry):
     """A rock mass: a region in plan, and surfaces oldest first.
 
@@ -371,8 +372,8 @@ class Rock(Entry):
         return any(surface.interpolated for surface in self.surfaces)
 
 
-@dataclass
-class Project:
+@dataclass(eq=False)
+class Project(Compared):
     """Rock masses that make one model, the faults and bodies in them, and the library of their properties.
 
     name: of the model. rocks: its rock masses. path: the project file, if it was read from one.

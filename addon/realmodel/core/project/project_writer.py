@@ -28,6 +28,7 @@ from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
 from ..settings.series import AUTO, FIELD
 from .library import Library, Property
+from .plan_input import map_layer
 from .project import Project, Rock, Surface
 from .project_checks import check_project
 from .region_rings import is_several
@@ -79,11 +80,19 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             library = write(beside("library", ending=".toml"), library_text(project.library).encode())
             lines.append(f"library = {toml_value(library)}")
         for rock in project.rocks:
-            lines += ["", "[[rock]]", *_rock_lines(rock)]
-            unread = {"map": rock.map, "observations": rock.observation_file, "dips": rock.dip_file}
+            unread = {
+                "boreholes": rock.boreholes,
+                "map": rock.map,
+                "observations": rock.observation_file,
+                "dips": rock.dip_file,
+                "file of constraints": next(
+                    (c for c in rock.constraints if isinstance(c, str) or map_layer(c) is not None), None
+                ),
+            }
             for what, given in unread.items():
                 if given is not None:
                     raise UsageError(f"rock '{rock.name}': its {what} was not read yet; build it first")
+            lines += ["", "[[rock]]", *_rock_lines(rock)]
             if rock.observed is not None and len(rock.observed):
                 target = beside(rock.name, "observations", ending=".csv")
                 lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")

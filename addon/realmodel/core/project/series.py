@@ -13,7 +13,7 @@ from ..settings.series import AUTO, FIELD
 from .entry import Entry
 
 
-@dataclass
+@dataclass(eq=False)
 class Series(Entry):
     """Consecutive surfaces of a rock mass that name it as their `series`.
 

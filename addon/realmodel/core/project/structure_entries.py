@@ -46,7 +46,7 @@ class Shaped(Entry):
         return None if given is None else Path(given.file)
 
 
-@dataclass
+@dataclass(eq=False)
 class Fault(Shaped):
     """A fault: an open triangulated surface in any position, that displaces surfaces.
 
@@ -105,7 +105,7 @@ def as_point_file(given: Any) -> PointFile | None:
     return given if isinstance(given, PointFile) else None
 
 
-@dataclass
+@dataclass(eq=False)
 class Body(Shaped):
     """A body: a closed triangulated surface of any shape, within which there is another rock, or none.
 

@@ -110,7 +110,7 @@ def frame_of(model: ModelData, size: np.ndarray) -> tuple[np.ndarray, tuple[int,
 
 def _triangles(model: ModelData, block: int) -> np.ndarray:
     """(T, 3, 3): the boundary of a block, without vertical triangles."""
-    shape = model.complex.block_boundary(block)
+    shape = model.block_boundary(block)
     if not len(shape.faces):
         return np.empty((0, 3, 3))
     corners, _ = native_module().triangulate_faces(shape.vertices, shape.face_offsets, shape.face_vertices)

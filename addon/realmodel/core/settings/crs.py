@@ -32,3 +32,11 @@ def epsg_code(crs: str | None) -> int | None:
         return None
     authority, _, code = crs.partition(":")
     return int(code) if authority.upper() == "EPSG" and re.fullmatch(r"[1-9]\d{3,5}", code) else None
+
+
+def is_in_degrees(system: str) -> bool:
+    """Whether a text, as files name their systems by a code or as well-known text, is of one in degrees."""
+    if system.lstrip().upper().startswith(("GEOGCS", "GEOGCRS", "GEODCRS", "GEODETICCRS", "GEOGRAPHICCRS")):
+        return True
+    code = system.replace("::", ":").rpartition(":")[2]
+    return code.upper().startswith("CRS84") or (code.isdecimal() and int(code) in _GEOGRAPHIC)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import sqlite3
 import struct
 from collections.abc import Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from urllib.parse import quote
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
+from ...settings.crs import is_in_degrees
 from ..tables.table_layout import names_shown
 from .shapes import Heights, Selection, Shapes
 
@@ -26,6 +27,8 @@ _COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any k
 _CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
 _DEEPEST = 50
 _STEP = 1000  # features
+_SYSTEMS = """SELECT g.table_name, s.organization_coordsys_id, s.definition FROM gpkg_geometry_columns g
+    JOIN gpkg_spatial_ref_sys s ON s.srs_id = g.srs_id ORDER BY g.rowid"""
 
 
 def is_geopackage(head: bytes) -> bool:
@@ -50,6 +53,15 @@ def read_geopackage(
         advice = "close it in the program that has it open, so that its last changes are in it"
         what = f"not a GeoPackage that can be read: {error}"
         raise InputRefused(what, file=file, advice=advice if changed else None) from error
+
+
+def system_of(file: Path, layer: str | None) -> str:
+    """What a GeoPackage says of the coordinate system of a layer, or of its only one; "" where nothing."""
+    with suppress(*UNREADABLE), closing(connect(file)) as base:
+        for name, code, text in base.execute(_SYSTEMS):
+            if layer is None or name.lower() == layer.lower():
+                return f"{code}" if is_in_degrees(f"{code}") else text or ""
+    return ""
 
 
 def connect(file: Path) -> sqlite3.Connection:

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step, read_text
+from ...base.text import Step, no_step, read_bytes, read_text
 from ...base.units import MODEL_UNIT, factor
+from ...settings.crs import is_in_degrees
 from ...settings.map_layer import MapLayer, begins_as_wkt
 from .geojson import read_geojson
-from .geopackage import is_geopackage, open_changes, read_geopackage
+from .geopackage import is_geopackage, open_changes, read_geopackage, system_of
 from .shapefile_reader import beside, is_shapefile, read_shapefile
 from .shapes import Heights, Shapes
 from .wkt import parse_wkt
@@ -20,6 +22,9 @@ from .wkt import parse_wkt
 MAP_ENDINGS = (".geojson", ".json", ".gpkg", ".shp", ".wkt")
 _HEAD = 512
 _JSON = (".json", ".geojson", ".geojsonl", ".geojsons")
+_CRS = re.compile(rb'"crs"\s*:\s*\{[^}]*?"name"\s*:\s*"([^"]*)"')
+_FIRST = 1 << 16  # bytes in which it says so
+_MOST_DEGREES = 360.0
 _BOM = b"\xef\xbb\xbf"
 _RECORD_SEPARATOR = b"\x1e"  # begins each text of a GeoJSON text sequence (RFC 8142)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
@@ -43,7 +48,33 @@ def read_shapes(
 ) -> Shapes:
     """The shapes of a file, in the model's unit; with heights where requested. Raises InputRefused naming the
     file."""
-    return _read(given, step, heights).scaled(factor(given.units, model_unit))
+    shapes = _read(given, step, heights)
+    _refuse_degrees(given, shapes)
+    return shapes.scaled(factor(given.units, model_unit))
+
+
+def _refuse_degrees(given: MapLayer, shapes: Shapes) -> None:
+    """Raises InputRefused where a file says that its coordinates are degrees, and they may be: as lengths
+    they would be a few meters."""
+    rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
+    places = [*rings, *(line for _, line in shapes.lines), *(place for _, place in shapes.points)]
+    if any(np.abs(np.asarray(each, np.float64)[..., :2]).max(initial=0.0) > _MOST_DEGREES for each in places):
+        return
+    file = Path(given.file)
+    if file.suffix.lower() == ".shp":
+        named = (file.with_suffix(ending) for ending in (".prj", ".PRJ"))
+        system = next((each.read_text("latin-1") for each in named if each.is_file()), "")
+    elif file.suffix.lower() == ".gpkg":
+        system = system_of(file, given.layer)
+    else:
+        found = _CRS.search(read_bytes(file)[:_FIRST]) if file.suffix.lower() in _JSON else None
+        system = "" if found is None else found[1].decode("latin-1")
+    if is_in_degrees(system):
+        raise InputRefused(
+            "its coordinates are degrees of longitude and latitude, as it says itself",
+            file=file,
+            advice="project it (to UTM, say) in a GIS; if they are lengths, take its coordinate system out",
+        )
 
 
 def _read(given: MapLayer, step: Step, heights: Heights | None) -> Shapes:

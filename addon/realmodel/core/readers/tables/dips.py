@@ -167,9 +167,9 @@ def _polarity(row: Row) -> float:
 def _direction_of(row: Row) -> float:
     """The dip direction of a row, in degrees clockwise from north."""
     if row.has("dip_direction"):
-        return row.number("dip_direction")
+        return row.azimuth("dip_direction")
     if row.has("strike"):
-        return row.number("strike") + 90.0
+        return row.azimuth("strike") + 90.0
     if not {"dip_direction", "strike"}.intersection(row.columns):
         raise _no_column(row, "dip_direction", " or strike")
     raise row.refuse("the dip has no direction", "give its dip_direction or its strike")

@@ -74,7 +74,7 @@ class HoleDirections:
             )
         azimuth = 0.0
         if row.has("azimuth"):
-            azimuth = row.number("azimuth")
+            azimuth = row.azimuth("azimuth")
         elif angle not in ((0.0, 180.0) if name == "inclination" else (90.0, -90.0)):
             raise row.refuse(f"the azimuth is missing where {name} is {angle:g}")
         self._stations.setdefault(hole, []).append(_Station(row, depth, angle, azimuth))

@@ -92,6 +92,7 @@ _OFF = frozenset(("0", "no", "false", "off"))  # in the column `use` of rows tha
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
+_MOST_TURNED = 720.0  # degrees
 _LENGTHS = frozenset(("x", "y", "z", "depth", "elevation", "from", "to", "end"))
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
@@ -154,6 +155,13 @@ class Row:
             raise self.refuse(f"{column} is {entry}, not a finite number")
         return value
 
+    def azimuth(self, column: str) -> float:
+        """An angle in plan, degrees: also one beyond 360, but none that stands for no value."""
+        value = self.number(column)
+        if abs(value) > _MOST_TURNED:
+            raise self.refuse(f"{column} is {value:g}", "it is in degrees clockwise from north")
+        return value
+
 
 def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step) -> Iterator[Row]:
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
@@ -163,14 +171,11 @@ def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step
     separator = table.layout.separator
     body = table.raw[table.layout.body :].decode(table.encoding)
     decimal = given.decimal or "."
-    if (
-        given.decimal is None
-        and separator != ","
-        and not any("." in entry for entry in body[:20_000].split() if is_number(entry))
-    ):
-        decimal = (
-            "," if any(is_number(part, ",") and "," in part for part in _parts(body, separator)) else "."
-        )
+    if given.decimal is None and separator != ",":
+        entries = list(_parts(body, separator))
+        has_points = any("." in entry and is_number(entry) for entry in entries)
+        has_commas = any("," in entry and is_number(entry, ",") for entry in entries)
+        decimal = "," if has_commas and not has_points else "."
     total = max(body.count("\n"), 1)
     for number, line in enumerate(body.split("\n")):
         if number % _STEP == 0:
