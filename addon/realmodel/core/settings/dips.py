@@ -222,7 +222,7 @@ class Dips:
         return kept, f"{many} several dips, one at {where}: their mean slope is used"
 
 
-SomeDips = TypeVar("SomeDips", SpaceDips, Dips)
+SomeDips = TypeVar("SomeDips", bound=SpaceDips | Dips)
 
 
 def as_given(dips: SomeDips) -> SomeDips:
@@ -231,8 +231,10 @@ def as_given(dips: SomeDips) -> SomeDips:
         return dips
     order = np.argsort(dips.rows)
     arrays = {each.name: getattr(dips, each.name) for each in fields(dips)}
-    ordered = {name: None if array is None else np.asarray(array)[order] for name, array in arrays.items()}
-    return replace(type(dips)(**ordered), rows=None)
+    ordered: dict[str, Any] = {
+        name: None if a is None else np.asarray(a)[order] for name, a in arrays.items()
+    }
+    return replace(dips, **{**ordered, "rows": None})
 
 
 def dip_file_of(given: Dips | DipFile | str | Path | None) -> DipFile | None:
