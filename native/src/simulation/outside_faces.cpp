@@ -22,10 +22,10 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kSamePatch = 0.64;  ///< cosine between normals within a patch: 50 degrees
-constexpr double kOnPatch = 1e-9;    ///< of the largest coordinate: what rounding may do
-constexpr double kTurned = 0.25;     ///< of the reach: what a face turned by 90 degrees is off
-constexpr double kLeast = 0.01;      ///< roundness that elements keep, if they had it
+constexpr double kSamePatch = 0.64;       ///< cosine between normals within a patch: 50 degrees
+constexpr double kOnPatch = 1e-9;         ///< of the largest coordinate: what rounding may do
+constexpr double kTurned = 0.25;          ///< of the reach: what a face turned by 90 degrees is off
+constexpr double kLeastRoundness = 0.01;  ///< roundness that elements keep, if they had it
 constexpr std::size_t kMostPlaces = 64;
 constexpr int kSortings = 8;
 
@@ -293,7 +293,7 @@ private:
             if (!stays_on) continue;
             at = place;
             const double after = least_around(v);
-            if (after > 0 && after >= std::min(before, kLeast)) {
+            if (after > 0 && after >= std::min(before, kLeastRoundness)) {
                 near_[index(v)] = there;
                 return true;
             }
