@@ -265,7 +265,7 @@ def test_a_project(write, tmp_path):
     assert tmp_path / "s.csv" in project.input_files()
     model = build(project)
     clay = model.project.rocks[0].surfaces[0].points
-    np.testing.assert_allclose(clay, [[600, 700, -150], [100, 200, 30]], **NEAR)
+    np.testing.assert_allclose(clay, [[100, 200, 30], [600, 700, -150]], **NEAR)
     for wrong, words in (
         (given.replace("s.csv", "no.csv"), "file not found"),
         (given.replace("negative", "down"), "'downward_dip' must be"),

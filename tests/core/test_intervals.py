@@ -298,7 +298,7 @@ def test_places_of_a_hole_in_any_order():
     given = Observations(
         [[x, 0, z] for x, z, *_ in rows], list("123456"), [row[2] for row in rows], [row[3] for row in rows]
     )
-    assert given.along_holes().blocks.tolist() == ["3", "1", "6", "2", "5", "4"]
+    assert given.along_holes().blocks.tolist() == ["2", "5", "4", "3", "1", "6"]
     assert not len(Observations(np.empty((0, 3)), []).along_holes())
 
 

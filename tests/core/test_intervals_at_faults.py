@@ -155,8 +155,8 @@ def test_observations_in_bodies():
     model = build(Project("p", [rock], bodies=[body]))
     found = model.observed()
     assert [(each.kind, each.block, each.place) for _, each in found.left_out] == [
-        ("in_body", "S0", (7.0, 5.0, 4.0)),
         ("in_body", "ore", (2.0, 5.0, 3.0)),
+        ("in_body", "S0", (7.0, 5.0, 4.0)),
     ]
     assert {each.block: (each.observations, each.share) for each in found.blocks}["ore"] == (1, 1.0)
     (said,) = [warning.text for warning in model.warnings if warning.kind == "in_body"]

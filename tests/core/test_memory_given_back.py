@@ -25,7 +25,7 @@ def project(quads, base):
 
 build(project(4, None))  # what the first build leaves behind for all later ones is there now
 # large enough that the tens of megabytes which allocators keep for their threads are a small share
-given = project(200, 0.0 if sys.argv[3] == "refused" else None)  # base_elevation is looked at last of all
+given = project(200, 1.0 if sys.argv[3] == "refused" else None)  # base_elevation is looked at last of all
 before = resident()
 calls = []
 try:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures throw and heave along faults, at the cutoff lines of sheets."""
+"""Measures throw and heave along faults, at the cutoff lines of sheets: where a fault cuts a sheet off."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,12 +14,48 @@ from ...base.triangles import unit_normals
 from ...base.work import Work, native_module, on_threads
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, fault_sides
-from .cutoffs import Cutoff, cutoff_of
+from .tips import crossed_edges
 from .within import box_of, parts_of_lines, walls_of
 
 _LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
 _NOTHING = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
 _AT_ONCE = 1 << 21  # pairs of a place and a segment
+
+
+class Cutoff(NamedTuple):
+    """The line along which a fault cuts off the part of a sheet on one side of it. ends: (S, 2, 3) of its
+    segments; inward: (S, 2), at right angles to each in plan, into that part."""
+
+    ends: np.ndarray
+    inward: np.ndarray
+
+
+def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Cutoff:
+    """The cutoff line of a sheet on one side (-1 or +1) of a fault.
+
+    It is the border of what of the sheet's triangles lies on that side. So where the sheet goes on beyond it
+    in the fault itself, as where it bridges a bay of its own cutoff line, nothing else counts.
+    """
+    vertices = sheet.vertices
+    crossed = crossed_edges(work, sheet, fault)
+    of_corners = crossed.side[crossed.triangles]
+    own = of_corners == side
+    some = np.flatnonzero(own.any(axis=1))
+    corners, on = vertices[crossed.triangles[some]], of_corners[some] == 0
+    edges = crossed.edges[crossed.of_triangle[some]]
+    begin, end = (vertices[edges[:, :, k]] for k in range(2))
+    hits = begin + crossed.share[crossed.of_triangle[some], None] * (end - begin)
+    met = np.concatenate([np.where(on[:, :, None], corners, np.nan), hits], axis=1)
+    known = np.isfinite(met[:, :, 0])
+    two = known.sum(axis=1) == 2
+    ends = met[two][known[two]].reshape(-1, 2, 3)
+    along = ends[:, 1, :2] - ends[:, 0, :2]
+    weight = own[some][two]
+    middle = (corners[two] * weight[:, :, None]).sum(axis=1) / weight.sum(axis=1)[:, None]
+    inward = np.column_stack([-along[:, 1], along[:, 0]])
+    facing = dot(inward, middle[:, :2] - ends[:, 0, :2])
+    kept = facing != 0
+    return Cutoff(ends[kept], (inward * np.sign(facing)[:, None])[kept])
 
 
 class _Places:

@@ -49,7 +49,9 @@ def kept_bounds(rock: Rock) -> list[Bounds]:
 
 
 def with_kept_bounds(rock: Rock) -> Rock:
-    """A rock mass that is read, without observations, and with these bounds."""
-    bounds = kept_bounds(rock)
-    surfaces = [replace(each, bounds=own) for each, own in zip(rock.surfaces, bounds, strict=True)]
+    """A rock mass that is read, without observations, with these bounds beside those that it has."""
+    surfaces = [
+        replace(each, bounds=own if each.bounds is None else Bounds.joined([each.bounds, own]))
+        for each, own in zip(rock.surfaces, kept_bounds(rock), strict=True)
+    ]
     return replace(rock, surfaces=surfaces)
