@@ -89,7 +89,7 @@ def cut_at_base(stack: Stack, base: float | None) -> Stack:
     """The stack with each surface as if it were at the base where it reaches below that: a level at the base,
     with no block beneath it, comes after the surface, over what this covers."""
     heights = [
-        float(sheet.vertices[:, 2].min()) if of >= 0 else np.inf
+        float(sheet.vertices[:, 2].min(initial=np.inf)) if of >= 0 else np.inf
         for sheet, of in zip(stack.sheets, stack.surfaces, strict=True)
     ]
     lowest = min(heights, default=np.inf)
