@@ -240,7 +240,7 @@ def test_a_realization_depends_on_seed_and_number_alone():
 
 def test_realizations_with_faults_are_valid():
     vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
-    points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 12]], 0.0)
+    points = POINTS + np.where(POINTS[:, :1] > 44, [[0, 0, 12]], 0.0)
     given = project(points=points, faults=[Fault("F", vertices=vertices, triangles=triangles)])
     base = build(given, cells="blocks")
     assert len(base.compartment_names) == 2
@@ -257,7 +257,7 @@ def test_realizations_with_faults_are_valid():
 def test_heights_of_surfaces_that_faults_displace():
     """At the vertices of all sheets; a younger surface has one."""
     vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
-    points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 12]], 0.0)
+    points = POINTS + np.where(POINTS[:, :1] > 44, [[0, 0, 12]], 0.0)
     given = two_surfaces(0.5)
     given.rocks[0].surfaces[0] = replace(given.rocks[0].surfaces[0], points=points)
     given = replace(given, faults=[Fault("F", vertices=vertices, triangles=triangles, youngest="Lower")])

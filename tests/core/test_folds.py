@@ -229,9 +229,25 @@ def test_a_base_that_is_too_high_is_named(monkeypatch):
     given_field(monkeypatch, recumbent, LEVELS[recumbent])
     younger = [sheet("base of B", lambda x, y: 5.0 + 0.3 * y)]
     project = folded_project(younger=younger)
-    project.rocks[0].base_elevation = 6.0
-    with pytest.raises(InputRefused, match=r"^rock '.*': base_elevation 6 is not .*; choose one below 5$"):
+    project.rocks[0].base_elevation = 30.0
+    with pytest.raises(
+        InputRefused, match=r"^rock '.*': base_elevation 30 is not .*; choose one below 4.85$"
+    ):
         build(project)
+
+
+def test_a_base_cuts_a_surface_above_a_fold(monkeypatch):
+    given_field(monkeypatch, recumbent, LEVELS[recumbent])
+    project = folded_project(younger=[sheet("base of B", lambda x, y: 5.0 + 0.3 * y)])
+    project.rocks[0].base_elevation = 6.0
+    model = build(project)
+    assert model.validate().passed
+    assert model.vertices[:, 2].min() == 6.0
+    (said,) = [each for each in model.warnings if each.kind == "below_base"]
+    assert (said.surface, said.text.partition(" % ")[0]) == (
+        "base of B",
+        "it reaches below base_elevation 6 on 35",
+    )
 
 
 def test_what_cannot_be_made_of_fields_is_refused(monkeypatch):

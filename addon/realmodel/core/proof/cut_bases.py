@@ -31,7 +31,11 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
         assert rock.base_elevation is not None
         every = np.concatenate(vertices)
         highest = every[every[:, 2].argmax()]
-        if len(vertices) == len(shapes) and highest[2] <= rock.base_elevation:
+        # level sets have no vertices: what is younger and cuts bounds them
+        is_bounded = len(vertices) == len(shapes) or (
+            shapes[-1] is not None and RULES[rock.surfaces[-1].rule].cuts
+        )
+        if is_bounded and highest[2] <= rock.base_elevation:
             what = "not below any of the rock mass, whose highest point is"
             raise _refused(entry, what, highest, every[:, 2].min())
         for number, surface in enumerate(rock.surfaces):
@@ -83,9 +87,10 @@ def _cut(work: Work, entry: RockInput, form: ClosedForm, number: int) -> BuildWa
     if not below > _ROUNDING * total:
         return None
     rock = entry.rock
+    share = f"{100 * below / total:.2g} %" if below < 0.99 * total else f"{100 * below / total:.4g} %"
     text = (
-        f"it reaches below base_elevation {base:.9g} on {100 * below / total:.2g} % of its area, and is cut "
-        f"off there: lowest at {place_text(lowest)}"
+        f"it reaches below base_elevation {base:.9g} on {share} of its area, and is cut off there: lowest at "
+        f"{place_text(lowest)}"
     )
     return BuildWarning(text, "below_base", rock.name, rock.surfaces[number].name)
 

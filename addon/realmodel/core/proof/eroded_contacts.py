@@ -35,7 +35,8 @@ def warn_of_eroded_contacts(work: Work, inputs: Sequence[RockInput], forms: Sequ
             for cutter in succession.cut_later(number) if len(points) else ():
                 if not (is_observed or surfaces[cutter].has_points):
                     continue
-                above = np.nan_to_num(-form.above(work, cutter, points))
+                # infinite: a level set is nowhere in the compartment
+                above = np.nan_to_num(-form.above(work, cutter, points), posinf=0.0, neginf=0.0)
                 wrong = WrongPoints.of(points, above, cutter, np.arange(len(points)))
                 if wrong is None or (wrong.is_part_of_survey(len(points)) and not is_observed):
                     continue
