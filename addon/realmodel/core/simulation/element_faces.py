@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.algebra import begins_run
+from ..base.algebra import begins_run, norm
 from ..base.errors import BuildFailed
 from .patches import boundary_patches, solver_names
 from .volume_mesh import PolyhedralMesh, VolumeMesh
+
+_STEEP = 0.5  # upward part of a unit normal: what is steeper may be an overhang of the mesh alone
 
 # The faces of each kind of element, counter-clockwise seen from outside, in the order in which Abaqus numbers
 # them.
@@ -107,11 +110,12 @@ class ElementFaces:
         found = {shape: self._of[shape].find(mesh.faces[shape]) for shape in shapes}
         outside = {shape: ~self._of[shape].has_twin[found[shape]] for shape in shapes}
         surface = [mesh.face_surface[shape][outside[shape]] for shape in shapes]
-        rise = [self._rises(shape, found[shape][outside[shape]]) for shape in shapes]
         if not shapes:
             return []
+        on = np.concatenate(surface)
+        corners = [self._part(shape, found[shape][outside[shape]])[0] for shape in shapes]
         patches, number = boundary_patches(
-            np.concatenate(surface), np.concatenate(rise), mesh.surface_names, mesh.surface_kind
+            on, self._rises(corners, on), mesh.surface_names, mesh.surface_kind
         )
         per_shape = np.split(number, np.cumsum([len(part) for part in surface])[:-1])
         of_patch = {
@@ -140,12 +144,21 @@ class ElementFaces:
         rows = faces.first[numbers]
         return faces.corners[rows], faces.element[rows], faces.side[rows]
 
-    def _rises(self, shape: str, numbers: np.ndarray) -> np.ndarray:
-        """The upward parts of the normals of faces."""
-        faces = self._of[shape]
-        x, y = self.mesh.points[faces.corners[faces.first[numbers]], :2].transpose(2, 0, 1)
-        x, y = x - x[:, :1], y - y[:, :1]
-        return (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+    def _rises(self, corners: Sequence[np.ndarray], surface: np.ndarray) -> np.ndarray:
+        """The upward parts of the normals of faces, of several shapes; of steep ones together with those
+        around them on the same surface: a face of a rough mesh may overhang."""
+        normals = []
+        for shape in corners:
+            at = self.mesh.points[shape] - self.mesh.points[shape[:, :1]]
+            normals.append(np.cross(at, np.roll(at, -1, axis=1)).sum(axis=1))
+        normal = np.concatenate(normals)
+        count = np.repeat([shape.shape[1] for shape in corners], [len(shape) for shape in corners])
+        face = np.repeat(np.arange(len(normal)), count)
+        use = np.column_stack([surface[face], np.concatenate([shape.ravel() for shape in corners])])
+        use = np.unique(use, axis=0, return_inverse=True)[1].ravel()
+        around = np.bincount(use, normal[face, 2])
+        together = np.bincount(face, around[use], len(normal))
+        return np.where(np.abs(normal[:, 2]) < _STEEP * norm(normal), together, normal[:, 2])
 
 
 def joint_sets(sets: list[FaceSet]) -> dict[str, list[FaceSet]]:
