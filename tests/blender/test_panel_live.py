@@ -93,6 +93,32 @@ class Live(PanelCase):
         self.assertTrue(self.block().select_get())
         self.assertEqual(bpy.context.view_layer.objects.active, self.block())
 
+    def test_other_work_postpones_it(self):
+        """As Make Ensemble, which needs the processors: no change is lost."""
+        raise_by(self.items[2], 5.0)
+        live.postpone_work()
+        self.assertTrue(live.is_working())
+        while not live._work._jobs:
+            time.sleep(live._work.look())
+        live.postpone_work()
+        self.live_is_done()
+        self.assertAlmostEqual(self.volumes()["S2 block"], 15e4, delta=1.0)
+
+    def test_a_build_by_hand_is_cancelled(self):
+        """What Auto would have built is discarded with it, and the panel says so until the next change."""
+        raise_by(self.items[2], 5.0)
+        live.postpone_work(but=self.scene.name)
+        self.assertFalse(live.is_working())
+        live.cancelled(self.scene.name)
+        activity = bpy.context.window_manager.realmodel
+        self.assertIn("cancelled", activity.problem)
+        raise_by(self.items[2], 1.0)
+        self.live_is_done()
+        self.assertEqual(activity.problem, "")
+        self.assertAlmostEqual(self.volumes()["S2 block"], 16e4, delta=1.0)
+        live.cancelled(self.scene.name)
+        self.assertEqual(activity.problem, "", "the model is as new as its input")
+
     def test_a_refusal_is_shown_and_mended(self):
         vertices = self.items[1].data.vertices
         vertices[6].co.x += 60.0

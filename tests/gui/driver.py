@@ -5,7 +5,9 @@ Steps are generators. They yield a condition - a function without arguments - an
 slow the machine is; a condition that does not hold in time ends the walk.
 
 Screenshots are read from the frame buffer of Xvfb (its option -fbdir). Blender's own are black in Blender 4.3
-with Mesa 25, and end Blender 3.4 now and then while other threads run Python.
+with Mesa 25, and end Blender 3.4 now and then while other threads run Python: it reads an override of the
+context (`temp_override`) without Python's lock if another thread has it. So no override lasts while Blender
+draws, that is over a `yield`.
 """
 
 import struct
@@ -36,6 +38,7 @@ class Walk:
         self.pictures = []
         self.passed = []
         self.failure = None
+        self.ticks = 0  # how often Blender's loop came here
         self._draws = 0
 
     # -- running
@@ -53,6 +56,7 @@ class Walk:
         self._draws += 1
 
     def _tick(self):
+        self.ticks += 1
         try:
             going_on = self._advance()
         except BaseException:

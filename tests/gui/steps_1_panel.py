@@ -105,8 +105,10 @@ def choose_a_block(walk):
 
 
 def cancel_a_build(walk):
-    """Esc stops a long build: progress was shown meanwhile, and nothing has changed."""
+    """Esc stops a long build: progress was shown meanwhile, and nothing has changed. With Auto on the panel
+    says why."""
     before, rock = volumes(), model().rocks[0]
+    model().live = True
     edge_length = rock.edge_length
     rock.edge_length = edge_length / 40.0
     yield from walk.command("build")
@@ -117,6 +119,8 @@ def cancel_a_build(walk):
     walk.key("ESC")
     yield idle
     assert volumes() == before
+    assert "cancelled" in bpy.context.window_manager.realmodel.problem
+    model().live = False
     rock.edge_length = edge_length
     yield walk.redrawn()
 

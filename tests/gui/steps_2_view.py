@@ -7,6 +7,7 @@ The model is three level layers of made-up colors, in the place of whatever the 
 import shutil
 import sys
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -85,8 +86,13 @@ def layers(walk):
         assert hue_differs(walk.color_at(walk.plain, place), rgb(key)) < ALIKE, place
 
 
+@contextmanager
 def in_the_viewport(walk):
-    return bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW"))
+    """For operators; not over a `yield`, see driver.py."""
+    ticks = walk.ticks
+    with bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW")):
+        yield
+    assert walk.ticks == ticks, "Blender's loop went on while the context was overridden"
 
 
 def modes(walk):

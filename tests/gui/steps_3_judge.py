@@ -60,7 +60,8 @@ def sections(walk):
     scene.realmodel.view.exaggeration = 5.0
     with in_the_viewport(walk):
         bpy.ops.realmodel.section_plane(axis="Y")
-        yield lambda: bool(scene.realmodel.view.cut)
+    yield lambda: bool(scene.realmodel.view.cut)
+    with in_the_viewport(walk):
         bpy.ops.realmodel.section()
         bpy.context.view_layer.objects.active = line
         bpy.ops.realmodel.fence(flat=True)

@@ -26,10 +26,11 @@ def series_grouped(walk):
     with in_the_viewport(walk):
         for name in ("lower_bed", "middle_bed", "upper_bed", "unconformity", "ground"):
             bpy.ops.realmodel.surface_add(filepath=str(_FOLD / f"{name}.csv"))
-        rock = model().rocks[0]
-        rock.active_surface = 1
-        yield walk.redrawn(2)
-        walk.shot("series_none")
+    rock = model().rocks[0]
+    rock.active_surface = 1
+    yield walk.redrawn(2)
+    walk.shot("series_none")
+    with in_the_viewport(walk):
         bpy.ops.realmodel.series_add(kind="field")
         row = rock.series[0]
         row.youngest, row.oldest = "upper_bed", "lower_bed"

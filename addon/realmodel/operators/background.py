@@ -19,13 +19,17 @@ class InBackground(Reporting):
     """An operator whose work is a job, such as bl.build_job.BuildJob.
 
     `begin(context)` makes the job, or raises RealModelError. `tell_done(result)` reports what the job
-    returns. `refused(context, error)`: what is to be done about an error beside reporting it.
+    returns. `refused(context, error)`, `cancelled()`: what is to be done about an error or Esc beside
+    reporting it.
     """
 
     _job = None
     _timer = None
 
     def refused(self, context, error):
+        pass
+
+    def cancelled(self):
         pass
 
     def act(self, context):
@@ -63,6 +67,7 @@ class InBackground(Reporting):
             self.tell_done(self._job.finish())
         except Cancelled:
             self._leave(context)
+            self.cancelled()
             self.report({"WARNING"}, "Cancelled: the scene is as it was")
             return {"CANCELLED"}
         except Exception as error:

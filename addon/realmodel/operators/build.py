@@ -24,9 +24,9 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     _spaces = ()  # pointers of the viewports that are turned to a first model
 
     def begin(self, context):
-        live.stop_work()
         problems.forget()
         self._scene = context.scene.name
+        live.postpone_work(but=self._scene)
         self._is_first = len(context.scene.realmodel.results) == 0
         self._spaces = [space.as_pointer() for space in viewports.spaces(context)]
         built_scene.check_modes(context.scene)
@@ -34,6 +34,9 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
 
     def refused(self, context, error):
         problems.remember(bpy.data.scenes.get(self._scene, context.scene), error)
+
+    def cancelled(self):
+        live.cancelled(self._scene)
 
     def tell_done(self, model):
         scene = bpy.data.scenes.get(self._scene)

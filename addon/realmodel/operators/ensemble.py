@@ -42,7 +42,7 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
     )
 
     def begin(self, context):
-        live.stop_work()
+        live.postpone_work()
         line = None
         if self.along == "LINE":
             if reason := an_outline_object(context):

@@ -35,7 +35,7 @@ class REALMODEL_OT_cross_validate_holes(InBackground, bpy.types.Operator):
     )
 
     def begin(self, context):
-        live.stop_work()
+        live.postpone_work()
         if self.folds == 1:
             raise InputRefused("all holes would be left out at once", advice="use two groups or more")
         return hole_validation.HoleValidationJob(context.scene, self.folds or None)

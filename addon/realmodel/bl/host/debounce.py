@@ -39,17 +39,24 @@ class DebouncedJob:
             return bool(self._jobs or self._changed_at)
         return name in self._jobs or name in self._changed_at
 
-    def forget_changes(self):
-        self._changed_at.clear()
+    def forget_changes(self, name=None):
+        """Discards the changes that wait: of a scene, or of all."""
+        for each in list(self._changed_at) if name is None else [name]:
+            self._changed_at.pop(each, None)
+
+    def postpone_jobs(self):
+        """Stops the running jobs: they begin anew after a pause, once jobs may begin."""
+        for job, _ in self._jobs.values():
+            job.cancel()
+        for name, (job, _) in self._jobs.items():
+            job.wait()
+            self._changed_at.setdefault(name, time.perf_counter())
+        self._jobs.clear()
 
     def stop_jobs(self):
         """Stops the running jobs and discards the changes that wait."""
-        for job, _ in self._jobs.values():
-            job.cancel()
-        for job, _ in self._jobs.values():
-            job.wait()
-        self._jobs.clear()
-        self._changed_at.clear()
+        self.postpone_jobs()
+        self.forget_changes()
 
     def stop(self):
         """Stops all work: the add-on is disabled, or another file was opened."""

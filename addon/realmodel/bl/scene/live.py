@@ -32,6 +32,7 @@ measured = caches.new()  # by the name of a scene: seconds from the last change 
 _REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whole one is built
 _CHECK_SECONDS = 0.3  # without a change, before the fingerprint of what a model is made from is taken
 _WATCH_SECONDS = 2.0  # between two looks at the files
+_CANCELLED = "the build was cancelled: press Build, or Auto builds after the next change"
 _to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
 
 
@@ -136,6 +137,22 @@ def undone():
 def stop_work():
     """Stops running builds and discards the changes that wait."""
     _work.stop_jobs()
+
+
+def postpone_work(but=""):
+    """Stops running builds for other work: they begin anew once it has ended. but: the name of a scene whose
+    changes are discarded, as the other work builds it."""
+    _work.postpone_jobs()
+    _work.forget_changes(but)
+
+
+def cancelled(name):
+    """The build of a scene by hand was cancelled, and with it what Auto would have built: the panel says why
+    the model stays out of date."""
+    scene = bpy.data.scenes.get(name)
+    if scene is not None and scene.realmodel.live and check(scene) and not _work.is_working(name):
+        problems.tell(_CANCELLED)
+        viewports.redraw()
 
 
 def start():

@@ -22,6 +22,12 @@ def forget():
         setattr(activity, name, "")
 
 
+def tell(text):
+    """Says what is of no place and no surface."""
+    forget()
+    bpy.context.window_manager.realmodel.problem = text
+
+
 def remember(scene, error):
     """Stores the objects and triangles of a refusal of a scene's model, for `show`."""
     activity = bpy.context.window_manager.realmodel
