@@ -22,9 +22,9 @@ namespace {
     char text[200];
     std::snprintf(
         text, sizeof text,
-        "points %d and %d have the same position in plan (%.12g, %.12g) but the values %.12g and "
+        "two points have the same position in plan (%.12g, %.12g) but the values %.12g and "
         "%.12g; remove one of them",
-        first, second, a[0], a[1], a[2], b[2]);
+        a[0], a[1], a[2], b[2]);
     throw InputError("contradicting_points", text, -1, {first, second}, a);
 }
 

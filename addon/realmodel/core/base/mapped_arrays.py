@@ -17,6 +17,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import DTypeLike
 
+from .algebra import ascending, ranks_in_runs
 from .errors import BuildFailed, OutputFailed
 
 StoreArray = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
@@ -25,6 +26,7 @@ JoinPieces = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
 MakeZeros = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
+_SAMPLE = 64  # rows of each part that say where it begins
 _HEADER = 128  # bytes before an array in a file of NumPy
 # NumPy reads headers with ast.literal_eval, in which threads disturb each other before CPython 3.11.5 (its
 # issue 106905: "AST constructor recursion depth mismatch").
@@ -110,6 +112,29 @@ class MappedArrays:
     def gather(self, pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
         """Gathers pieces in a file, read-only."""
         return _gathered(self.rows(empty), pieces)
+
+    def ascending(self, rows: np.ndarray) -> np.ndarray:
+        """(N,) the numbers of rows (N, K) in ascending order, as of algebra.ascending, in a file: they go
+        into parts by their first columns, each of which is sorted in memory."""
+        if len(rows) <= ROWS_AT_ONCE:
+            return ascending(*rows.T)
+        sample = np.sort(rows[:: ROWS_AT_ONCE // _SAMPLE, 0])
+        bounds = np.unique(sample[_SAMPLE // 2 :: _SAMPLE])
+        sizes = np.zeros(len(bounds) + 1, np.int64)
+        for piece in in_pieces(rows):
+            sizes += np.bincount(np.searchsorted(bounds, piece[:, 0], "right"), minlength=len(sizes))
+        order, ends = self.zeros((len(rows),), np.int64), np.cumsum(sizes)
+        free, first = ends - sizes, 0
+        for piece in in_pieces(rows):
+            part = np.searchsorted(bounds, piece[:, 0], "right")
+            into = np.argsort(part, kind="stable")
+            count = np.bincount(part, minlength=len(sizes))
+            order[np.repeat(free, count) + ranks_in_runs(count)] = first + into
+            free, first = free + count, first + len(piece)
+        for begin, end in zip(ends - sizes, ends, strict=True):
+            own = order[begin:end]
+            order[begin:end] = own[ascending(*rows[own].T)]
+        return order
 
     def zeros(self, shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
         """Zeros in a file, for the caller to change."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -41,7 +42,9 @@ class ReadSurface:
         surface, shape = self.surface, self.shape
         faces = None if self.faces is None else change(self.faces)
         if shape is None:
-            return replace(self, surface=replace(surface, points=change(surface.points)), faces=faces)
+            rows = None if surface.point_rows is None else change(surface.point_rows)
+            surface = replace(surface, points=change(surface.points), point_rows=rows)
+            return replace(self, surface=surface, faces=faces)
         vertices, triangles = map(change, shape)
         surface = replace(surface, vertices=vertices, triangles=triangles)
         return replace(self, surface=surface, shape=Sheet(vertices, triangles), faces=faces)
@@ -78,7 +81,7 @@ class SurfaceInput:
         with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.has_points:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                points, rows = self._in_order(points, in_memory if arrays is None else arrays.gather)
+                points, rows = self._in_order(points, arrays)
                 read = replace(
                     surface, points=points, dips=self._dips(step), shape_file=file, point_rows=rows
                 )
@@ -108,17 +111,23 @@ class SurfaceInput:
         is_kept = surface.point_file is not None or self.met is not None
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
-    def _in_order(self, points: np.ndarray, gather: JoinPieces) -> tuple[np.ndarray, np.ndarray | None]:
+    def _in_order(
+        self, points: np.ndarray, arrays: MappedArrays | None
+    ) -> tuple[np.ndarray, np.ndarray | None]:
         """The points (P, 3) in the order of their coordinates, contacts after all others; and the numbers
         that they had, None where these are the same. The order of rows must not decide a result."""
         count, rows = len(points) - len(self.surface.contact_array()), self.surface.point_rows
         rows = rows if rows is not None and len(rows) == count else None
-        order = ascending(*points[:count].T)
-        if (order == np.arange(count)).all():
+        order = ascending(*points[:count].T) if arrays is None else arrays.ascending(points[:count])
+        every = (
+            np.arange(first, min(first + ROWS_AT_ONCE, count)) for first in range(0, count, ROWS_AT_ONCE)
+        )
+        if all(map(np.array_equal, in_pieces(order), every)):
             return points, rows
-        pieces = (points[order[first : first + ROWS_AT_ONCE]] for first in range(0, count, ROWS_AT_ONCE))
+        gather = in_memory if arrays is None else arrays.gather
+        pieces = (points[piece] for piece in in_pieces(order))
         rows = order if rows is None else rows[order]
-        return gather((*pieces, points[count:]), np.empty((0, 3))), rows
+        return gather(itertools.chain(pieces, [points[count:]]), np.empty((0, 3))), rows
 
     def _dips(self, step: Step) -> Dips | None:
         file = self.surface.dip_file
