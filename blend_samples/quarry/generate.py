@@ -15,6 +15,7 @@ from pathlib import Path
 
 WIDTH, LENGTH = 440.0, 330.0
 HORIZONS = {"marl": 58.0, "lower_limestone": 75.0, "marl_band": 79.0, "massive_limestone": 95.0}
+LOAM = 2.6  # meters above rockhead, with what the terrain model rounds off
 CELL = 10.0  # of the terrain model
 
 # The pit: its floor, counter-clockwise, and benches of one height above it.
@@ -40,7 +41,9 @@ def picks(mean, seed):
         for column in range(8):
             x = WIDTH * (column + chance.uniform(0.05, 0.95)) / 8
             y = LENGTH * (row + chance.uniform(0.05, 0.95)) / 6
-            yield x, y, horizon(mean, x, y)
+            z = horizon(mean, x, y)
+            if z < ground(x, y) - LOAM:  # elsewhere erosion has removed it
+                yield x, y, z
 
 
 def terrain():

@@ -207,11 +207,10 @@ def test_what_protects_itself_is_not_cut(rule, left):
     assert [block.volume for block in model.blocks] == pytest.approx([left, 0.0])
 
 
-def test_a_region_that_meets_no_surface_is_a_warning():
+def test_a_region_that_meets_no_surface_is_refused():
     project = rock(level("S0", 0.0), level("S1", 1.0), region=np.array([[5.0, 5], [6, 5], [6, 6]]))
-    model = build(project)
-    assert len(model.cell_block) == 0
-    assert [warning.kind for warning in model.warnings] == ["no_block"]
+    with pytest.raises(InputRefused, match=r"surface 'S0': its mesh lies 5\.66 m southwest of the region"):
+        build(project)
 
 
 def test_coordinates_joined_by_rounding_are_a_warning():

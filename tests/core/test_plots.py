@@ -9,6 +9,7 @@ from realmodel.core.drawing.drawing import Dots, FilledRings, Line, Text
 from realmodel.core.exporters.report import model_report
 from realmodel.core.results.surface_quality import surface_quality
 from realmodel.core.results.volume_uncertainty import volume_deviations
+from realmodel.core.settings.methods import DEFAULT_METHOD, DEFAULT_OPTIONS
 
 RNG = np.random.default_rng(3)
 PLAN = RNG.random((90, 2)) * 100
@@ -119,7 +120,9 @@ def test_quality_of_the_surfaces_of_a_model():
     model = build(Project("p", [rock]))
     found = [surface_quality(model, number) for number in range(6)]
     kriged = found[0]
-    assert kriged.cross_validation.rmse == pytest.approx(cross_validate(POINTS).rmse)
+    assert kriged.cross_validation.rmse == pytest.approx(
+        cross_validate(POINTS, DEFAULT_METHOD, **DEFAULT_OPTIONS).rmse
+    )
     assert kriged.variogram == model.interpolations[0].variogram
     assert 0 < kriged.mean_deviation < kriged.most_deviation
     assert len(kriged.angles) == len(model.surface(0)[1])

@@ -81,7 +81,9 @@ def test_lips_do_not_change_the_throw(lips, shift, method):
 )
 def test_lips_of_other_faults_and_shapes(shape, lean, throw, expected, method):
     model = built(horizon(shape, "both", 0.0, lean, throw), method, lean)
-    assert throws(model) == pytest.approx(expected, abs=0.06 * max(abs(expected), 0.5))
+    # natural neighbors bend at each point, by as much whatever the throw
+    least = 1.0 if method == "natural_neighbour" else 0.5
+    assert throws(model) == pytest.approx(expected, abs=0.06 * max(abs(expected), least))
 
 
 def are_wrong(faults, points, sides):

@@ -116,9 +116,9 @@ def test_auto_by_number_and_spread():
     assert interpolate(tilted, NODES, "auto").method == "plane"
 
 
-def test_auto_names_points_that_contradict_one_another_by_their_own_numbers():
+def test_auto_names_points_that_contradict_one_another_by_their_place():
     points = [[0, 0, 1], [9, 0, 2], [0, 0, 1], [0, 9, 3], [5, 5, 0], [5, 5, 9.0]]
-    with pytest.raises(InputRefused, match="points 4 and 5 have the same position"):
+    with pytest.raises(InputRefused, match=r"two points have .* in plan \(5, 5\) but the values 0 and 9"):
         interpolate(points, [[1.0, 1.0]], method="auto")
 
 

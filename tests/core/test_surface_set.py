@@ -147,10 +147,10 @@ def test_from_the_command_line(tmp_path, write):
     run = command(path, "--surfaces-only", "--export", npz, "--export", vtu, "--report", report)
     assert run.returncode == 0, run.stderr
     assert "max deviation" in run.stdout
-    assert "kriging" in run.stdout
+    assert "universal_kriging" in run.stdout
     assert list(np.load(npz)["surface_names"]) == ["low", "high"]
     content = json.loads(report.read_text())
-    assert [entry["method"] for entry in content["surfaces"]] == ["kriging", "parallel"]
+    assert [entry["method"] for entry in content["surfaces"]] == ["universal_kriging", "parallel"]
     assert content["surfaces"][0]["neighbours"] == 32
     assert vtu.stat().st_size > 0
     one = command(path, "--surfaces-only", "--stage", 0, "--export", npz)

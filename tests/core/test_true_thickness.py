@@ -138,6 +138,13 @@ def test_the_thickness_that_points_show_is_spread():
         build(rock(low, Surface("high", true_thickness=true, **given))).interpolations[1].variance
         for true in (False, True)
     )
+    assert vertical is None and true is None  # four wells show no variogram
+    # with one that is given, those of thicknesses half as large
+    by_kriging["variogram"] = {"model": "spherical", "range": 20.0, "sill": 1.0}
+    vertical, true = (
+        build(rock(low, Surface("high", true_thickness=true, **given))).interpolations[1].variance
+        for true in (False, True)
+    )
     known = vertical > 1e-6
     assert np.abs(true / vertical - 1)[known].max() < 1e-6  # of thicknesses half as large
 

@@ -32,7 +32,7 @@ def test_a_wrong_order_is_said():
     (name, items, text), *others = warned(few, top("high", 10.0), top("low", 0.0))
     assert (name, items) == ("few", tuple(range(7)))
     assert text.startswith(
-        "7 of its 7 points lie above those of 'low' at the same place, the farthest by 5: point 0 at ("
+        "7 of its 7 points lie above those of 'low' at the same place, the farthest by 5: point 4 at ("
     )
     assert "check the order of the surfaces" in text
     assert [(each, len(numbers)) for each, numbers, _ in others] == [("high", 30)]
@@ -63,7 +63,7 @@ def test_picks_in_one_hole_always_are():
     ((name, items, text),) = warned(clay, ground, hole_picks=holes)
     assert (name, items) == ("clay", (0, 1))
     assert (
-        "2 of its 30 points lie above those of 'ground' at the same place, the farthest by 2: point 0 at"
+        "2 of its 30 points lie above those of 'ground' at the same place, the farthest by 2: point 1 at"
         in text
     )
     assert "; holes B0 and B1;" in text

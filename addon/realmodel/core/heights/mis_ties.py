@@ -138,9 +138,10 @@ def _mixed(points: np.ndarray, groups: int) -> np.ndarray:
 
 
 def shuffled(places: np.ndarray) -> np.ndarray:
-    """(P,) the numbers of places (P, 2) in an order that has nothing to do with where they lie, and is the
-    same for the same places."""
-    return np.argsort(_mixed(places, 1 << 31), kind="stable")
+    """(P,) the numbers of places (P, 2) in an order that goes to and fro among them, and does not depend on
+    their order or on rounding: that of multiples of the golden ratio (a low-discrepancy sequence)."""
+    _, place = np.unique(places + 0.0, axis=0, return_inverse=True)
+    return np.argsort(place.ravel().astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15), kind="stable")
 
 
 def first_at_each_place(points: np.ndarray) -> np.ndarray:

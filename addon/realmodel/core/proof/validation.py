@@ -274,7 +274,7 @@ def _native_model(model: ModelData) -> dict:
 def _bases(model: ModelData) -> np.ndarray:
     """(B,) float64 the base elevation that each block may stand on, NaN for none; (0,), not known, where a
     body stands on several, or in a tile on any."""
-    if model.lacks_project is not None:
+    if model.lacks_project is not None or not model.rock_inputs:
         return np.empty(0)
     bases = [np.nan if rock.base_elevation is None else rock.base_elevation for rock in model.project.rocks]
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
