@@ -10,15 +10,15 @@
 namespace realmodel::fields {
 namespace {
 
-constexpr Lattice kBox{{0, 0, 0}, {10, 10, 10}, {11, 11, 11}};
-const Likely kExact{kIsotropic, {}, 3}, kPlanes{kIsotropic, {1, 100}, 3};
+constexpr Lattice kHundred{{0, 0, 0}, {10, 10, 10}, {11, 11, 11}};
+const Likely kWithoutErrors{kIsotropic, {}, 3}, kWithLargeErrors{kIsotropic, {1, 100}, 3};
 
 /// Two surfaces 20 apart, a plane or waves, with contacts and dips that are off.
-struct Beds {
+struct BedsWithErrors {
     std::vector<std::array<double, 3>> contacts, dips, normals;
     std::vector<std::int32_t> surfaces;
 
-    Beds(double wave, double error) {
+    BedsWithErrors(double wave, double error) {
         std::mt19937 random(5);
         const auto drawn = [&] { return static_cast<double>(random()) / 4294967296.0; };
         for (int n = 0; n < 60; ++n) {
@@ -40,23 +40,24 @@ struct Beds {
         data.contact_surfaces = surfaces;
         data.dips = dips;
         data.normals = normals;
-        const KnownData known(kBox, data);
-        return CrossValidation(known, {}).costs(std::vector{kExact, kPlanes}, {threads, nullptr});
+        const KnownData known(kHundred, data);
+        return CrossValidation(known, {}).costs(std::vector{kWithoutErrors, kWithLargeErrors},
+                                                {threads, nullptr});
     }
 };
 
 TEST(CrossValidation, ContactsThatAreOffArePredictedByPlanes) {
-    const std::vector<double> costs = Beds(0, 4).costs(1);
+    const std::vector<double> costs = BedsWithErrors(0, 4).costs(1);
     EXPECT_LT(costs[1], costs[0]);
 }
 
 TEST(CrossValidation, WavesAreNotPredictedByPlanes) {
-    const std::vector<double> costs = Beds(5, 0).costs(1);
+    const std::vector<double> costs = BedsWithErrors(5, 0).costs(1);
     EXPECT_LT(costs[0], costs[1] - 20);
 }
 
 TEST(CrossValidation, IsTheSameForAnyNumberOfThreads) {
-    const Beds beds(5, 4);
+    const BedsWithErrors beds(5, 4);
     EXPECT_EQ(beds.costs(1), beds.costs(3));
 }
 
