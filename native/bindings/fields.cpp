@@ -121,6 +121,7 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
     out["misfit"] = made.misfit;
     out["dips_missed"] = to_array(std::move(made.dips_missed));
     out["bounds_missed"] = to_array(std::move(made.bounds_missed));
+    out["plain_shares"] = to_array(std::move(made.plain_shares));
     return out;
 }
 
@@ -160,7 +161,9 @@ same data, and normal numbers: (lines, 3 + F), (lines, steps) and (M, 2).
 Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
 each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
 (axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of
-half of the lattice's diagonal, variance, gaps, centers, inequalities that are left out. Raises InputError.)");
+half of the lattice's diagonal, variance, gaps, centers, inequalities that are left out; plain_shares, of the lattice for
+each block with the best field that has no ranges and no anisotropy, none if it is this or predicts data clearly worse.
+Raises InputError.)");
     module.def(
         "critical_points", &critical, py::arg("lattice"), py::arg("values"),
         py::arg("execution") = py::none(),

@@ -107,8 +107,9 @@ def test_a_surface_does_not_follow_the_ground_between_lines(map_of, off, method,
     assert not [each for each in model.warnings if "range of the fitted" in each.text]
 
 
-@pytest.mark.parametrize(("more", "least"), [("", 0.99), (", accuracy = 0", 0.0)])
-def test_a_level_set_does_not_follow_the_ground_between_lines(map_of, tmp_path, more, least):
+@pytest.mark.parametrize("more", ["", ", accuracy = 0"])
+def test_a_level_set_does_not_follow_the_ground_between_lines(map_of, more):
+    """Also where errors are not given: the data show them."""
     project = map_of(10.0, more)
     rock = project.rocks[0]
     rock.series = [Series("S", dips=SpaceDips([[500.0, 500.0, -10.0], [2500.0, 1500.0, 10.0]], [NORMAL] * 2))]
@@ -118,9 +119,7 @@ def test_a_level_set_does_not_follow_the_ground_between_lines(map_of, tmp_path, 
     points = draw[draw[:, 2] < ground(draw[:, 0]) - 2]
     found = model.cell_block[cells_at(model, points)]
     right = np.mean(found == (points[:, 2] > contact(points[:, 1])))
-    assert right > least
-    if not least:
-        assert right < 0.95  # it follows the ground
+    assert right > 0.99
     assert max(abs(each.residual) for each in model.observed().contacts) < 1e-9 * RELIEF
 
 

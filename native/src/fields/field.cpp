@@ -66,6 +66,7 @@ public:
         LikelyField found = likely_field(known, execution);
         likely_ = found.likely;
         gaps_ = std::move(found.gaps);
+        plain_shares_ = std::move(found.plain_shares);
         begin_phase(execution_.progress, 0.3, 0.7, "field through the data");
     }
 
@@ -107,6 +108,7 @@ public:
         out.kind = kind();
         out.centers = std::count(is_center_.begin(), is_center_.end(), 1);
         out.misfit = misfit_ * unit;
+        out.plain_shares = plain_shares_;
         report_missed(out);
         std::vector<char> kept(known_.data().bounds.size(), 1);
         for (const std::int64_t bound : out.bounds_missed)
@@ -408,7 +410,7 @@ private:
     FieldOptions options_;
     Execution execution_;
     std::vector<char> is_center_;
-    std::vector<double> gaps_;
+    std::vector<double> gaps_, plain_shares_;
     Likely likely_;
     ActiveInequalities active_;
     std::size_t first_contact_ = 0, first_active_ = 0;

@@ -2,12 +2,15 @@
 #include "fields/likely_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "fields/cross_validation.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/neighbors.hpp"
 #include "realmodel/base/errors.hpp"
@@ -25,11 +28,24 @@ constexpr double kUneven = 4;
 constexpr double kWrongOrder = 0.5;
 // Of further coordinates: with this one side of a fault says little of the other.
 constexpr double kFarLift = 8;
-constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kSampledForOrder = 600,
+constexpr std::size_t kSampledPairs = 80, kSampledDips = 90, kFewContacts = 600,
                       kSampledForDistance = 2000;
 // What a critical point of the field through the sample costs, as a logarithm of likelihood, and on
 // how many nodes they are counted.
 constexpr double kPerCriticalPoint = 20;
+// By so much another kind has to predict better than the plainest.
+constexpr double kBetter = 2;
+// Errors that each shape is tried with, beside the likeliest. They are in units of the kernel:
+// between those of contacts and of dips lie the ratios of a few meters and of some degrees, and
+// with the largest ones what is left of a field are planes, one for each surface.
+constexpr std::array<Errors, 3> kErrorsOfSecond{{{0, 0}, {0.1, 0}, {1, 100}}};
+constexpr std::array<Errors, 8> kErrorsOfThird{
+    {{0, 0}, {0, 0.01}, {0, 1}, {1e-3, 0.01}, {0.01, 0.1}, {0.1, 1}, {0.1, 10}, {1, 100}}};
+constexpr std::array<Errors, 3> kErrorsOfFifth{{{1e-4, 1e-3}, {1e-3, 1e-2}, {1e-2, 0.1}}};
+// Errors are ruled out with which the logarithm of likelihood is less by so much.
+constexpr double kRuledOut = 20;
+// By so much one kind predicts clearly better than another.
+constexpr double kClearly = 10;
 constexpr std::size_t kMostCounted = 50000;
 // So many dips tell how the field runs between surfaces, on a lattice of so many nodes.
 constexpr std::size_t kLeastDips = 10;
@@ -68,15 +84,9 @@ std::size_t connected_parts(const std::vector<CriticalPoint>& points, const Latt
     return parts;
 }
 
-/// What speaks for a kind of field and against it.
-struct Judged {
-    double likelihood = -HUGE_VAL;  ///< its logarithm
-    std::size_t critical = 0;       ///< critical points
-
-    double less_cost() const {
-        return likelihood - kPerCriticalPoint * static_cast<double>(critical);
-    }
-};
+bool is_plain(const Likely& likely) {
+    return likely.order < 5 && likely.anisotropy.ratios == kIsotropic.ratios;
+}
 
 /// The search for it, by samples of the data.
 class LikelySearch {
@@ -87,18 +97,25 @@ public:
     LikelyField found() {
         refuse_wrong_order();
         look();
-        if (known_.data().surfaces < 3) return {likely_, gaps_};
+        if (known_.data().surfaces < 3) return result();
         const std::vector<double> apart = distances_between(known_, kSampledForDistance);
-        const bool folds_back = is_told_by_dips() && likely_.order == 2;
-        if (!folds_back && !is_uneven(apart)) return {likely_, gaps_};
+        if (!is_uneven(apart)) return result();
+        const LikelySearch free = *this;
         find_gaps(apart, {kIsotropic, {1e-6, 1e-3}, 3, likely_.lift, likely_.throws});
         look();
         find_gaps(apart, likely_);
         look();
-        return {likely_, gaps_};
+        return free.cost_ <= cost_ ? free.result() : result();
     }
 
 private:
+    LikelyField result() const {
+        LikelyField out{likely_, gaps_, {}};
+        if (!is_plain(likely_) && plain_cost_ < cost_ + kClearly)
+            out.plain_shares = shares_of(plain_);
+        return out;
+    }
+
     void refuse_wrong_order() const {
         const std::int32_t last = known_.data().surfaces - 1;
         if (last < 1) return;
@@ -120,21 +137,22 @@ private:
 
     void look() {
         const std::vector<Functional> sample = sampled(gaps_, 3);
-        likely_ = most_likely(sample, known_.data().normals, known_.data().slits.normals,
-                              known_.error(), execution_);
-        std::vector<Likely> others;
+        const double error = known_.error();
+        likely_ = most_likely(sample, known_.data().normals, known_.data().slits.normals, error,
+                              execution_);
+        std::vector<Likely> shapes{likely_};
         if (is_told_by_dips()) {
-            others.push_back(most_likely_anywhere(sample, likely_, known_.error(), execution_));
-            others.push_back(most_likely_smooth(sample, others[0], known_.error(), execution_));
+            shapes.push_back(most_likely_anywhere(sample, likely_, error, execution_));
+            shapes.push_back(most_likely_smooth(sample, shapes[1], error, execution_));
         }
-        choose_order(std::move(others));
+        choose(with_errors(shapes));
     }
 
     /// Contacts alone do not say how f runs between surfaces, nor do a few dips beside thousands of
     /// contacts. Live edits, whose lattices are coarse, are not to wait for a longer search.
     bool is_told_by_dips() const {
         const FieldData& data = known_.data();
-        return data.dips.size() >= kLeastDips && data.contacts.size() <= kSampledForOrder &&
+        return data.dips.size() >= kLeastDips && data.contacts.size() <= kFewContacts &&
                known_.lattice().nodes() >= kLeastNodes;
     }
 
@@ -163,52 +181,114 @@ private:
         return out;
     }
 
-    /// These, and the sample.
-    std::vector<Functional> sampled(std::span<const double> gaps, int order) const {
+    /// These, and contacts.
+    std::vector<Functional> with(std::span<const std::size_t> contacts,
+                                 std::span<const double> gaps, int order) const {
         std::vector<Functional> out = with_some_dips(gaps);
         for (Functional& functional : out)
             functional = known_.for_order(order, functional);
-        for (const std::size_t n : sample_)
-            out.push_back(known_.on_surface(n));
+        for (const std::size_t n : contacts) {
+            if (n != known_.reference(known_.surface_of(n))) out.push_back(known_.on_surface(n));
+        }
+        return out;
+    }
+    std::vector<Functional> sampled(std::span<const double> gaps, int order) const {
+        return with(sample_, gaps, order);
+    }
+
+    /// Each shape as it is likeliest and with other errors; before them the third and the second
+    /// order, the same in all directions. Between rough surfaces the function whose third
+    /// derivatives are least overshoots, and has critical points. That whose second ones are least
+    /// bends at contacts instead.
+    std::vector<Likely> with_errors(const std::vector<Likely>& shapes) const {
+        std::vector<Likely> out;
+        const auto add = [&](Likely kind, std::span<const Errors> all) {
+            std::vector<Likely> own;
+            for (const Errors& errors : all) {
+                kind.errors = errors;
+                own.push_back(kind);
+            }
+            add_possible(std::move(own), out);
+        };
+        add({kIsotropic, {}, 3, likely_.lift, likely_.throws}, kErrorsOfThird);
+        add({kIsotropic, {}, 2, likely_.lift, likely_.throws}, kErrorsOfSecond);
+        for (const Likely& shape : shapes) {
+            out.push_back(shape);
+            if (shape.order == 5)
+                add(shape, kErrorsOfFifth);
+            else
+                add(shape, kErrorsOfThird);
+        }
+        if (known_.error() > 0)
+            std::erase_if(out, [](const Likely& kind) { return !(kind.errors.value > 0); });
         return out;
     }
 
-    /// Between rough surfaces the function whose third derivatives are least overshoots, and has
-    /// critical points. That whose second ones are least bends at contacts instead. It is taken
-    /// where it has so many fewer of them that the data may be less likely. The fifth order may
-    /// have no more of them: of short ranges the data can be likely though the field folds back
-    /// between them.
-    /// @param others  with which the sample is likelier, or the same
-    void choose_order(std::vector<Likely> others) {
-        Likely rough{kIsotropic, {}, 2, likely_.lift, likely_.throws};
-        if (known_.error() > 0) rough.errors.value = likely_.errors.value;
-        others.push_back(rough);
-        Judged best = judged(likely_);
-        for (const Likely& other : others) {
-            const Judged own = judged(other);
-            if (!(own.less_cost() > best.less_cost())) continue;
-            if (other.order == 5 && own.critical > best.critical) continue;
-            best = own;
-            likely_ = other;
+    /// Of a shape those with errors that near contacts and dips allow: what is left out far from
+    /// all others says little of errors.
+    void add_possible(std::vector<Likely> kinds, std::vector<Likely>& to) const {
+        const std::vector<Functional> sample = sampled(gaps_, kinds[0].order);
+        std::vector<double> likelihoods(kinds.size());
+        parallel_chunks(kinds.size(), execution_, [&](std::size_t n) {
+            const Spline spline(sample, kinds[n].smoothness(), {1, nullptr});
+            likelihoods[n] = spline.log_likelihood(known_.error()).value_or(-HUGE_VAL);
+        });
+        const double least = std::ranges::max(likelihoods) - kRuledOut;
+        for (std::size_t n = 0; n < kinds.size(); ++n) {
+            if (likelihoods[n] >= least) to.push_back(std::move(kinds[n]));
         }
     }
 
-    Judged judged(const Likely& likely) const {
-        std::vector<Functional> known;
-        for (const Functional& functional : with_some_dips(gaps_))
-            known.push_back(known_.for_order(2, functional));
-        for (const std::size_t n : thinned(known_, kSampledForOrder)) {
-            if (n != known_.reference(known_.surface_of(n))) known.push_back(known_.on_surface(n));
+    /// That which predicts data best that are left out, unless it has critical points: where it
+    /// has so many fewer of them another may predict them worse.
+    void choose(const std::vector<Likely>& kinds) {
+        std::vector<double> costs = CrossValidation(known_, gaps_).costs(kinds, execution_);
+        for (std::size_t n = 1; n < kinds.size(); ++n)
+            costs[n] += is_plain(kinds[n]) ? kBetter : 2 * kBetter;
+        std::vector<std::size_t> ranked(kinds.size());
+        std::iota(ranked.begin(), ranked.end(), 0);
+        std::ranges::stable_sort(ranked, {}, [&](std::size_t n) { return costs[n]; });
+        const auto plain = std::ranges::find_if(ranked, [&](auto n) { return is_plain(kinds[n]); });
+        if (plain != ranked.end()) plain_ = kinds[*plain];
+        plain_cost_ = plain != ranked.end() ? costs[*plain] : HUGE_VAL;
+        cost_ = HUGE_VAL;
+        for (const std::size_t n : ranked) {
+            if (!(costs[n] < cost_)) break;
+            const double cost =
+                costs[n] + kPerCriticalPoint * static_cast<double>(critical_points_of(kinds[n]));
+            if (!(cost < cost_)) continue;
+            cost_ = cost;
+            likely_ = kinds[n];
         }
-        const Spline spline(known, likely.smoothness(), execution_);
-        const std::optional<double> likelihood = spline.log_likelihood(known_.error());
-        if (!likelihood) return {};
+    }
+
+    /// Rough surfaces make critical points where contacts are close to one another.
+    Spline through_contacts(const Likely& likely) const {
+        return {with(thinned(known_, kFewContacts), gaps_, likely.order), likely.smoothness(),
+                execution_};
+    }
+
+    std::size_t critical_points_of(const Likely& likely) const {
+        const Spline spline = through_contacts(likely);
         const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
         // where the field hardly changes along an axis they come in lines
-        return {*likelihood, is_told_by_dips() ? connected_parts(points, coarse) : points.size()};
+        return is_told_by_dips() ? connected_parts(points, coarse) : points.size();
+    }
+
+    /// How much of the lattice each block is.
+    std::vector<double> shares_of(const Likely& likely) const {
+        const Spline spline = through_contacts(likely);
+        const FrameFunction f(known_, spline);
+        const std::vector<double> levels = f.levels();
+        const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
+        std::vector<double> out(levels.size() + 1);
+        for (const double value : f.at_nodes(coarse, 0, execution_))
+            out[std::ranges::lower_bound(levels, value) - levels.begin()] +=
+                1 / static_cast<double>(coarse.nodes());
+        return out;
     }
 
     /// Differences of levels with which the field is as steep between all surfaces.
@@ -246,7 +326,8 @@ private:
     const KnownData& known_;
     Execution execution_;
     std::vector<std::size_t> sample_;
-    Likely likely_;
+    Likely likely_, plain_;
+    double cost_ = 0, plain_cost_ = 0;
     std::vector<double> gaps_;
 };
 

@@ -9,10 +9,11 @@
 
 namespace realmodel::fields {
 
-/// The kind of field that data are most likely to be of.
+/// The kind of field that predicts data best that are left out.
 struct LikelyField {
     Likely likely;
-    std::vector<double> gaps;  ///< differences of the levels; none: they are free
+    std::vector<double> gaps;          ///< differences of the levels; none: they are free
+    std::vector<double> plain_shares;  ///< as of Field
 };
 
 /// Levels are free, unless the field would be far steeper between some of them than between

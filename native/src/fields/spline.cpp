@@ -129,7 +129,8 @@ double Spline::energy() const {
 }
 
 double Spline::scale() const {
-    return known_.size() > 3 ? energy() / static_cast<double>(known_.size() - 3) : 0;
+    if (known_.size() <= 3) return 0;
+    return std::max(0.0, energy()) / static_cast<double>(known_.size() - 3);  // rounding
 }
 
 /// With the inverse V of the matrix and the weights w these are w_i^2 / V_ii (Dubrule 1983, "Cross

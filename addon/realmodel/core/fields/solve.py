@@ -16,6 +16,7 @@ from .lattice import Lattice, ScalarField
 
 _NO_POINTS = np.empty((0, 3))
 _NO_NUMBERS = np.empty(0, np.int32)
+_NO_SHARES = np.empty(0)
 _LINES = 256  # of a random function
 _STEPS = 1024  # of each line
 MOST_CENTERS = 2500  # contacts that carry a field: their system is solved within seconds
@@ -116,9 +117,10 @@ class SolvedField(ScalarField):
     2 where surfaces are rough, or 5: all up to it, where the data are smooth; how many contacts carry the
     field; the largest distance of a contact from its surface, nearly; rows of the dips and bounds that
     contradict other data and do not hold; the fields on the other combinations of sides of slits; the kind of
-    random function, of which the native module draws others; and of each of the missed bounds what it
-    contradicts: "contact", "dip" or "bound", and the row. Of one that is drawn critical points are not
-    asked."""
+    random function, of which the native module draws others; of each of the missed bounds what it
+    contradicts: "contact", "dip" or "bound", and the row; and the share of the lattice that each block, from
+    the oldest, has with the best field that has no ranges and no anisotropy, none if it is this or predicts
+    data clearly worse. Of one that is drawn critical points are not asked."""
 
     anisotropy: Anisotropy
     order: int
@@ -129,6 +131,7 @@ class SolvedField(ScalarField):
     others: tuple[SolvedField, ...] = ()
     kind: tuple = field(default=(), repr=False, metadata=NOT_STORED)
     contradicted: list[list[tuple[str, int]]] = field(default_factory=list, repr=False, metadata=NOT_STORED)
+    plain_shares: np.ndarray = field(default_factory=_NO_SHARES.copy, repr=False, metadata=NOT_STORED)
 
 
 def solve_field(
@@ -181,6 +184,7 @@ def solve_field(
         critical_points=points[0],
         kind=found["kind"],
         contradicted=found["contradicted"],
+        plain_shares=found["plain_shares"],
     )
     others = zip(every[1:], points[1:], strict=True)
     return replace(

@@ -19,6 +19,7 @@ from ..surfaces.wrong_sides import heights_at
 from .series_data import SeriesData
 
 _LISTED = 12  # data that a warning names
+_DIFFER = 1 / 3  # of the volume of a block
 
 
 def warn_of_lacks(entry: RockInput, series: Series, lacks: list[str], compartments: list[str]) -> None:
@@ -93,6 +94,22 @@ def warn_of_critical_points(entry: RockInput, series: Series, points: np.ndarray
         is_one = len(points) == 1
         text = f"its field has {len(points)} critical point{'' if is_one else 's'}, where beds close or part"
         _add(entry, series, text, "critical_points", [place_text(point) for point in points.tolist()])
+
+
+def warn_of_volumes(entry: RockInput, series: Series, numbers: list[int], field: SolvedField) -> None:
+    """Adds the warning that blocks have other volumes with a plainer field. numbers: of the surfaces."""
+    plain = field.plain_shares
+    if not len(plain):
+        return
+    block = np.searchsorted(field.levels, field.values)
+    shares = np.bincount(block, minlength=len(plain)) / len(block)
+    differ = np.flatnonzero(np.abs(shares - plain) > _DIFFER * plain)
+    surfaces = [entry.rock.surfaces[number].name for number in numbers]
+    where = [f"below '{surfaces[0]}'", *(f"above '{name}'" for name in surfaces)]
+    listed = [f"{where[n]} {shares[n]:.1%} and {plain[n]:.1%} of the lattice" for n in differ.tolist()]
+    if listed:
+        text = "volumes differ by a third from those of a field as smooth in all directions; give dips there"
+        _add(entry, series, text, "volumes", listed)
 
 
 def within_rock(work: Work, entry: RockInput, points: np.ndarray) -> np.ndarray:

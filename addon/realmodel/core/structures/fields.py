@@ -38,6 +38,7 @@ from .field_warnings import (
     warn_of_distance,
     warn_of_field,
     warn_of_lacks,
+    warn_of_volumes,
     within_rock,
 )
 from .parts.part_models import level
@@ -200,6 +201,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             else:
                 field = draws.field(lattice, known, work, number)
         leave_out(entry, series, own, field)
+        warn_of_volumes(entry, series, numbers, field)
         kept = own.kept_rows(field.bounds_missed)
         solved = _Solved([field, *field.others], slits, where[kept], is_drawn=draws is not None)
         made = _through_data(work, entry, series, own.some(kept), solved)

@@ -106,6 +106,9 @@ struct Field {
     std::vector<std::int64_t> bounds_missed;  ///< bounds that contradict other data
     /// Of each of these, those that count most for the field there.
     std::vector<std::vector<Datum>> contradicted;
+    /// Of a field with ranges or an anisotropy the share of the lattice that each block, from the
+    /// oldest, has with the best field that has none, unless this predicts data clearly worse.
+    std::vector<double> plain_shares;
 };
 
 /// The smoothest field that honors the data: its third derivatives, integrated over all of space,

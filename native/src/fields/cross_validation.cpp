@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fields/cross_validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "fields/active_inequalities.hpp"
+#include "fields/frame_function.hpp"
+#include "fields/neighbors.hpp"
+#include "fields/spline.hpp"
+#include "realmodel/base/elementary.hpp"
+
+namespace realmodel::fields {
+
+namespace {
+
+constexpr std::size_t kMostContacts = 200, kMostDips = 60, kMostForDistance = 2000;
+constexpr int kParts = 6;
+// Data are divided among so many places at most, by which is nearest.
+constexpr std::size_t kMostPlaces = 24;
+// In the frame, and radians: what is missed by more counts as much; less counts for nothing, as
+// data are hardly better.
+constexpr double kFar = 0.5, kNear = 1e-4, kLeastAngle = 1e-3;
+constexpr int kRounds = 3;  // in which inequalities become active
+constexpr double kHeld = 1e-9;
+
+/// The part of each position: places are spread over them, each as far from those before it as it
+/// can be.
+std::vector<int> parts_of(std::span<const Vec3> at) {
+    const std::size_t half = std::max<std::size_t>(at.size() / 2, kParts);
+    std::vector<double> away(at.size(), HUGE_VAL);
+    std::vector<int> part(at.size(), 0);
+    std::size_t next = 0;
+    for (std::size_t place = 0; place < std::min({kMostPlaces, half, at.size()}); ++place) {
+        for (std::size_t n = 0; n < at.size(); ++n) {
+            const Vec3 d = minus(at[n], at[next]);
+            if (!(dot(d, d) < away[n])) continue;
+            away[n] = dot(d, d);
+            part[n] = static_cast<int>(place % kParts);
+        }
+        next = static_cast<std::size_t>(std::ranges::max_element(away) - away.begin());
+    }
+    return part;
+}
+
+double log_of_mean(double squares, std::size_t count, double least) {
+    const auto n = static_cast<double>(count);
+    return count == 0 ? 0 : n * elementary::log(squares / n + least);
+}
+
+}  // namespace
+
+CrossValidation::CrossValidation(const KnownData& known, std::span<const double> gaps)
+    : known_(known), gaps_(gaps.begin(), gaps.end()) {
+    std::vector<Vec3> at;
+    for (const std::size_t n : thinned(known, kMostContacts)) {
+        if (n == known.reference(known.surface_of(n))) continue;
+        contacts_.push_back(n);
+        at.push_back(known.contacts()[n]);
+    }
+    const FieldData& data = known.data();
+    const std::size_t each = (data.dips.size() + kMostDips - 1) / kMostDips;
+    for (std::size_t n = 0; n < data.dips.size(); n += each) {
+        dips_.push_back(n);
+        at.push_back(known.frame().to_local(data.dips[n]));
+    }
+    const std::vector<int> parts = parts_of(at);
+    const auto first_dip = parts.begin() + static_cast<std::ptrdiff_t>(contacts_.size());
+    contact_parts_.assign(parts.begin(), first_dip);
+    dip_parts_.assign(first_dip, parts.end());
+    if (data.surfaces < 2) return;
+    const auto sum = [](std::span<const double> of) {
+        return std::accumulate(of.begin(), of.end(), 0.0);
+    };
+    steepness_ = (gaps.empty() ? known.total_gap() : sum(gaps)) /
+                 sum(distances_between(known, kMostForDistance));
+}
+
+std::vector<double> CrossValidation::costs(std::span<const Likely> kinds,
+                                           const Execution& execution) const {
+    std::vector<Missed> all(kinds.size() * kParts);
+    parallel_chunks(all.size(), execution, [&](std::size_t n) {
+        all[n] = missed(kinds[n / kParts], static_cast<int>(n % kParts));
+    });
+    std::vector<double> out;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        Missed sum;
+        for (std::size_t part = k * kParts; part < (k + 1) * kParts; ++part) {
+            sum.distances += all[part].distances;
+            sum.angles += all[part].angles;
+        }
+        out.push_back(log_of_mean(sum.distances, contacts_.size(), kNear) +
+                      log_of_mean(sum.angles, dips_.size(), kLeastAngle));
+    }
+    return out;
+}
+
+std::vector<Functional> CrossValidation::rows_without(int part, int order) const {
+    const std::vector<Functional> fixed = known_.fixed(gaps_);
+    std::vector<Functional> rows;
+    for (std::size_t k = 0; k < dips_.size(); ++k) {
+        if (dip_parts_[k] == part) continue;
+        rows.push_back(known_.for_order(order, fixed[2 * dips_[k]]));
+        rows.push_back(known_.for_order(order, fixed[2 * dips_[k] + 1]));
+    }
+    for (std::size_t n = 2 * known_.data().dips.size(); n < fixed.size(); ++n)
+        rows.push_back(known_.for_order(order, fixed[n]));
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        if (contact_parts_[k] != part) rows.push_back(known_.on_surface(contacts_[k]));
+    }
+    return rows;
+}
+
+std::vector<Inequality> CrossValidation::inequalities_without(int part, int order) const {
+    std::vector<std::uint8_t> is_given(known_.data().dips.size(), 0);
+    for (std::size_t k = 0; k < dips_.size(); ++k)
+        is_given[dips_[k]] = dip_parts_[k] == part ? 0 : 1;
+    std::vector<Inequality> out;
+    for (Inequality& each : known_.inequalities()) {
+        if (each.kind == Inequality::Kind::kBound) continue;  // it may contradict other data
+        if (each.kind == Inequality::Kind::kPolarity &&
+            is_given[static_cast<std::size_t>(each.item)] == 0)
+            continue;
+        each.functional = known_.for_order(order, each.functional);
+        out.push_back(std::move(each));
+    }
+    return out;
+}
+
+CrossValidation::Missed CrossValidation::missed(const Likely& kind, int part) const {
+    const Execution alone{1, nullptr};
+    std::vector<Functional> rows = rows_without(part, kind.order);
+    const std::size_t known = rows.size();
+    Spline spline(rows, kind.smoothness(), alone);
+    ActiveInequalities active(inequalities_without(part, kind.order));
+    for (int round = 0; round < kRounds && active.activate(spline, kHeld); ++round) {
+        rows.resize(known);
+        active.append_to(rows);
+        spline = Spline(rows, kind.smoothness(), alone);
+    }
+    const std::vector<double> levels = FrameFunction(known_, spline).levels();
+    Missed out;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        if (contact_parts_[k] != part) continue;
+        const std::size_t n = contacts_[k];
+        const Vec3& at = known_.contacts()[n];
+        const Lift lift = known_.lift_of(n);
+        const double off = std::abs(spline.value(at, lift) - levels[known_.surface_of(n)]);
+        // where it is steep it may be so because it folds back: then levels are near everywhere
+        const double steep = std::min(length(spline.gradient(at, lift)), steepness_);
+        const double away = off < kFar * steep ? off / steep : kFar;
+        out.distances += away;
+    }
+    for (std::size_t k = 0; k < dips_.size(); ++k) {
+        if (dip_parts_[k] != part) continue;
+        const std::size_t n = dips_[k];
+        const Vec3 at = known_.frame().to_local(known_.data().dips[n]);
+        const Vec3 rise = spline.gradient(at, known_.lift_of_dip(n));
+        const double steep = length(rise);
+        const double cosine = steep > 0 ? dot(rise, known_.data().normals[n]) / steep : -1;
+        out.angles += std::sqrt(2 * std::max(0.0, 1 - cosine));
+    }
+    return out;
+}
+
+}  // namespace realmodel::fields

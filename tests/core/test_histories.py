@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Series of random histories with errors: nothing is refused, and no field is much worse than planes."""
+
+import numpy as np
+import pytest
+from histories import folded, near_flat
+from realmodel.core.base.work import run
+from realmodel.core.fields import Lattice, LevelSetData, solve_field
+
+NODES = 6000  # enough for dips to say how a field runs between surfaces
+
+
+@pytest.mark.parametrize("first", range(0, 70, 10))
+def test_near_flat_histories_are_no_worse_than_planes(first):
+    """Half of these were, as fields fell beyond the data, or were refused, as they rose the other way."""
+    for seed in range(first, first + 10):
+        history = near_flat(seed)
+        assert history.share_right(NODES) > history.share_of_planes() - 0.05, seed
+
+
+@pytest.mark.parametrize("first", range(0, 30, 10))
+def test_folded_histories_are_no_worse_than_planes(first):
+    """Three of these once were."""
+    for seed in range(first, first + 10):
+        if (history := folded(seed)) is not None:
+            assert history.share_right(NODES) > history.share_of_planes() - 0.05, seed
+
+
+def test_two_flat_beds_with_ten_dips_stay_flat():
+    """The oldest block had vanished, with four contacts that are off by a meter."""
+    contacts = np.array([[700.0, 350, 847], [250, 950, 848], [650, 750, 916], [650, 850, 919]])
+    of_older = [[550, 450, 2, 150], [400, 400, 0, 140], [50, 150, 3, 350], [950, 250, 3, 270]]
+    of_older += [[150, 200, 3, 130], [900, 800, 1, 20]]  # x, y, dip, direction
+    of_younger = [[550, 500, 1, 140], [850, 250, 1, 220], [400, 200, 0, 160], [800, 450, 0, 210]]
+    x, y, dip, azimuth = np.array(of_older + of_younger, float).T
+    dips = np.column_stack([x, y, np.repeat([850.0, 920.0], [6, 4])])
+    dip, azimuth = np.radians([dip, azimuth])
+    normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
+    data = LevelSetData("AB", contacts, np.array([0, 0, 1, 1], np.int32), dips, normals)
+    lattice = Lattice((0.0, 0.0, 0.0), (50.0, 50.0, 50.0), (21, 21, 21))
+    field = run(lambda work: solve_field(lattice, data, work))
+    places = np.random.default_rng(1).uniform(0, 1000, (5000, 3))
+    right = np.searchsorted([848.0, 918.0], places[:, 2])
+    assert np.mean(np.searchsorted(field.levels, field.at(places)) == right) > 0.98
