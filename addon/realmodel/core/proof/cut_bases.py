@@ -36,7 +36,7 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
             shapes[-1] is not None and RULES[rock.surfaces[-1].rule].cuts
         )
         if is_bounded and highest[2] <= rock.base_elevation:
-            what = "not below any of the rock mass, whose highest point is"
+            what = "is not below any of the rock mass, whose highest point is"
             raise _refused(entry, what, highest, every[:, 2].min())
         for number, surface in enumerate(rock.surfaces):
             # any other lies on what is older, or on what that protects, which has its own base
@@ -51,7 +51,7 @@ def check_bases(work: Work, inputs: Sequence[RockInput], forms: Sequence[ClosedF
 def _refused(entry: RockInput, what: str, at: np.ndarray, lower: float) -> InputRefused:
     rock, place = entry.rock, tuple(at.tolist())
     file, line = rock.place_of("base_elevation")
-    what = f"base_elevation {rock.base_elevation:.9g} is {what} {place_text(place)}"
+    what = f"base_elevation {rock.base_elevation:.9g} {what} {place_text(place)}"
     advice = f"choose one below {lower:.9g}"
     return InputRefused(what, file=file, line=line, item=rock.item, advice=advice, place=place)
 
@@ -64,7 +64,7 @@ def _check_contacts(work: Work, entry: RockInput, form: ClosedForm, number: int)
         lowest = deep[deep[:, 2].argmin()]
         name = entry.rock.surfaces[number].name
         count = "a contact" if len(deep) == 1 else f"{len(deep)} contacts"
-        what = f"above {count} of surface '{name}', which would be lost: the lowest is"
+        what = f"is above {count} of surface '{name}', which would be lost: the lowest is"
         raise _refused(entry, what, lowest, lowest[2])
 
 
