@@ -82,6 +82,21 @@ class Live(PanelCase):
         self.assertAlmostEqual(volume(self.block().data), 14e4, delta=1.0)
         bpy.ops.object.mode_set(mode="OBJECT")
 
+    def test_undo_in_edit_mode_after_a_new_name(self):
+        """The undo steps of edit mode find objects by name."""
+        if not bpy.ops.ed.undo_push.poll():
+            self.skipTest("this Blender has no undo in background")
+        select(self.items[2])
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.object.mode_set(mode="EDIT")
+        for message in ("first", "second"):
+            bpy.ops.ed.undo_push(message=message)
+        self.model.rocks[0].surfaces[2].name = "other"
+        self.live_is_done()
+        bpy.ops.ed.undo()  # Blender is still there
+        self.assertEqual(bpy.context.mode, "EDIT_MESH")
+        bpy.ops.object.mode_set(mode="OBJECT")
+
     def test_it_keeps_selection_and_materials(self):
         mine = bpy.data.materials.new("mine")
         self.block().data.materials[0] = mine

@@ -32,8 +32,11 @@ def is_name_of(name, wanted):
 
 
 def give_name(store, datablock, name):
-    """Name a datablock if the name is free. Otherwise Blender would rename the other datablock."""
-    if datablock.name != name and name not in store:
+    """Name a datablock if the name is free. Otherwise Blender would rename the other datablock. An object
+    that is being edited keeps its name: the undo steps of edit mode find it by that, and one that they do not
+    find ends Blender."""
+    is_edited = isinstance(datablock, bpy.types.Object) and datablock.mode != "OBJECT"
+    if datablock.name != name and name not in store and not is_edited:
         datablock.name = name
 
 

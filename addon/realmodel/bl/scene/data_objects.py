@@ -16,7 +16,7 @@ from ...core.readers import is_mesh_file, read_mesh, read_point_file, read_regio
 from ...core.readers.fault_sticks import read_fault_points
 from ...core.readers.fault_trace import read_fault_trace
 from .. import display
-from ..objects import meshes, stored_arrays
+from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import KEY as ORIGIN_KEY
 from ..objects.origin import choose_origin
 from ..project import borehole_picks, observed_blocks, project_settings, reading_text, settings
@@ -44,8 +44,8 @@ def update(scene, read=None):
                 item = _new(scene, stamp, name, *load())
             except (RealModelError, KeyError):
                 continue
-        elif item.name != name and name not in bpy.data.objects:
-            item.name = name
+        else:
+            model_tree.give_name(bpy.data.objects, item, name)
     collection = _collection(scene)
     if collection is not None and not len(collection.objects):
         bpy.data.collections.remove(collection)
