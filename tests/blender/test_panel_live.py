@@ -8,7 +8,7 @@ import bpy
 from blender_state import volume
 from panel_case import PanelCase, ops, raise_by, select, stack
 from realmodel.bl.display import shown_models
-from realmodel.bl.objects import built_models, viewports
+from realmodel.bl.objects import built_models, model_tree, viewports
 from realmodel.bl.scene import live
 
 
@@ -93,6 +93,22 @@ class Live(PanelCase):
             bpy.ops.ed.undo_push(message=message)
         self.model.rocks[0].surfaces[2].name = "other"
         self.live_is_done()
+        bpy.ops.ed.undo()  # Blender is still there
+        self.assertEqual(bpy.context.mode, "EDIT_MESH")
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_undo_in_edit_mode_after_a_build_without_the_object(self):
+        """What is edited is not removed; it is the user's own."""
+        if not bpy.ops.ed.undo_push.poll():
+            self.skipTest("this Blender has no undo in background")
+        block = self.block()
+        select(block)
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.object.mode_set(mode="EDIT")
+        for message in ("first", "second"):
+            bpy.ops.ed.undo_push(message=message)
+        model_tree.remove_objects([block])
+        self.assertNotIn(model_tree.TAG, block)
         bpy.ops.ed.undo()  # Blender is still there
         self.assertEqual(bpy.context.mode, "EDIT_MESH")
         bpy.ops.object.mode_set(mode="OBJECT")

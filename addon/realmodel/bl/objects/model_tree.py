@@ -64,9 +64,14 @@ def sections(scene):
 
 
 def remove_objects(objects):
-    """Remove objects with their meshes; those of other files stay."""
+    """Remove objects with their meshes; those of other files stay. One that is being edited stays as an
+    object of the user: undo steps of edit mode that do not find theirs end Blender."""
     for item in objects:
-        if item.library is None:
+        if item.mode != "OBJECT":
+            for key in list(item.keys()):
+                if key.startswith(TAG):
+                    del item[key]
+        elif item.library is None:
             mesh = item.data
             bpy.data.objects.remove(item)
             if not mesh.users:
