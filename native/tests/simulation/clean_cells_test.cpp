@@ -54,8 +54,9 @@ TEST(CleanCellsTest, AFaultKeepsItsNumberWhereALayerVanishes) {
 
 TEST(CleanCellsTest, OfNothingNothingIsLeft) {
     const std::vector<std::int64_t> offsets{0};
-    const CleanedCells made =
-        clean_cells(ComplexView{.face_offsets = offsets}, {}, 0.1, {1, nullptr});
+    ComplexView nothing{};
+    nothing.face_offsets = offsets;
+    const CleanedCells made = clean_cells(nothing, {}, 0.1, {1, nullptr});
     EXPECT_EQ(made.after.cells, 0u);
     EXPECT_EQ(made.largest_move, 0);
 }

@@ -198,4 +198,4 @@ def _in_folds(method: str, task: Task, left_out: list[np.ndarray]) -> Result:
         else:
             shape = np.column_stack([task.nodes, heights(method, replace(task, points=others)).z])
             z[out] = task.run(native_module().surface_heights, shape, task.triangles, places)
-    return Result(z, None if known is None else variance, variogram)
+    return Result(z, variance if np.isfinite(variance).any() else None, variogram)
