@@ -4,11 +4,13 @@
 import json
 import os
 import shutil
+from unittest import mock
 
 import bpy
 from blender_state import empty_file
 from panel_case import SAMPLES, PanelCase, ops, raise_by, stack
 from realmodel.bl import overlay
+from realmodel.bl.display import replacing
 from realmodel.bl.scene import build_job, live
 from realmodel.core import Model
 
@@ -136,3 +138,12 @@ class OutOfDate(PanelCase):
         self.refused(ops.report, "out of date, and not in memory", filepath=str(self.folder / "r.json"))
         ops.build()
         ops.report(filepath=str(self.folder / "r.json"))
+
+    def test_cells_of_a_model_that_is_not_in_memory(self):
+        """In a window, where they are made in a thread: the view says why they are not."""
+        self.built()
+        self.model.rocks[0].surfaces[1].rule = "conformable"
+        self.save_and_open()
+        with mock.patch.object(replacing, "nobody_waits", return_value=False):
+            bpy.context.scene.realmodel.display = "POLYHEDRA"
+        self.assertIn("out of date, and not in memory", bpy.context.scene.realmodel.view.message)

@@ -317,9 +317,9 @@ def _show(scene, has_shapes=False, **wanted):
     group.view.message = ""
     now = {key: getattr(group, key) for key in _ANIMATED} | _applied(scene) | wanted
     stage = now["stage"] if "stage" in wanted and not has_shapes else None
-    if ("display" in wanted or "stage" in wanted) and preparing.lacks(scene, stage, now["display"]):
-        return  # and comes here again when it has been made
     try:
+        if ("display" in wanted or "stage" in wanted) and preparing.lacks(scene, stage, now["display"]):
+            return  # and comes here again when it has been made
         if stage is not None:
             stages.show(scene, stage)
             forget_meshes()
