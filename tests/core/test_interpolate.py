@@ -94,7 +94,7 @@ def test_the_number_of_threads_changes_no_bit():
         ({"points": np.zeros((0, 3))}, "there are no points"),
         ({"points": np.zeros((3, 2))}, "must be an array (N, 3)"),
         ({"points": [[0, 0, np.nan]]}, "point 0 is (0, 0, nan), not finite"),
-        ({"points": [[0, 0, 1], [0, 0, 2]]}, "points 0 and 1"),
+        ({"points": [[0, 0, 1], [0, 0, 2]]}, "two points have the same position in plan (0, 0)"),
         ({"points": "many"}, "not an array of numbers"),
         ({"nodes": [[0, np.inf]]}, "node 0 is not finite"),
         ({"nodes": [0, 1]}, "must be an array (N, 2)"),
@@ -278,7 +278,9 @@ def test_contradicting_points_are_named(basin, write):
     write("top.csv", "0,0,1\n5,5,2\n0,0,3\n")
     with pytest.raises(InputRefused) as raised:
         build(load_project(path))
-    assert "top.csv: rock 'basin', surface 'top', points: points 0 and 1" in str(raised.value)
+    assert "top.csv: rock 'basin', surface 'top', points: two points have the same position" in str(
+        raised.value
+    )
 
 
 def test_a_surface_ends_with_its_points_where_no_extrapolation_is_wanted(basin, write):

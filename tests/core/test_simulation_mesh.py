@@ -63,7 +63,7 @@ def thicknesses(mesh):
         ("two_layers", 4.0, 0.2, 0.003, "tetrahedra"),
         ("gravel_plain", 15.0, 0.5, 0.03, "prisms"),
         ("gravel_plain", 15.0, 0.5, 0.03, "tetrahedra"),
-        ("castle_hill", 20.0, 0.8, 0.03, "tetrahedra"),  # made of prisms
+        ("castle_hill", 20.0, 0.8, 0.04, "tetrahedra"),  # made of prisms
     ],
 )
 def test_samples(sample, edge, thickness, deviation, elements):
