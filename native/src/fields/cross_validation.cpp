@@ -24,7 +24,7 @@ constexpr int kParts = 6;
 constexpr std::size_t kMostPlaces = 24;
 // In the frame, and radians: what is missed by more counts as much; less counts for nothing, as
 // data are hardly better.
-constexpr double kFar = 0.5, kNear = 1e-4, kLeastAngle = 1e-3;
+constexpr double kFar = 0.5, kTooNear = 1e-4, kLeastAngle = 1e-3;
 constexpr int kRounds = 3;  // in which inequalities become active
 constexpr double kHeld = 1e-9;
 
@@ -93,7 +93,7 @@ std::vector<double> CrossValidation::costs(std::span<const Likely> kinds,
             sum.distances += all[part].distances;
             sum.angles += all[part].angles;
         }
-        out.push_back(log_of_mean(sum.distances, contacts_.size(), kNear) +
+        out.push_back(log_of_mean(sum.distances, contacts_.size(), kTooNear) +
                       log_of_mean(sum.angles, dips_.size(), kLeastAngle));
     }
     return out;
