@@ -100,8 +100,8 @@ public:
             if (far <= reach_) found.push_back({patch_[index(t)], far});
         });
         std::ranges::sort(found, {}, [](const Near& n) { return std::pair(n.patch, n.distance); });
-        const auto rest = std::ranges::unique(found, {}, &Near::patch);
-        found.erase(rest.begin(), rest.end());
+        const auto is_same = [](const Near& a, const Near& b) { return a.patch == b.patch; };
+        found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
         return found;
     }
 
@@ -138,8 +138,7 @@ public:
         });
         std::ranges::sort(found);
         std::vector<Vec3> places = mapped(found, &std::pair<double, Vec3>::second);
-        const auto rest = std::ranges::unique(places);
-        places.erase(rest.begin(), rest.end());
+        places.erase(std::unique(places.begin(), places.end()), places.end());
         if (places.size() > kMostPlaces) places.resize(kMostPlaces);
         return places;
     }
