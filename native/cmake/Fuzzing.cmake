@@ -16,7 +16,7 @@ target_link_libraries(realmodel_fuzzing
 
 # Allocations that fail on request: the linker gives what calls malloc() and realloc() these instead.
 add_library(realmodel_failing_allocations INTERFACE)
-if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT REALMODEL_SANITIZE)
     target_sources(realmodel_failing_allocations INTERFACE
         "${CMAKE_CURRENT_SOURCE_DIR}/fuzz/allocations/failing_allocations.cpp")
     target_link_options(realmodel_failing_allocations INTERFACE -Wl,--wrap=malloc -Wl,--wrap=realloc)
