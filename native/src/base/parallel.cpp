@@ -4,6 +4,7 @@
 #include <chrono>
 #include <deque>
 #include <exception>
+#include <latch>
 #include <vector>
 
 #include "realmodel/base/execution.hpp"
@@ -13,7 +14,18 @@
 #include <csignal>
 #endif
 
+#if defined(__linux__)
+#include <sys/syscall.h>
+#include <unistd.h>
+#endif
+
 namespace realmodel {
+
+namespace {
+
+std::mutex making_threads;  // held, so that no other call takes what one has found to be had
+
+}  // namespace
 
 void run_threads(int threads, const std::function<void(std::size_t own)>& work) {
     const auto team = static_cast<std::size_t>(std::max(1, threads));
@@ -21,6 +33,7 @@ void run_threads(int threads, const std::function<void(std::size_t own)>& work) 
     others.reserve(team - 1);
     std::size_t own = 1;
     try {
+        const std::lock_guard lock(making_threads);
         for (; own < team; ++own)
             others.emplace_back(work, own);
     } catch (const std::exception&) {
@@ -33,7 +46,61 @@ void run_threads(int threads, const std::function<void(std::size_t own)>& work) 
         other.join();
 }
 
-#if !defined(_OPENMP)
+#if defined(_OPENMP)
+
+namespace {
+
+/// Tries how many threads can run beside this one, of `wanted`, and waits until they have gone: the
+/// system counts a thread for a little longer than join() takes.
+int threads_to_be_had(int wanted) {
+    std::vector<std::thread> tried;
+    std::vector<long> numbers(static_cast<std::size_t>(wanted));
+    std::latch end(1);
+    try {
+        tried.reserve(numbers.size());
+        for (long& number : numbers) {
+            tried.emplace_back([&end, &number] {
+#if defined(__linux__)
+                number = syscall(SYS_gettid);
+#endif
+                end.wait();
+            });
+        }
+    } catch (const std::exception&) {
+        // There are no more.
+    }
+    end.count_down();
+    for (std::thread& thread : tried)
+        thread.join();
+#if defined(__linux__)
+    for (const long number : numbers) {
+        while (number > 0 && syscall(SYS_tgkill, getpid(), number, 0) == 0)
+            std::this_thread::yield();
+    }
+#endif
+    return static_cast<int>(tried.size());
+}
+
+thread_local int last_wanted = 1, last_team = 1;
+
+}  // namespace
+
+int team_size(int threads) {
+    if (threads <= 1 || omp_in_parallel() != 0) return 1;
+    // OpenMP keeps the threads of a team for the next one, but ends those that this has no use for.
+    if (threads > last_wanted) {
+        const std::lock_guard lock(making_threads);
+        last_team = 1 + threads_to_be_had(threads - 1);
+#pragma omp parallel num_threads(last_team) if (last_team > 1)
+        {}  // makes them
+    } else {
+        last_team = std::min(threads, last_team);
+    }
+    last_wanted = threads;
+    return last_team;
+}
+
+#else
 
 namespace {
 
@@ -56,6 +123,8 @@ void keep_waiting_threads_asleep() {
 #if defined(REALMODEL_GNU_OPENMP)
     // once; not by std::call_once, whose thread-local data bpy leaves no place for
     [[maybe_unused]] static const bool is_done = [] {
+        const std::lock_guard lock(making_threads);
+        if (threads_to_be_had(2) < 2) return false;
         sigset_t all, before;  // signals are for the threads that were there
         sigfillset(&all);
         pthread_sigmask(SIG_SETMASK, &all, &before);

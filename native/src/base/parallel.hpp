@@ -32,12 +32,17 @@ inline int thread_count(int threads) {
 #endif
 }
 
-/// Calls work(own, team) at once for every own below team, which is `threads`; inside of such a
-/// call it is 1. The work must not throw.
+/// Calls work(own, team) at once for every own below team, which is `threads`, or less where there
+/// are not so many threads to be had; inside of such a call it is 1. The work must not throw.
 #if defined(_OPENMP)
+/// How many of `threads` may work in a region of OpenMP, which ends the process where it cannot get
+/// a thread that it wants: whenever this thread's team grows, as many are tried first.
+int team_size(int threads);
+
 template <class Work>
 void run_team(int threads, const Work& work) {
-#pragma omp parallel num_threads(threads) if (threads > 1)
+    const int size = team_size(threads);
+#pragma omp parallel num_threads(size) if (size > 1)
     work(static_cast<std::size_t>(omp_get_thread_num()),
          static_cast<std::size_t>(omp_get_num_threads()));
 }

@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#if defined(__linux__)
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -147,6 +153,48 @@ TEST(Parallel, ChunksAreCountedIntoTheProgress) {
         800, 100, {3, &progress}, [](std::size_t, std::size_t) {}, 1.0);
     EXPECT_DOUBLE_EQ(progress.fraction(), 0.6);
 }
+
+#if defined(__linux__)
+
+/// Ends a process of its own: 0 where loops and tasks ran, all of them.
+[[noreturn]] void run_loops_and_exit() {
+    std::atomic<int> runs{0};
+    for (const int threads : {64, 3, 64, 1, 2, 96}) {
+        parallel_chunks(100, {threads, nullptr}, [&](std::size_t) { ++runs; });
+        parallel_tasks(10, {threads, nullptr}, 1.0, [&](std::size_t, const Execution& own) {
+            parallel_chunks(10, own, [&](std::size_t) { ++runs; });
+        });
+    }
+    std::_Exit(runs == 6 * 200 ? 0 : 1);
+}
+
+TEST(ParallelDeathTest, WhereThereAreNoThreadsToBeHadThisOneDoesTheWork) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(
+        {
+            pthread_attr_t attributes;  // a stack that no address space has room for
+            pthread_attr_init(&attributes);
+            pthread_attr_setstacksize(&attributes, std::size_t{1} << 47);
+            pthread_setattr_default_np(&attributes);
+            run_loops_and_exit();
+        },
+        testing::ExitedWithCode(0), "");
+}
+
+TEST(ParallelDeathTest, WhereThereAreFewThreadsToBeHadTheyDoTheWork) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can become a user who has no other threads";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(
+        {
+            rlimit most{};
+            most.rlim_cur = most.rlim_max = 40;
+            if (setuid(54321) != 0 || setrlimit(RLIMIT_NPROC, &most) != 0) std::_Exit(2);
+            run_loops_and_exit();
+        },
+        testing::ExitedWithCode(0), "");
+}
+
+#endif
 
 TEST(ParallelTasks, EachRunsOnceWithItsShare) {
     for (const int threads : {1, 2, 3, 8}) {
