@@ -3,7 +3,7 @@
 # Hunts for stacks of surfaces that the builder gets wrong, for as long as asked. Findings are made
 # small and lie in build/findings; copied to tests/data/stacks, the tests judge them from then on.
 #
-#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds]
+#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds | --allocations]
 #     SEED         a whole number; the stacks of a seed are always the same (default: the time)
 #     --coverage   guided by what the stacks reach in the code: clang++'s libFuzzer, under
 #                  AddressSanitizer and UndefinedBehaviorSanitizer
@@ -12,6 +12,7 @@
 #     --booleans   pairs of surfaces that are intersected; findings belong in tests/data/booleans
 #     --structures models with faults and bodies; findings belong in tests/data/structures
 #     --folds      models with series of folds; findings belong in tests/data/folds
+#     --allocations  small builds of each kind while allocations fail; it says which
 # The exit status is 1 where something was found.
 #
 # shellcheck disable=SC2317  # functions are called by name
@@ -20,13 +21,13 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
 usage() {
-    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds]" >&2
+    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans | --structures | --folds | --allocations]" >&2
     exit 2
 }
 way=native numbers=()
 while (($# > 0)); do
     case $1 in
-        --coverage | --python | --booleans | --structures | --folds) way=${1#--} ;;
+        --coverage | --python | --booleans | --structures | --folds | --allocations) way=${1#--} ;;
         *[!0-9]* | '') usage ;;
         *) numbers+=("$1") ;;
     esac
@@ -60,6 +61,10 @@ booleans() { # SEED
         --corpus tests/data/booleans --into "$findings"
 }
 
+allocations() { # SEED
+    build/release/native/allocation_fuzzer --seconds "$seconds" --seed "$1"
+}
+
 python() { # SEED
     PYTHONPATH=addon build/venv/bin/python -m tests.core.stacks.hunt "$seconds" "$1" --into "$findings"
 }
@@ -83,10 +88,10 @@ coverage() { # SEED
 }
 
 case $way in
-    native | booleans)
+    native | booleans | allocations)
         scripts/install_dependencies.sh build
         cmake --preset release --log-level=WARNING
-        cmake --build build/release --target stack_fuzzer boolean_fuzzer -j 2
+        cmake --build build/release --target stack_fuzzer boolean_fuzzer allocation_fuzzer -j 2
         ;;
     python | structures | folds)
         scripts/build.sh /usr/bin/python3
@@ -102,6 +107,6 @@ echo "Fuzzing for $seconds s on $processors processors, seeds from $seed; findin
 status=0
 on_all_processors "$way" || status=1
 if ((status != 0)); then
-    echo "Something was found: see the .json files in $findings"
+    echo "Something was found: see above, and the .json files in $findings"
 fi
 exit "$status"
