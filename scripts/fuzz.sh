@@ -62,7 +62,7 @@ booleans() { # SEED
 }
 
 allocations() { # SEED
-    build/release/native/allocation_fuzzer --seconds "$seconds" --seed "$1"
+    build/release/native/allocation_fuzzer --seconds "$seconds" --seed $((1000 * $1))
 }
 
 python() { # SEED

@@ -150,6 +150,30 @@ class Live(PanelCase):
         live.cancelled(self.scene.name)
         self.assertEqual(activity.problem, "", "the model is as new as its input")
 
+    def test_what_no_handler_sees_is_built_all_the_same(self):
+        """As where the window of a build is closed, or a build changes what it was made from."""
+        raise_by(self.items[2], 5.0)
+        live.postpone_work(but=self.scene.name)
+        self.assertFalse(live.is_working())
+        self.look_again_until_done()
+        self.assertAlmostEqual(self.volumes()["S2 block"], 15e4, delta=1.0)
+        self.assertFalse(self.model.is_outdated)
+        activity = bpy.context.window_manager.realmodel
+        self.assertEqual(activity.problem, "")
+        with mock.patch.object(live, "check", return_value=True) as check:
+            self.look_again_until_done()
+            self.assertEqual(check.call_count, 2)  # it is built once more, not without end
+        self.assertIn("differs from its input", activity.problem)
+
+    def look_again_until_done(self):
+        live.look_again(self.scene.name)
+        until = time.monotonic() + 60.0
+        while live.is_working() or live.is_checking():
+            self.assertLess(time.monotonic(), until, "it does not end")
+            live._checks.look()
+            live._work.look()
+            time.sleep(0.005)
+
     def test_a_refusal_is_shown_and_mended(self):
         vertices = self.items[1].data.vertices
         vertices[6].co.x += 60.0

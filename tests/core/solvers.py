@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""OpenFOAM, OpenGeoSys and CalculiX, where this machine has them."""
+"""OpenFOAM, OpenGeoSys, CalculiX and MODFLOW 6, where this machine has them."""
 
+import contextlib
 import os
 import re
 import shutil
@@ -164,3 +165,48 @@ def run_calculix(folder, mesh_file, materials, gravity):
     done = subprocess.run(["ccx", "weight"], cwd=folder, capture_output=True, text=True, check=False)
     assert "Job finished" in done.stdout, done.stdout[-3000:]
     return np.loadtxt(folder / "weight.dat", skiprows=3)[:, 1:]
+
+
+_MODFLOW_FILES = {
+    "mfsim.nam": "BEGIN timing\n TDIS6 m.tdis\nEND timing\nBEGIN models\n GWF6 m.nam m\nEND models\n"
+    "BEGIN exchanges\nEND exchanges\nBEGIN solutiongroup 1\n IMS6 m.ims m\nEND solutiongroup 1\n",
+    "m.ims": "BEGIN nonlinear\n OUTER_DVCLOSE 1e-9\nEND nonlinear\n"
+    "BEGIN linear\n INNER_MAXIMUM 1000\n INNER_DVCLOSE 1e-9\n INNER_RCLOSE 1e-9\n"
+    " LINEAR_ACCELERATION BICGSTAB\nEND linear\n",
+    "m.tdis": "BEGIN dimensions\n NPER 1\nEND dimensions\nBEGIN perioddata\n 1 1 1\nEND perioddata\n",
+}
+
+
+def write_modflow_simulation(folder, package, file, more=()):
+    """A simulation of one steady step, of a grid (its package and file) and of the packages of `more`."""
+    for name, text in _MODFLOW_FILES.items():
+        (folder / name).write_text(text)
+    lines = [f" {package} {file} {package[:4].lower()}", *more]
+    (folder / "m.nam").write_text("BEGIN packages\n" + "\n".join(lines) + "\nEND packages\n")
+
+
+def run_modflow(folder, file, conductivity, heads):
+    """Steady flow through a grid of DISU: the conductivity of each cell, and the cells whose head is held.
+    Returns the head of each cell."""
+    import flopy
+
+    more = [" NPF6 m.npf", " IC6 m.ic", " CHD6 m.chd", " OC6 m.oc"]
+    write_modflow_simulation(folder, "DISU6", file, more)
+    values = "\n".join(map(repr, np.asarray(conductivity, float).tolist()))
+    (folder / "m.npf").write_text(
+        "BEGIN griddata\n icelltype\n  CONSTANT 0\n k\n  INTERNAL FACTOR 1\n" + values + "\nEND griddata\n"
+    )
+    (folder / "m.ic").write_text("BEGIN griddata\n strt\n  CONSTANT 0\nEND griddata\n")
+    held = "\n".join(f" {cell + 1} {head!r}" for cell, head in heads.items())
+    (folder / "m.chd").write_text(
+        f"BEGIN dimensions\n MAXBOUND {len(heads)}\nEND dimensions\nBEGIN period 1\n{held}\nEND period 1\n"
+    )
+    (folder / "m.oc").write_text(
+        "BEGIN options\n HEAD FILEOUT m.hds\nEND options\nBEGIN period 1\n SAVE HEAD ALL\nEND period 1\n"
+    )
+    done = subprocess.run(["mf6"], cwd=folder, capture_output=True, text=True, check=False)
+    assert "Normal termination of simulation." in done.stdout, done.stdout[-3000:]
+    balance = re.findall(r"PERCENT DISCREPANCY = *(\S+)", (folder / "m.lst").read_text())
+    assert max(abs(float(percent)) for percent in balance) < 0.1
+    with contextlib.closing(flopy.utils.HeadFile(str(folder / "m.hds"))) as file:
+        return file.get_data().ravel()

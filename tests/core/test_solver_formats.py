@@ -15,6 +15,7 @@ from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
 from realmodel.core.exporters.solvers.modflow import element_volumes
 from realmodel.core.simulation import PolyhedralMesh, VolumeMesh
 from realmodel.core.simulation.element_faces import ElementFaces
+from solvers import run_modflow, write_modflow_simulation
 
 WHY = "not installed: scripts/test.sh installs it"
 SHIFT = (400_000.25, 5_300_000.5, -12.0)
@@ -290,15 +291,7 @@ def test_openfoam(mesh, tmp_path):
 def modflow(folder, package, file):
     """The package of a simulation that consists of it alone, as flopy reads it."""
     flopy = pytest.importorskip("flopy", reason=f"flopy is {WHY}")
-    (folder / "mfsim.nam").write_text(
-        "BEGIN timing\n TDIS6 m.tdis\nEND timing\nBEGIN models\n GWF6 m.nam m\nEND models\n"
-        "BEGIN solutiongroup 1\n IMS6 m.ims m\nEND solutiongroup 1\n"
-    )
-    (folder / "m.ims").write_text("BEGIN linear\n INNER_DVCLOSE 1e-9\nEND linear\n")
-    (folder / "m.tdis").write_text(
-        "BEGIN dimensions\n NPER 1\nEND dimensions\nBEGIN perioddata\n 1 1 1\nEND perioddata\n"
-    )
-    (folder / "m.nam").write_text(f"BEGIN packages\n {package} {file} {package[:4].lower()}\nEND packages\n")
+    write_modflow_simulation(folder, package, file)
     simulation = flopy.mf6.MFSimulation.load(sim_ws=str(folder), verbosity_level=0)
     return simulation.get_model("m").get_package(package[:4].lower())
 
@@ -375,6 +368,26 @@ def test_modflow_disu_of_a_model(tmp_path):
     assert (
         width[apart] > 1e-9 * np.minimum(*(np.sqrt(grid.area.array[k[apart]]) for k in (ja, of))) ** 2
     ).all()
+
+
+@pytest.mark.skipif(shutil.which("mf6") is None, reason="MODFLOW 6 is absent: neither Debian nor PyPI has it")
+@pytest.mark.parametrize("name", ["two_layers", "gravel_plain", "castle_hill"])
+def test_modflow_computes_a_flow_through_the_exact_cells(tmp_path, name):
+    """From the base to what lies highest: heads are between those that are held."""
+    pytest.importorskip("flopy", reason=f"flopy is {WHY}")
+    model = build(load_project(f"blend_samples/{name}/project.toml"))
+    model.save(tmp_path / "g.disu")
+    grid = modflow(tmp_path, "DISU6", "g.disu")
+    blocks = np.array((tmp_path / "g_disu_block.txt").read_text().split(), int)
+    top, bottom = grid.top.array, grid.bot.array
+    high = top > np.quantile(top, 0.95)
+    low = ~high & (bottom <= np.quantile(bottom, 0.05))
+    held = {int(cell): float(high[cell]) for cell in np.flatnonzero(low | high)}
+    heads = run_modflow(tmp_path, "g.disu", 10.0 ** -(blocks % 3), held)
+    assert len(heads) == len(blocks)
+    assert (heads > -1e-9).all()
+    assert (heads < 1 + 1e-9).all()
+    assert ((heads > 0.01) & (heads < 0.99)).any()
 
 
 def test_modflow_disu_refuses_inclined_faults(tmp_path):

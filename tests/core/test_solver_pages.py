@@ -73,6 +73,9 @@ def test_the_chapter_leads_to_its_picture(name, tmp_path):
         assert "Mesh OK." in run.stdout
     if name == "MODFLOW":
         check_flow(tmp_path)
+        if shutil.which("mf6"):
+            ran = subprocess.run(["mf6"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+            assert "Normal termination of simulation." in ran.stdout, ran.stdout[-2000:]
     shown = re.findall(r"!\[[^]]*\]\(images/simulation/([\w.]+)\)", chapter(name))
     assert len(shown) == 1
     made = np.asarray(image.open(tmp_path / shown[0]).convert("RGB"), float)

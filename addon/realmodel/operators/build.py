@@ -38,6 +38,10 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     def cancelled(self):
         live.cancelled(self._scene)
 
+    def cancel(self, context):
+        super().cancel(context)
+        live.look_again(self._scene)
+
     def tell_done(self, model):
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None and live.check(scene):

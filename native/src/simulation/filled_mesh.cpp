@@ -9,7 +9,8 @@
 #include "exact/without_mpfr.hpp"
 // CGAL
 // A table of 32 kB of each thread goes to the heap: a module that is loaded late has room for few
-// thread-local bytes (realmodel_loaded_late).
+// thread-local bytes (realmodel_loaded_late). An exception, as where there is no memory, leaves
+// entries in it, which the next insertion would take for its own.
 #include <CGAL/Random.h>
 #include <CGAL/tss.h>
 
@@ -17,7 +18,10 @@
 #undef CGAL_STATIC_THREAD_LOCAL_VARIABLE_0
 #define CGAL_STATIC_THREAD_LOCAL_VARIABLE_0(TYPE, VAR)                         \
     static thread_local const auto VAR##_of_thread = std::make_unique<TYPE>(); \
-    TYPE& VAR = *VAR##_of_thread
+    TYPE& VAR = *VAR##_of_thread;                                              \
+    for (auto left = VAR.begin(); left != VAR.end(); ++left)                   \
+        VAR.clear(left);                                                       \
+    VAR.clear()
 #include <CGAL/Triangulation_data_structure_3.h>
 #pragma pop_macro("CGAL_STATIC_THREAD_LOCAL_VARIABLE_0")
 

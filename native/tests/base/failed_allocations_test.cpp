@@ -43,6 +43,20 @@ TEST_P(FailedAllocations, AreErrorsAndLeaveNothingBehind) {
     }
 }
 
+/// CGAL fills a table of the thread while it inserts a point: of these allocations some are within.
+TEST(TetrahedraAfterFailedAllocations, AreTheSame) {
+    const fuzz::SmallBuild build = fuzz::small_builds(1006).back();
+    ASSERT_EQ(build.name, "tetrahedra");
+    const std::uint64_t expected = build.digest(1);
+    for (std::uint64_t number = 1700; number < 2000; number += 5) {
+        {
+            const fuzz::FailingAllocations failing(number, true);
+            EXPECT_THROW(build.digest(1), std::bad_alloc) << "allocation " << number;
+        }
+        ASSERT_EQ(build.digest(1), expected) << "after allocation " << number;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(SmallBuilds, FailedAllocations,
                          testing::Range<std::size_t>(0, fuzz::small_builds(1).size()),
                          [](const auto& kind) { return "Kind" + std::to_string(kind.param); });

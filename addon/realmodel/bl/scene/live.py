@@ -33,7 +33,9 @@ _REFINE_SECONDS = 0.3  # without a change, after a coarse model, before the whol
 _CHECK_SECONDS = 0.3  # without a change, before the fingerprint of what a model is made from is taken
 _WATCH_SECONDS = 2.0  # between two looks at the files
 _CANCELLED = "the build was cancelled: press Build, or Auto builds after the next change"
+_DIFFERS = "the model differs from its input, though it was built again: press Build"
 _to_refine, _refined = set(), set()  # names of scenes: with a coarse model of the last change; in work
+_again = set()  # names of scenes that are built though nothing was reported
 
 
 def touch(scene):
@@ -65,6 +67,7 @@ def _look_at(scene):
     """Reports that a scene's model may be another one than its input makes."""
     names.store(scene)
     settings.follow_youngest(scene)
+    _again.discard(scene.name)
     bpy.context.window_manager.realmodel.estimate = ""
     _checks.touch(scene.name)
     if scene.realmodel.live:
@@ -155,6 +158,11 @@ def cancelled(name):
         viewports.redraw()
 
 
+def look_again(name):
+    """The window of a build of a scene by hand was closed: Auto builds what it would have built."""
+    _checks.touch(name)
+
+
 def start():
     """The add-on is enabled: files are watched from now on."""
     if not bpy.app.background:
@@ -182,9 +190,19 @@ def _watch():
 
 def _begin_check(name, _changed_at):
     scene = bpy.data.scenes.get(name)
-    if scene is not None:
-        with _our_own(scene):
-            check(scene)
+    if scene is None:
+        return
+    with _our_own(scene):
+        is_outdated = check(scene)
+    if not is_outdated or not scene.realmodel.live:
+        _again.discard(name)
+    elif not _work.is_working(name) and not bpy.context.window_manager.realmodel.problem:
+        if name in _again:
+            problems.tell(_DIFFERS)
+            viewports.redraw()
+        else:  # the input was changed as the build ended, or by what no handler sees
+            _again.add(name)
+            _work.touch(name)
 
 
 def _finish(name, job, changed_at):

@@ -141,8 +141,12 @@ def write_disu(
     plan = np.bincount(of_side, np.maximum(outward[:, 2], 0), cells)
     for axis in range(3):  # of the pyramids from the anchor to each face
         lever[:, axis] = np.bincount(of_side, 0.75 * share * spoke[:, axis], cells)
-    center = anchor + np.divide(lever, volume[:, None], out=np.zeros_like(lever), where=volume[:, None] > 0)
-    thickness = np.divide(volume, plan, out=np.zeros(cells), where=plan > 0)
+    lowest, highest = _height_range(mesh, faces)
+    # Of cells as narrow as the rounding of their corners volumes tell nothing.
+    is_sound = (volume > 0) & (volume <= plan * (highest - lowest))
+    center = anchor + np.divide(lever, volume[:, None], out=np.zeros_like(lever), where=is_sound[:, None])
+    thickness = np.divide(volume, plan, out=(highest - lowest) / 2, where=is_sound)
+    center[:, 2] = np.where(is_sound, center[:, 2], (lowest + highest) / 2)
     step(0.3)
     inner = np.flatnonzero(other >= 0)
     low, high = np.minimum(owner, other)[inner], np.maximum(owner, other)[inner]
@@ -199,6 +203,15 @@ def write_disu(
     file.write(b"END CONNECTIONDATA\n")
     _numbers(blocks, mesh.cell_block + 1)
     step(1.0)
+
+
+def _height_range(mesh: PolyhedralMesh, faces: CellFaces) -> tuple[np.ndarray, np.ndarray]:
+    """The lowest and the highest corner of each cell, (C,) each."""
+    heights = mesh.points[mesh.face_vertices, 2]
+    return tuple(
+        each.reduceat(each.reduceat(heights, mesh.face_offsets[:-1])[faces.face], faces.begin[:-1])
+        for each in (np.minimum, np.maximum)
+    )
 
 
 def _from_top(mesh: PolyhedralMesh, normals: np.ndarray) -> np.ndarray:
