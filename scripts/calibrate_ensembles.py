@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of docs/ensembles.md: how often left-out points of real surfaces lie between percentiles of drawn
-heights.
+"""The tables of docs/ensembles.md: how often left-out points of real surfaces lie between percentiles of drawn
+heights, and how often the volume between two random surfaces does.
 
-    PYTHONPATH=addon python scripts/calibrate_ensembles.py
+    PYTHONPATH=addon python scripts/calibrate_ensembles.py             # needs ../shared/data
+    PYTHONPATH=addon python scripts/calibrate_ensembles.py TRUTHS      # so many pairs of random surfaces
 
-Needs the built module and ../shared/data.
+Needs the built module.
 """
 
 import sys
@@ -38,22 +39,25 @@ class Calibration:
     deviation: float
 
 
+def _drawn(method, data, nodes, seed, realizations, area):
+    """(realizations, N) heights at the nodes."""
+    settings, work, known = checked_options(method, {}), Work(), {}
+    return np.array(
+        [
+            Draw(area, Noise((seed, number)), known).heights(method, Task(work, data, nodes, settings, 0)).z
+            for number in range(realizations)
+        ]
+    )
+
+
 def calibrated(points, seed, realizations=REALIZATIONS):
     """Of points (P, 3) some are data, and heights are drawn at others."""
     chosen = np.random.default_rng(seed).permutation(len(points))
     data = np.ascontiguousarray(points[chosen[:DATA]])
     others = points[chosen[DATA : DATA + LEFT_OUT]]
     nodes = np.ascontiguousarray(others[:, :2])
-    area, known = FieldArea(points[:, :2].min(axis=0), points[:, :2].max(axis=0)), {}
-    settings, work = checked_options("kriging", {}), Work()
-    drawn = np.array(
-        [
-            Draw(area, Noise((seed, number)), known)
-            .heights("kriging", Task(work, data, nodes, settings, 0))
-            .z
-            for number in range(realizations)
-        ]
-    )
+    area = FieldArea(points[:, :2].min(axis=0), points[:, :2].max(axis=0))
+    drawn = _drawn("kriging", data, nodes, seed, realizations, area)
     p10, p25, p75, p90 = np.percentile(drawn, [10, 25, 75, 90], axis=0)
     z = others[:, 2]
     return Calibration(
@@ -62,6 +66,38 @@ def calibrated(points, seed, realizations=REALIZATIONS):
         float(np.sqrt(((drawn.mean(axis=0) - z) ** 2).mean())),
         float(np.sqrt(drawn.var(axis=0).mean())),
     )
+
+
+def rank_of_a_volume(seed, places, method, realizations=40):
+    """Which share of realizations has less volume between two random surfaces than there is: each a plane and
+    a Gaussian field with a deviation of 15 m, of a range from 200 to 500 m, known at so many places of 1 km2."""
+    chance = np.random.default_rng(seed)
+    along = np.linspace(25.0, 975.0, 20)
+    nodes = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
+    area, known = FieldArea(np.zeros(2), np.full(2, 1000.0)), chance.uniform(0.0, 1000.0, (places, 2))
+    at = np.concatenate([known, nodes])
+    distance = np.linalg.norm(at[:, None] - at[None], axis=2)
+    between, drawn = 0.0, 0.0
+    for number, sign in enumerate((-1.0, 1.0)):
+        covariance = np.exp(-(((distance / chance.uniform(200.0, 500.0)) * 1.7) ** 2)) + 1e-9 * np.eye(
+            len(at)
+        )
+        field = 15.0 * np.linalg.cholesky(covariance) @ chance.standard_normal(len(at))
+        z = field + at @ chance.uniform(-0.05, 0.05, 2) + 200.0 * number
+        data = np.column_stack([known, z[:places]])
+        between += sign * z[places:].mean()
+        drawn += sign * _drawn(method, data, nodes, 2 * seed + number, realizations, area).mean(axis=1)
+    return float((drawn < between).mean())
+
+
+def of_truths(count):
+    print("| method | places | below P10 | within P10-P90 | above P90 |\n|---|---|---|---|---|")
+    for method in ("kriging", "universal_kriging"):
+        for places in (12, 25):
+            ranks = np.array([rank_of_a_volume(seed, places, method) for seed in range(count)])
+            below, above = (ranks < 0.1).mean(), (ranks > 0.9).mean()
+            shares = " | ".join(f"{100 * share:.0f} %" for share in (below, 1.0 - below - above, above))
+            print(f"| {method} | {places} | {shares} |", flush=True)
 
 
 def surfaces():
@@ -73,6 +109,9 @@ def surfaces():
 
 
 def main():
+    if len(sys.argv) > 1:
+        of_truths(int(sys.argv[1]))
+        return
     print("| surface | within P25-P75 | within P10-P90 | error | deviation |\n|---|---|---|---|---|")
     for number, (name, points) in enumerate(surfaces()):
         found = calibrated(points, number)
