@@ -138,6 +138,61 @@ def ground_mesh(height, n=41):
     return np.column_stack([x, y, height(x, y)]), triangles
 
 
+def beside_a_corner(seed):
+    """A region, one of its corners, and a trace from there that goes along the outline or leaves the region
+    beside it, with a dip and its direction."""
+    rng = np.random.default_rng(seed)
+    region = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
+    if seed % 4:
+        count = int(rng.integers(3, 7))
+        angles = 2 * np.pi * (np.arange(count) + rng.uniform(0.1, 0.6, count)) / count
+        region = 600 * np.column_stack([np.cos(angles), np.sin(angles)])
+    if seed % 4 == 1:
+        region = np.round(region)
+    if seed % 4 == 2:
+        region += [412345.25, 5412345.5]
+    at = int(rng.integers(len(region)))
+    before, corner, after = (region[(at + step) % len(region)] for step in (-1, 0, 1))
+    ways = [way / np.hypot(*way) for way in (corner - before, after - corner)]
+    way = [ways[0] + ways[1], *ways][int(rng.integers(3))]
+    way = way / np.hypot(*way)
+    trace = np.array([corner, corner + rng.choice([-1, 1]) * way * rng.uniform(50, 300)])
+    across = np.array([way[1], -way[0]]) * rng.choice([-1, 1])
+    direction = float(np.degrees(np.arctan2(*across)) % 360)
+    return region, corner, trace, rng.choice([30.0, 45.0, 60.0, rng.uniform(20, 85)]), direction
+
+
+def corner_model(region, trace, dip, direction):
+    """Two surfaces of points below a level ground at 400 that the trace is on."""
+    rng = np.random.default_rng(0)
+    low, high = region.min(axis=0), region.max(axis=0)
+    surfaces = []
+    for name, height in (("A", 150.0), ("B", 250.0)):
+        plan = rng.uniform(low, high, (30, 2))
+        surfaces.append(
+            Surface(name, points=np.column_stack([plan, height + 10 * np.sin((plan[:, 0] - low[0]) / 200)]))
+        )
+    corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
+    ground = Surface("ground", np.column_stack([corners, np.full(4, 400.0)]), [[0, 1, 2], [0, 2, 3]])
+    rock = Rock("r", [*surfaces, ground], region=region, edge_length=150.0, base_elevation=0.0)
+    fault = Fault("F", trace=trace, dip=dip, dip_direction=direction, elevation=400.0, youngest="B")
+    return build(Project("p", [rock], faults=[fault]))
+
+
+@pytest.mark.parametrize("seed", [None, *range(8), 60])
+def test_a_trace_from_a_corner_of_the_region_leaves_no_sliver_there(seed):
+    """The surface has the corner itself, and not a point beside it by rounding, with a sliver between."""
+    if seed is None:
+        region = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
+        corner, trace, dip, direction = region[0], np.array([[0.0, 0.0], [-100.0, 100.0]]), 60.0, 225.0
+    else:
+        region, corner, trace, dip, direction = beside_a_corner(seed)
+    model = corner_model(region, trace, float(dip), direction)
+    assert not [(test.name, test.failed) for test in model.validate(100).tests if test.failed]
+    away = np.abs(model.vertices - [*corner, 400.0]).max(axis=1)
+    assert (away < 1e-6).sum() == 1
+
+
 def test_a_side_gives_the_plane_through_the_line_back():
     """A trace across a slope is oblique to the dip direction; with the side alone it is the same plane."""
     lean = 1 / math.tan(math.radians(35))
@@ -185,7 +240,7 @@ def test_two_points_on_a_hilly_ground_follow_it_between_them():
     assert flat[middle] == pytest.approx(9.0, abs=0.02)
     end = np.abs(vertices[:, 1]).argmin()
     assert flat[end] == pytest.approx(5.0 + 1.5, abs=0.02)
-    assert len(vertices) < 12  # straight pieces need no more
+    assert len(vertices) == 15  # straight pieces need no more: five rulings, with the line itself
 
 
 def test_dies_out_and_extend():

@@ -147,6 +147,63 @@ def test_a_model_of_one_element_is_not_eroded(thickness, share):
     assert mesh.exact_volumes.sum() - mesh.volumes.sum() == pytest.approx(lost, abs=0.01 * 60_000)
 
 
+def thin_layer(length, width, thickness):
+    """A layer on waves, of a thickness that is a function of x and y, between thicker ones."""
+    step = 100.0
+    columns, rows = round(length / step) + 1, round(width / step) + 1
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(columns) * step, np.arange(rows) * step))
+    low = -100 + 20 * np.sin(x / 300) * np.cos(y / 250)
+    high = low + thickness(x, y)
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    others = corner + columns
+    triangles = np.concatenate(
+        [
+            np.column_stack([corner, corner + 1, others + 1]),
+            np.column_stack([corner, others + 1, others]),
+        ]
+    )
+    surfaces = [
+        Surface(name, vertices=np.column_stack([x, y, z]), triangles=triangles)
+        for name, z in (("Low", low), ("Thin", high), ("Top", high + 20))
+    ]
+    return surfaces, triangles
+
+
+@pytest.mark.parametrize("base", [None, -130.0])
+@pytest.mark.parametrize("more", [{}, {"layer_thickness": 10.0}])
+def test_a_hole_in_a_thin_layer_does_not_grow(base, more):
+    """Ends of a thin layer are given up as solvers do badly with them, but where the next ones are no better
+    the hole would take all of the layer, ring by ring."""
+
+    def thickness(x, y):
+        return 8 - 5 * np.exp(-((x - 4100) ** 2 + (y - 3600) ** 2) / 300**2)
+
+    surfaces, _ = thin_layer(8000.0, 7000.0, thickness)
+    model = build(Project("p", [Rock("r", surfaces, base_elevation=base)]))
+    mesh = checked(model.simulation_mesh(200.0, 4.0, **more))
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.002)
+    assert {warning.kind for warning in mesh.warnings} == {"mesh_thin_ends"}
+
+
+@pytest.mark.parametrize("more", [{}, {"layer_thickness": 10.0}])
+@pytest.mark.parametrize(("edge", "thickness"), [(200.0, 4.0), (400.0, 4.0), (300.0, 3.9)])
+def test_holes_all_over_a_thin_layer_leave_what_is_thicker(edge, thickness, more):
+    """No more is lost than where the layer is thinner than asked, within an edge length."""
+
+    def of_layer(x, y):
+        return 5 + 1.3 * np.sin(x / 300 + y / 370)
+
+    surfaces, triangles = thin_layer(4000.0, 3000.0, of_layer)
+    model = build(Project("p", [Rock("r", surfaces, base_elevation=-130.0)]))
+    mesh = checked(model.simulation_mesh(edge, thickness, **more))
+    thin = mesh.block_names.index("Thin block")
+    x, y = surfaces[0].vertices[:, 0], surfaces[0].vertices[:, 1]
+    heights = of_layer(x, y)[triangles].mean(axis=1)
+    near = heights < thickness + 1.3 * edge / 300
+    assert mesh.volumes[thin] > 0.98 * mesh.exact_volumes[thin] - 5_000 * heights[near].sum()
+    assert any("'Thin block' keeps thin ends" in warning.text for warning in mesh.warnings)
+
+
 def test_a_layer_ends_where_its_thickness_does():
     """A wedge from 0 to 6 m: prisms, then pyramids and tetrahedra, on a line of the planar mesh."""
     project = Project(

@@ -10,6 +10,7 @@
 #include "simulation/column_filler.hpp"
 #include "simulation/element_quality.hpp"
 #include "simulation/narrow_strips.hpp"
+#include "simulation/repair_limits.hpp"
 
 namespace realmodel::simulation {
 
@@ -56,18 +57,19 @@ public:
                 has_flat_base_[index(plan_.post_node(p))] = 1;
         }
         refill();
+        limits_.emplace(input_, filling_->columns.mesh.volumes);
         is_narrow_ = narrow_strips(plan_, filling_->columns.fronts);
     }
 
     /// Each step may spoil what later ones repair, but not what earlier ones did: removals come
     /// first, because they make faces steep; then heights move, which changes no block; then both,
-    /// for what checkMesh still fails with all its options; at last what it fails without any, at
-    /// any price.
+    /// for what checkMesh still fails with all its options; at last what it fails without any.
     void run() {
         remove_weak_ends();
         ease_steep_faces(1);
         repair_failing();
         join_skewed();
+        filling_->columns.mesh.kept = limits_->kept_blocks();
     }
 
     /// Faces on steps, and points of those heights that elements have.
@@ -106,11 +108,29 @@ private:
     /// Thin ends of layers, whose elements have inner faces in two directions only or lean, end one
     /// element earlier.
     void remove_weak_ends() {
-        for (int round = 0; round < kWeakRounds; ++round) {
-            auto weak = filling_->quality.weak(is_narrow_);
-            if (levels_.remove(plan_, weak) == 0) return;
-            refill();
-        }
+        const PostLevels start = levels_;
+        do {
+            for (int round = 0; round < kWeakRounds; ++round) {
+                auto weak = filling_->quality.weak(is_narrow_);
+                if (!remove(weak)) break;
+            }
+        } while (takes_back(start));
+    }
+
+    bool remove(ElementQuality::Removals& removals, bool several = false) {
+        limits_->limit(levels_, removals);
+        limits_->note(levels_, removals);
+        if (levels_.remove(plan_, removals, several) == 0) return false;
+        refill();
+        return true;
+    }
+
+    /// Whether a step took too much, so that it begins again where it did.
+    bool takes_back(const PostLevels& start) {
+        if (!limits_->take_back(filling_->columns.mesh.volumes)) return false;
+        levels_ = start;
+        refill();
+        return true;
     }
 
     /// Faces that are steep, so that the centers of neighbors lie far from the direction across
@@ -155,6 +175,7 @@ private:
             if (idle == kIdleMoves) {
                 levels_ = best;
             } else if (!is_first) {
+                limits_->limit(levels_, failing);
                 levels_.remove(plan_, failing);
             }
             if (!is_first) refill();
@@ -173,6 +194,7 @@ private:
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             changed += std::abs(filling_->columns.mesh.volumes[b] - volumes[b]);
             total += volumes[b];
+            if (limits_->changes_much(b, filling_->columns.mesh.volumes)) return true;
         }
         return changed > kMostRepaired * total;
     }
@@ -180,15 +202,16 @@ private:
     /// Elements that are too thin for how steep they are become one with the next in their columns,
     /// until there are none; what no removal repairs is reported.
     void join_skewed() {
-        for (;;) {
-            auto skewed = filling_->quality.skewed(layering_.divided);
-            if (levels_.remove(plan_, skewed.removals, true) == 0) {
+        const PostLevels start = levels_;
+        do {
+            for (;;) {
+                auto skewed = filling_->quality.skewed(layering_.divided);
+                if (remove(skewed.removals, true)) continue;
                 filling_->columns.mesh.skewed = {skewed.faces, skewed.most, skewed.place,
                                                  std::move(skewed.tall)};
-                return;
+                break;
             }
-            refill();
-        }
+        } while (takes_back(start));
     }
 
     const ColumnInput& input_;
@@ -197,6 +220,7 @@ private:
     Progress* progress_;
     PostLevels levels_;
     std::optional<Filling> filling_;
+    std::optional<RepairLimits> limits_;
     std::vector<std::uint8_t> is_narrow_;      ///< of each triangle, before the first repair
     std::vector<std::uint8_t> has_flat_base_;  ///< of each node
 };

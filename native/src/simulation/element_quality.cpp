@@ -391,14 +391,7 @@ bool ElementQuality::is_tall(const Corners& at, std::size_t element) const {
 /// Whether a height is not just one between layers of one block: without it a block would lose
 /// volume.
 bool ElementQuality::divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const {
-    const auto own = levels_.levels(plan_.post(t, corner));
-    const auto blocks = levels_.layer_blocks(plan_.rock(t));
-    std::int32_t below = -1, above = -1;
-    for (std::size_t l = 0; l + 1 < own.size(); ++l) {
-        if (own[l] == own[l + 1]) continue;
-        if (own[l + 1] == height) below = blocks[l];
-        if (own[l] == height) above = blocks[l];
-    }
+    const auto [below, above] = levels_.blocks_at(plan_.post(t, corner), plan_.rock(t), height);
     return below != above;
 }
 

@@ -9,6 +9,19 @@
 
 namespace realmodel::simulation {
 
+std::array<std::int32_t, 2> PostLevels::blocks_at(std::size_t post, std::int32_t rock,
+                                                  std::int32_t height) const {
+    const auto own = levels(post);
+    const auto blocks = layer_blocks(rock);
+    std::int32_t below = -1, above = -1;
+    for (std::size_t l = 0; l + 1 < own.size(); ++l) {
+        if (own[l] == own[l + 1]) continue;
+        if (own[l + 1] == height) below = blocks[l];
+        if (own[l] == height) above = blocks[l];
+    }
+    return {below, above};
+}
+
 std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals,
                                bool several) {
     std::sort(removals.begin(), removals.end());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,6 +35,9 @@ public:
     std::span<const std::int32_t> levels(std::size_t post) const {
         return {&level_[offset_[post]], offset_[post + 1] - offset_[post]};
     }
+    /// The blocks of a post below and above a height of its node; -1: none.
+    std::array<std::int32_t, 2> blocks_at(std::size_t post, std::int32_t rock,
+                                          std::int32_t height) const;
     /// Where these stand among the levels of all posts.
     std::size_t level_offset(std::size_t post) const { return offset_[post]; }
     std::size_t level_count() const { return level_.size(); }

@@ -249,6 +249,7 @@ def _assembled(model: ModelData, made: dict, wanted: str, layers: list[int]) -> 
             *changed_volumes(model, made["volumes"], _CHANGES_LESS),
             *_divided_blocks(model, layers, made["block_layers"]),
             *_skewed_faces(model, *made["skewed"]),
+            *_kept_blocks(model, made["kept"]),
         ],
     )
 
@@ -280,6 +281,19 @@ def _skewed_faces(
     faces = "1 face has" if count == 1 else f"{count} faces have"
     text = f"{faces} a skewness above 4, up to {most:.1f} near {place_text(place)}"
     return [BuildWarning(f"{text}: checkMesh fails them; {advice}", "mesh_skewness")]
+
+
+def _kept_blocks(model: ModelData, kept: list[int]) -> list[BuildWarning]:
+    """A warning for each block that keeps elements of bad shape, as a repair would cost too much of it."""
+    return [
+        BuildWarning(
+            f"block '{block.name}' keeps thin ends with elements that solvers may do badly with, as without "
+            "them it would lose much more; use a shorter edge length, or another minimum thickness",
+            "mesh_thin_ends",
+            model.rock_inputs[block.rock].rock.name,
+        )
+        for block in (model.blocks[number] for number in kept)
+    ]
 
 
 def _of_tetrahedra(model: ModelData, made: dict) -> SimulationMesh:

@@ -81,32 +81,47 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, lis
     line, given = _with_heights(work, fault, tops, extent)
     run, toward = _dip_of(fault, line)
     # where the surface cuts the level `high`: a line along its strike
-    top = (
-        line[:, :2] if fault.dip == VERTICAL else line[:, :2] - (run * (high - line[:, 2]))[:, None] * toward
-    )
-    top, given = _once_each(top, given)
-    top = top[given | _bends(top, given, _STRAIGHT * extent)]
+    top = _at_level(line, high, run, toward)
+    kept, given = _once_each(top, given)
+    line, top = line[kept], top[kept]
+    kept = given | _bends(top, given, _STRAIGHT * extent)
+    line, top = line[kept], top[kept]
     warnings = [] if fault.dip in (None, VERTICAL) else _compare(top, toward, fault.dip)
     down = run * (high - low) * toward
+    ends = None
     if fault.extend > 0:
-        top = _continued(top, fault.extend, fault.extend)
+        ends = _continuation(line, run, toward, [fault.extend, fault.extend])
     elif not fault.dies_out:
         # the rulings at its ends are beside the rock then, whatever the direction
         far = [max(_farthest(plan, end), _farthest(plan, end + down)) + extent for end in top[[0, -1]]]
-        top = _continued(top, *far)
+        ends = _continuation(line, run, toward, far)
+    if ends is not None:
+        line, top = (_continued(row, ends) for row in (line, top))
     _refuse_crossing(top)
-    count = len(top)
-    vertices = np.concatenate(
-        [np.column_stack([top, np.full(count, high)]), np.column_stack([top + down, np.full(count, low)])]
-    )
+    rows = [
+        np.column_stack([top, np.full(len(top), high)]),
+        np.column_stack([top + down, np.full(len(top), low)]),
+    ]
+    if fault.dip != VERTICAL:
+        # the surface holds the points that were given, not points beside them by what rounding moved these:
+        # where the trace ends at a wall of the rock, a sliver would lie between the two
+        rows.insert(1, line)
+    return Sheet(np.concatenate(rows), _strips(len(rows), len(top))), warnings
+
+
+def _at_level(line: np.ndarray, level: float, run: float, toward: np.ndarray) -> np.ndarray:
+    """The points (N, 2) where the rulings through those of a line (N, 3) reach a level."""
+    return line[:, :2] if run == 0.0 else line[:, :2] - (run * (level - line[:, 2]))[:, None] * toward
+
+
+def _strips(rows: int, count: int) -> np.ndarray:
+    """The triangles (T, 3) int32 between rows of so many vertices, the highest row first."""
     first = np.arange(count - 1)
-    triangles = np.concatenate(
-        [
-            np.column_stack([count + first, count + first + 1, first + 1]),
-            np.column_stack([count + first, first + 1, first]),
-        ]
-    )
-    return Sheet(vertices, triangles.astype(np.int32)), warnings
+    strips = []
+    for above in range(0, (rows - 1) * count, count):
+        here, below = above + first, above + count + first
+        strips += [np.column_stack([below, below + 1, here + 1]), np.column_stack([below, here + 1, here])]
+    return np.concatenate(strips).astype(np.int32)
 
 
 def _farthest(plan: np.ndarray, place: np.ndarray) -> float:
@@ -264,7 +279,7 @@ def _divided(line: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _once_each(top: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points without those that are where the one before is."""
+    """(N,) bool: the points that are not where the one before is; and which of them were given."""
     new = begins_run(top)
     top, given = top[new], given[new]
     if (top[0] == top[-1]).all():
@@ -274,7 +289,7 @@ def _once_each(top: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarr
             place=tuple(top[0].tolist()),
         )
     given[[0, -1]] = True
-    return top, given
+    return new, given
 
 
 def _bends(top: np.ndarray, given: np.ndarray, near: float) -> np.ndarray:
@@ -316,14 +331,23 @@ def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
     ]
 
 
-def _continued(top: np.ndarray, before: float, after: float) -> np.ndarray:
-    """A line that goes on straight at both ends, in the mean direction of its last tenth there."""
-    ends = []
-    for line, by in ((top[::-1], before), (top, after)):
-        way = norm(np.diff(line, axis=0))[::-1].cumsum()  # from the end
-        inner = line[-2 - int(np.searchsorted(way, _END * way[-1]))]
-        ends.append(line[-1] + by * (line[-1] - inner) / norm(line[-1] - inner))
-    return np.concatenate([ends[0][None], top, ends[1][None]])
+def _continuation(line: np.ndarray, run: float, toward: np.ndarray, lengths: list[float]) -> np.ndarray:
+    """(2, 2): how far a line, seen along the dip, goes on straight beyond its first and last point, in the
+    mean direction of its last tenth there."""
+    found = []
+    for there, length in zip((line[::-1], line), lengths, strict=True):
+        seen = _at_level(there, float(there[-1, 2]), run, toward)
+        way = norm(np.diff(seen, axis=0))[::-1].cumsum()  # from the end
+        step = seen[-1] - seen[-2 - int(np.searchsorted(way, _END * way[-1]))]
+        found.append(length * step / norm(step))
+    return np.array(found)
+
+
+def _continued(row: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """A row of points (N, 2) or (N, 3) with one more at each end, moved in plan."""
+    ends = row[[0, -1]].copy()
+    ends[:, :2] += by
+    return np.concatenate([ends[:1], row, ends[1:]])
 
 
 def _refuse_crossing(top: np.ndarray) -> None:
