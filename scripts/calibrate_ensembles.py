@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of docs/ensembles.md: how often left-out points of real surfaces lie between percentiles of drawn
-heights, and how often the volume between two random surfaces does.
+"""The tables of docs/ensembles.md: how often left-out points of real surfaces lie between percentiles of
+drawn heights, and how often the volume between two random surfaces does.
 
     PYTHONPATH=addon python scripts/calibrate_ensembles.py             # needs ../shared/data
     PYTHONPATH=addon python scripts/calibrate_ensembles.py TRUTHS      # so many pairs of random surfaces
@@ -69,8 +69,9 @@ def calibrated(points, seed, realizations=REALIZATIONS):
 
 
 def rank_of_a_volume(seed, places, method, realizations=40):
-    """Which share of realizations has less volume between two random surfaces than there is: each a plane and
-    a Gaussian field with a deviation of 15 m, of a range from 200 to 500 m, known at so many places of 1 km2."""
+    """Which share of realizations has less volume between two random surfaces than there is: each a plane
+    and a Gaussian field with a deviation of 15 m and a range of 200 to 500 m, known at so many places of
+    1 km2."""
     chance = np.random.default_rng(seed)
     along = np.linspace(25.0, 975.0, 20)
     nodes = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
