@@ -36,13 +36,14 @@ using AnisotropyTuple = std::tuple<std::array<std::array<double, 3>, 3>, std::ar
 using SlitsTuple =
     std::tuple<std::size_t, std::size_t, Array<double>, Array<double>, Array<double>, Array<double>,
                Array<double>, Array<double>, Array<std::int64_t>, Indices>;
-/// Tolerance and most centers.
-using OptionsTuple = std::tuple<double, int>;
+/// Tolerance, most centers, whether beds keep their thickness.
+using OptionsTuple = std::tuple<double, int, std::optional<bool>>;
 /// Axes and ratios, order, errors of values and of slopes, lift, throws, scale; gaps, centers, left
-/// out.
+/// out; how it rises at places where beds keep their thickness, and the error of this.
 using KindTuple =
     std::tuple<AnisotropyTuple, int, double, double, double, std::vector<std::array<double, 3>>,
-               double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
+               double, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>,
+               std::vector<std::array<double, 3>>, double>;
 /// A kind; numbers of directions, of steps and of errors of dips.
 using DrawTuple = std::tuple<KindTuple, Array<double>, Array<double>, Array<double>>;
 
@@ -56,7 +57,9 @@ KindTuple tuple_of(const fields::FunctionKind& kind) {
             kind.scale,
             kind.gaps,
             kind.centers,
-            kind.left_out};
+            kind.left_out,
+            kind.even,
+            kind.even_error};
 }
 
 /// Of each bound the kind and the row of each datum.
@@ -77,10 +80,10 @@ std::vector<std::vector<std::pair<std::string, std::int64_t>>> listed(
 
 fields::FieldDraw draw_of(const DrawTuple& given, std::size_t slits) {
     const auto& [kind, directions, steps, errors] = given;
-    const auto& [anisotropy, order, value, slope, lift, throws, scale, gaps, centers, left_out] =
-        kind;
+    const auto& [anisotropy, order, value, slope, lift, throws, scale, gaps, centers, left_out,
+                 even, even_error] = kind;
     return {{std::make_from_tuple<fields::AxisRatios>(anisotropy), order, value, slope, lift,
-             throws, scale, gaps, centers, left_out},
+             throws, scale, gaps, centers, left_out, even, even_error},
             {3 + slits, view(directions), view(steps), view(errors)}};
 }
 
@@ -106,10 +109,10 @@ py::dict solve(const LatticeTuple& lattice, const ContactsTuple& contacts,
                       sides,           view(nodes),       view(same),
                       view(of_bound)};
     }
-    const auto& [tolerance, most_centers] = given;
+    const auto& [tolerance, most_centers, is_even] = given;
     std::optional<fields::FieldDraw> draw;
     if (drawn) draw = draw_of(*drawn, data.slits.count);
-    const fields::FieldOptions options{tolerance, most_centers, draw ? &*draw : nullptr};
+    const fields::FieldOptions options{tolerance, most_centers, draw ? &*draw : nullptr, is_even};
     auto made = unlocked(
         [&] { return fields::solve_field(lattice_of(lattice), data, options, run(execution)); });
     py::dict out;
@@ -152,16 +155,19 @@ void bind_fields(py::module_& module) {
 lattice: (origin, spacing, counts). contacts: how many surfaces there are, positions (N, 3), the surface of each (N,),
 0 the oldest, and how far they may be off, as a standard deviation. dips: positions (M, 3) and normals of length 1
 toward younger rock (M, 3). bounds: positions (B, 3), the surface below each and above it (B,), -1: none. options: the
-distance by which surfaces may miss contacts; at most how many contacts carry the field. slits: of faults that part
+distance by which surfaces may miss contacts; at most how many contacts carry the field; whether beds keep their
+thickness, None: if this predicts data better that are left out. slits: of faults that part
 the field how many, and the combinations of their sides; the further coordinates that these give contacts (N, F),
 dips (M, F), bounds (B, F), how they rise at dips (M, F, 3); normals of the faults (F, 3), of length 1; those of nodes
 (S, nodes, F) on each combination, the first of these S * nodes that each is the same as (S * nodes,), and the
 combination of each bound (B,). draw: None, or of a field that is drawn at random its kind, as it is returned of the
-same data, and normal numbers: (lines, 3 + F), (lines, steps) and (M, 2).
+same data, and normal numbers: (lines, 3 + F), (lines, steps), and 2 M for dips with one for each row of the kind's
+directions.
 Returns a dict: values (S * nodes,), levels (surfaces,), centers, misfit, dips_missed, bounds_missed; contradicted, of
 each of these bounds the data that it contradicts, as ("contact", "dip" or "bound", row); kind, of the random function:
 (axes, ratios), order, errors of values and of slopes, scale of further coordinates, throws of the faults, in units of
-half of the lattice's diagonal, variance, gaps, centers, inequalities that are left out; plain_shares, of the lattice for
+half of the lattice's diagonal, variance, gaps, centers, inequalities that are left out, directions at places where beds keep their thickness (none:
+they do not) and the error of these; plain_shares, of the lattice for
 each block with the best field that has no ranges and no anisotropy, none if it is this or predicts data clearly worse.
 Raises InputError.)");
     module.def(

@@ -145,6 +145,7 @@ base_elevation = -50
 name = "folded"
 dips = "in_space.csv"
 resolution = 7.5
+thickness = "parallel"
 
 [[rock.surface]]
 name = "bed"

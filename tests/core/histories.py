@@ -26,8 +26,7 @@ class History:
 
     def share_right(self, nodes):
         """Of places, with a field on a lattice of about so many nodes. Raises InputRefused."""
-        steps = np.ceil(self.size / np.cbrt(self.size.prod() / nodes)).astype(int)
-        lattice = Lattice((0.0, 0.0, 0.0), tuple(self.size / steps), tuple((steps + 1).tolist()))
+        lattice = lattice_of(self, nodes)
         field = run(lambda work: solve_field(lattice, self.data, work))
         return self._share(self.blocks(field.at, field.levels))
 
@@ -45,6 +44,12 @@ class History:
 
     def _places(self):
         return np.random.default_rng(7).uniform(0, self.size, (PLACES, 3))
+
+
+def lattice_of(history, nodes):
+    """Of its box, with about so many nodes."""
+    steps = np.ceil(history.size / np.cbrt(history.size.prod() / nodes)).astype(int)
+    return Lattice((0.0, 0.0, 0.0), tuple(history.size / steps), tuple((steps + 1).tolist()))
 
 
 def _terms(points):
@@ -127,3 +132,152 @@ def _history(contacts, surfaces, dips, normals, truth, levels, size):
     normals = normals / np.linalg.norm(normals, axis=1)[:, None]
     names = "ABCD"[: len(levels)]
     return History(LevelSetData(names, contacts, surfaces, dips, normals), truth, levels, size)
+
+
+@dataclass
+class Nappe:
+    """A recumbent fold whose beds keep their thickness: f is the distance from its axial surface, which ends
+    at the hinge. Its history, and lines across the limb without data from the one surface that is seen there:
+    where they begin, their direction, the thickness to each of the other surfaces, and their numbers."""
+
+    history: History
+    starts: np.ndarray
+    across: np.ndarray
+    seen: int
+
+    def thickness_errors(self, field):
+        """(L, surfaces - 1) by how much the others are too far from the one that is seen on the limb."""
+        levels = self.history.levels
+        steps = np.linspace(levels[0] - levels[self.seen] - 1.5, levels[-1] - levels[self.seen] + 1.5, 601)
+        along = self.starts[:, None] + steps[None, :, None] * self.across[:, None]
+        f = field.at(along.reshape(-1, 3)).reshape(along.shape[:2])
+        inside = np.all((along > 0) & (along < self.history.size), axis=2)
+        errors = []
+        for number, level in enumerate(levels):
+            crossed = [
+                _crossing(row, steps, own, field.levels[number], level - levels[self.seen])
+                for row, own in zip(f, inside, strict=True)
+            ]
+            errors.append(np.array(crossed) - (level - levels[self.seen]))
+        errors = np.array(errors).T
+        others = np.arange(len(levels)) != self.seen
+        return (errors - errors[:, [self.seen]])[:, others]
+
+
+def _crossing(values, steps, is_inside, level, near):
+    """Where a function along a line has a level, next to a place; the end of the line where it has not."""
+    values, steps = values[is_inside], steps[is_inside]
+    at = np.flatnonzero((values[:-1] < level) & (values[1:] >= level))
+    if not len(at):
+        return steps[-1] if values[-1] < level else steps[0]
+    share = (level - values[at]) / (values[at + 1] - values[at])
+    crossings = steps[at] + share * (steps[at + 1] - steps[at])
+    return crossings[np.abs(crossings - near).argmin()]
+
+
+def nappe(seed):
+    """10 by 10 by 8 km, two to four surfaces, seen at the hinge and on the upper limb, and one of them on the
+    lower limb, too."""
+    random = np.random.default_rng([62, seed])
+    size = np.array([10.0, 10.0, 8.0])
+    azimuth, tilt, plunge = (
+        random.uniform(0, 2 * np.pi),
+        random.uniform(-0.25, 0.25),
+        random.uniform(-0.2, 0.2),
+    )
+    axis = np.array([np.cos(azimuth) * np.cos(plunge), np.sin(azimuth) * np.cos(plunge), np.sin(plunge)])
+    forward = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])  # to where the hinge points
+    up = np.cross(axis, forward)
+    forward, up = np.cos(tilt) * forward + np.sin(tilt) * up, np.cos(tilt) * up - np.sin(tilt) * forward
+    hinge = size / 2 + random.uniform(0.0, 1.0) * forward + random.uniform(-0.3, 0.3, 3)
+    count = int(random.integers(2, 5))
+    levels = 0.8 + np.cumsum([0, *random.uniform(0.5, 2.2 / count + 0.2, count - 1)])
+
+    def truth(points):
+        away = np.asarray(points, float) - hinge
+        return np.hypot(np.maximum(away @ forward, 0), away @ up)
+
+    def at(along, turned, behind, far):
+        """Places at some distances from the axial surface."""
+        out = np.cos(turned)[:, None] * forward + np.sin(turned)[:, None] * up
+        return hinge + along[:, None] * axis - behind[:, None] * forward + far[:, None] * out, out
+
+    def seen(number, far, on_hinge, sign):
+        turned = np.where(on_hinge, random.uniform(-np.pi / 2, np.pi / 2, number), sign * np.pi / 2)
+        behind = np.where(on_hinge, 0.0, random.uniform(0, 5, number))
+        return at(random.uniform(-4, 4, number), turned, behind, far)
+
+    contacts, surfaces = [], []
+    for surface, level in enumerate(levels):
+        places = seen(24, np.full(24, level), random.random(24) < 0.5, 1)[0]
+        places = places[np.all((places > 0.05) & (places < size - 0.05), axis=1)][
+            : int(random.integers(4, 10))
+        ]
+        contacts.append(places)
+        surfaces.append(np.full(len(places), surface))
+    known = int(random.integers(count))
+    places = seen(24, np.full(24, levels[known]), np.zeros(24, bool), -1)[0]
+    places = places[np.all((places > 0.05) & (places < size - 0.05), axis=1)][:4]
+    contacts, surfaces = (
+        np.concatenate([*contacts, places]),
+        np.concatenate([*surfaces, np.full(len(places), known)]),
+    )
+    places, normals = seen(60, random.uniform(levels[0], levels[-1], 60), random.random(60) < 0.5, 1)
+    inside = np.flatnonzero(np.all((places > 0.05) & (places < size - 0.05), axis=1))[
+        : int(random.integers(8, 21))
+    ]
+    lines = 40
+    starts, across = at(
+        random.uniform(-4, 4, lines),
+        np.full(lines, -np.pi / 2),
+        random.uniform(1, 4, lines),
+        np.full(lines, levels[known]),
+    )
+    fits = np.ones(lines, bool)
+    for level in levels:
+        ends = starts + (level - levels[known]) * across
+        fits &= np.all((ends > 0.3) & (ends < size - 0.3), axis=1)
+    history = _history(
+        contacts, surfaces.astype(np.int32), places[inside], normals[inside], truth, levels, size
+    )
+    return Nappe(history, starts[fits], across[fits], known)
+
+
+def slab(seed):
+    """Beds 200 m thick, tilted or gently folded, seen in the middle of 4 by 4 km only."""
+    random = np.random.default_rng([63, seed])
+    size = np.array([4000.0, 4000.0, 2000.0])
+    dip, azimuth = np.radians(random.uniform(0, 12)), random.uniform(0, 2 * np.pi)
+    slope = np.tan(dip) * np.array([np.sin(azimuth), np.cos(azimuth)])
+    wave = random.choice([0.0, 60.0])
+    direction, phase = random.uniform(0, 2 * np.pi), random.uniform(0, 2 * np.pi)
+    waves = 2 * np.pi / 4000 * np.array([np.sin(direction), np.cos(direction)])
+
+    def height(points):
+        plan = points[:, :2]
+        return 1000 + (plan - 2000) @ slope + wave * np.sin(plan @ waves + phase)
+
+    levels = np.array([-200.0, 0.0, 200.0])
+    count, dips = int(random.integers(4, 12)), int(random.integers(4, 12))
+    noise, tilt = random.choice([0.0, 5.0, 10.0]), np.tan(np.radians(random.choice([0.0, 2.0, 4.0])))
+    contacts = random.uniform(1400, 2600, (3 * count, 3))
+    surfaces = np.repeat(np.arange(3, dtype=np.int32), count)
+    contacts[:, 2] = height(contacts) + levels[surfaces] + random.normal(0, noise, 3 * count)
+    at = random.uniform(1400, 2600, (dips, 3))
+    at[:, 2] = height(at) + random.uniform(-200, 200, dips)
+    rise = slope + (wave * np.cos(at[:, :2] @ waves + phase))[:, None] * waves
+    rise = rise + tilt * random.normal(size=(dips, 2))
+    normals = np.column_stack([-rise, np.ones(dips)])
+    return _history(contacts, surfaces, at, normals, lambda p: p[:, 2] - height(p), levels, size)
+
+
+def border_thickness(history, field):
+    """Of both beds of a slab, upward, in columns around its box."""
+    z = np.linspace(0, history.size[2], 801)
+    side = np.linspace(50, 3950, 9)
+    columns = [(x, y) for x in side for y in side if not (400 < x < 3600 and 400 < y < 3600)]
+    thickness = []
+    for x, y in columns:
+        f = field.at(np.column_stack([np.full(801, x), np.full(801, y), z]))
+        thickness.append(np.diff(np.interp(field.levels, f, z)))
+    return np.array(thickness)

@@ -292,3 +292,23 @@ def test_points_elsewhere_are_a_warning():
     (warning,) = interpolate(WAVY, NODES * 3.28, "tin").warnings
     assert warning.startswith("no point lies in the area of the mesh: x of the points is 431250.")
     assert interpolate(WAVY, NODES + 900, "tin").warnings == ()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_kriged_thickness_goes_to_its_mean_where_another_surface_is_the_trend(seed):
+    """Two planes of their own, of noisy points in the middle, part toward the border."""
+    random = np.random.default_rng(seed)
+    below, above = random.uniform(1600, 2400, (2, 8, 3))
+    below[:, 2] = 0.1 * below[:, 0] + random.normal(0, 10, 8)
+    above[:, 2] = 0.1 * above[:, 0] + random.normal(200, 10, 8)
+    axis = np.linspace(0, 4000, 9)
+    nodes = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    low = interpolate(below, nodes, method="plane").z
+    corners = np.array([[0.0, 0, 0], [4000, 0, 0], [4000, 4000, 0], [0, 4000, 0]])
+    corners[:, 2] = interpolate(below, corners[:, :2], method="plane").z
+    trend = corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    by_trend = interpolate(above, nodes, method="parallel", to=trend, thickness_method="kriging").z - low
+    alone = interpolate(above, nodes, method="universal_kriging").z - low
+    known = above[:, 2] - interpolate(below, above[:, :2], method="plane").z
+    assert known.min() - 1e-6 < by_trend.min() and by_trend.max() < known.max() + 1e-6
+    assert np.ptp(by_trend) < np.ptp(alone)

@@ -76,6 +76,7 @@ def test_a_series_is_read_with_its_surfaces(tmp_path):
         ({"between": 'series = "B"\npoints = "a1.csv"'}, 25, "has no series 'B'"),
         ({"series": 'kind = "sheet"'}, 15, "kind"),
         ({"series": 'kind = "sheets"'}, 14, "'resolution' has no effect"),
+        ({"series": 'thickness = "even"'}, 15, "thickness"),
         ({"series": "bedding = 3"}, 15, "unknown key 'bedding'"),
         ({"rock": "[[rock.series]]\nname = 'B'"}, 10, "no surface belongs to it"),
     ],
@@ -108,11 +109,17 @@ def test_a_written_series_is_the_same_when_it_is_read(tmp_path, used):
     generator = np.random.default_rng(7)
     dips = SpaceDips(generator.normal(size=(4, 3)), generator.normal(size=(4, 3)), used)
     surfaces = [Surface(name, points=generator.normal(size=(3, 3)), series="A") for name in ("a", "b")]
-    rock = Rock("r", surfaces, SQUARE, base_elevation=0.0, series=[Series("A", dips=dips, resolution=0.3)])
+    rock = Rock(
+        "r",
+        surfaces,
+        SQUARE,
+        base_elevation=0.0,
+        series=[Series("A", dips=dips, resolution=0.3, thickness="parallel")],
+    )
     save_project(Project("p", [rock]), tmp_path / "p.toml")
     (series,) = load_project(tmp_path / "p.toml").rocks[0].series
     read = read_space_dips(series.dip_file)
-    assert (series.name, series.resolution) == ("A", 0.3)
+    assert (series.name, series.resolution, series.thickness) == ("A", 0.3, "parallel")
     np.testing.assert_array_equal(read.positions, dips.positions)
     np.testing.assert_array_equal(read.normals, dips.normals)
     assert (read.used is None) == (used is None)

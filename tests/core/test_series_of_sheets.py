@@ -473,6 +473,7 @@ def test_a_project_file_with_sheets(tmp_path):
     for more, first, said in (
         ('dips = "none.csv"', "", "file not found"),
         ("resolution = 5.0", "", "'resolution' has no effect"),
+        ('thickness = "parallel"', "", "'thickness' has no effect"),
         ("", 'method = "spline"', "'S0' has method 'spline'"),
         ("", f"[[rock.surface]]\n{SECOND}", "'S' has a correlation"),
     ):

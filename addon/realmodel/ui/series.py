@@ -62,6 +62,7 @@ def _draw_series(layout, rock, row):
         setting_rows.draw(layout, row, "resolution", SERIES)
         if not row.resolution:
             hint(layout, "0: by the size of the rock mass")
+        setting_rows.draw(layout, row, "thickness", SERIES)
     _draw_dips(layout, row)
     if not (row.kind == FIELD and _draw_needs(layout, rock)):
         _draw_refusal(layout, rock, row)

@@ -23,6 +23,7 @@ struct Likely {
     int order = 3;               ///< of the derivatives that are least: see Kernel
     double lift = 1;             ///< of further coordinates
     std::vector<Vec3> throws{};  ///< by how much places move for each unit of each of these
+    bool is_even = false;        ///< beds keep their thickness: see EvenSteepness
 
     Smoothness smoothness() const { return {map_of(anisotropy), errors, order, lift, throws}; }
 };

@@ -55,7 +55,7 @@ double log_of_mean(double squares, std::size_t count, double least) {
 }  // namespace
 
 CrossValidation::CrossValidation(const KnownData& known, std::span<const double> gaps)
-    : known_(known), gaps_(gaps.begin(), gaps.end()) {
+    : known_(known), gaps_(gaps.begin(), gaps.end()), even_(known) {
     std::vector<Vec3> at;
     for (const std::size_t n : thinned(known, kMostContacts)) {
         if (n == known.reference(known.surface_of(n))) continue;
@@ -131,16 +131,30 @@ std::vector<Inequality> CrossValidation::inequalities_without(int part, int orde
     return out;
 }
 
-CrossValidation::Missed CrossValidation::missed(const Likely& kind, int part) const {
+Spline CrossValidation::solved(const Likely& kind, std::vector<Functional> rows,
+                               ActiveInequalities& active) const {
     const Execution alone{1, nullptr};
-    std::vector<Functional> rows = rows_without(part, kind.order);
     const std::size_t known = rows.size();
+    active.append_to(rows);
     Spline spline(rows, kind.smoothness(), alone);
-    ActiveInequalities active(inequalities_without(part, kind.order));
     for (int round = 0; round < kRounds && active.activate(spline, kHeld); ++round) {
         rows.resize(known);
         active.append_to(rows);
         spline = Spline(rows, kind.smoothness(), alone);
+    }
+    return spline;
+}
+
+CrossValidation::Missed CrossValidation::missed(const Likely& kind, int part) const {
+    const std::vector<Functional> rows = rows_without(part, kind.order);
+    ActiveInequalities active(inequalities_without(part, kind.order));
+    Spline spline = solved(kind, rows, active);
+    const double variance = EvenSteepness::variance(spline);
+    for (int round = 0; kind.is_even && round < EvenSteepness::kRounds; ++round) {
+        std::vector<Functional> all = rows;
+        for (Functional& row : even_.rows(even_.directions(spline), kind.order, variance))
+            all.push_back(std::move(row));
+        spline = solved(kind, std::move(all), active);
     }
     const std::vector<double> levels = FrameFunction(known_, spline).levels();
     Missed out;

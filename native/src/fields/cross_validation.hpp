@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "fields/active_inequalities.hpp"
 #include "fields/anisotropy.hpp"
+#include "fields/even_steepness.hpp"
 #include "fields/known_data.hpp"
 #include "realmodel/base/execution.hpp"
 
@@ -32,6 +34,9 @@ private:
     };
 
     Missed missed(const Likely& kind, int part) const;
+    /// A function of a kind through rows, and the inequalities that it has to meet.
+    Spline solved(const Likely& kind, std::vector<Functional> rows,
+                  ActiveInequalities& active) const;
     std::vector<Functional> rows_without(int part, int order) const;
     std::vector<Inequality> inequalities_without(int part, int order) const;
 
@@ -39,6 +44,7 @@ private:
     std::vector<double> gaps_;
     std::vector<std::size_t> contacts_, dips_;
     std::vector<int> contact_parts_, dip_parts_;
+    EvenSteepness even_;
     double steepness_ = 1;  // in the mean, from surface to surface
 };
 

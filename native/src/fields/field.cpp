@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "fields/active_inequalities.hpp"
 #include "fields/anisotropy.hpp"
+#include "fields/even_steepness.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/known_data.hpp"
 #include "fields/lattice_bounds.hpp"
@@ -49,7 +50,8 @@ public:
         : known_(known),
           options_(options),
           execution_(execution),
-          is_center_(known.contacts().size(), 0) {
+          is_center_(known.contacts().size(), 0),
+          beds_(known) {
         if (options.draw != nullptr) {
             draw(*options.draw);
             return;
@@ -63,7 +65,7 @@ public:
                 is_center_[n] = 1;
         }
         begin_phase(execution_.progress, 0.0, 0.3, "anisotropy of the field");
-        LikelyField found = likely_field(known, execution);
+        LikelyField found = likely_field(known, options.is_even, execution);
         likely_ = found.likely;
         gaps_ = std::move(found.gaps);
         plain_shares_ = std::move(found.plain_shares);
@@ -89,6 +91,7 @@ public:
         meet();
         for (int round = 0; round < kMostRounds && leave_out(); ++round) {
         }
+        if (likely_.is_even) make_even();
     }
 
     Field field() {
@@ -122,6 +125,8 @@ private:
     /// A function of the kind that was found, which the data condition.
     void draw(const FieldDraw& given) {
         const FunctionKind& kind = given.kind;
+        even_ = kind.even;
+        even_error_ = kind.even_error;
         likely_ = {kind.anisotropy,
                    {kind.value_error, kind.slope_error},
                    kind.order,
@@ -136,8 +141,8 @@ private:
         if (numbers.dimensions != 3 + slits || numbers.directions.empty() ||
             numbers.directions.size() % numbers.dimensions != 0 || numbers.steps.empty() ||
             numbers.steps.size() * numbers.dimensions % numbers.directions.size() != 0 ||
-            numbers.dip_errors.size() != 2 * known_.data().dips.size())
-            throw InputError("option", "a function is drawn of numbers for each line and dip");
+            numbers.slope_errors.size() != 2 * known_.data().dips.size() + even_.size())
+            throw InputError("option", "a function is drawn of numbers for each line and slope");
         const double rough = kRough * 2 * known_.half_spacing();
         const double most = *std::ranges::max_element(kind.anisotropy.ratios);
         const double reach = std::max(most, 1.0) + 2 * rough + farthest_lift();
@@ -179,10 +184,12 @@ private:
                          likely_.errors.slope,
                          likely_.lift,
                          {likely_.throws.begin(), likely_.throws.end()},
-                         spline_->scale(),
+                         even_.empty() ? spline_->scale() : scale_,
                          gaps_,
                          {is_center_.begin(), is_center_.end()},
-                         {}};
+                         {},
+                         even_,
+                         even_error_};
         for (const auto& state : active_.states())
             out.left_out.push_back(state.left_out ? 1 : 0);
         return out;
@@ -200,6 +207,17 @@ private:
         }
     }
 
+    /// Solves it anew until it rises as steeply along beds, nearly.
+    void make_even() {
+        scale_ = spline_->scale();  // what is asked for here says nothing of it
+        even_error_ = EvenSteepness::variance(*spline_);
+        for (int round = 0; round < EvenSteepness::kRounds; ++round) {
+            even_ = beds_.directions(*spline_);
+            fit();
+            meet();
+        }
+    }
+
     FrameFunction function() const { return {known_, *spline_, drawn_ ? &*drawn_ : nullptr}; }
 
     /// Nodes that are one place beyond tips get the value of the first of them.
@@ -211,13 +229,6 @@ private:
 
     void fit() {
         std::vector<Functional> all;
-        std::span<const double> dip_errors;
-        double error = 0;
-        if (drawn_) {
-            const FieldDraw& draw = *options_.draw;
-            dip_errors = draw.numbers.dip_errors;
-            error = std::sqrt(draw.kind.slope_error * draw.kind.scale);
-        }
         for (const Functional& functional : known_.fixed(gaps_))
             all.push_back(known_.for_order(likely_.order, functional));
         first_contact_ = all.size();
@@ -225,13 +236,31 @@ private:
             if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
                 all.push_back(known_.on_surface(n));
         }
+        const std::size_t first_even = all.size();
+        if (!even_.empty()) {
+            for (Functional& row : beds_.rows(even_, likely_.order, even_error_))
+                all.push_back(std::move(row));
+        }
         first_active_ = all.size();
         active_.append_to(all);
-        for (std::size_t row = 0; drawn_ && row < first_active_; ++row) {
-            all[row].right -= drawn_->of(all[row]);
-            if (row < dip_errors.size()) all[row].right -= error * dip_errors[row];
-        }
+        if (drawn_) subtract_drawn(all, first_even);
         spline_.emplace(all, likely_.smoothness(), execution_);
+    }
+
+    /// Leaves to the spline what the drawn function and the errors that are drawn do not have.
+    void subtract_drawn(std::vector<Functional>& rows, std::size_t first_even) const {
+        const FieldDraw& draw = *options_.draw;
+        const std::span<const double> errors = draw.numbers.slope_errors;
+        const std::size_t of_dips = 2 * known_.data().dips.size();
+        for (std::size_t row = 0; row < first_active_; ++row) {
+            rows[row].right -= drawn_->of(rows[row]);
+            const double scale = draw.kind.scale;
+            if (row < of_dips)
+                rows[row].right -= std::sqrt(draw.kind.slope_error * scale) * errors[row];
+            else if (row >= first_even)
+                rows[row].right -=
+                    std::sqrt(even_error_ * scale) * errors[of_dips + row - first_even];
+        }
     }
 
     /// How far contacts are from their surfaces, nearly.
@@ -383,6 +412,7 @@ private:
                 counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
                     std::abs(weights[row++]);
         }
+        row = first_active_;  // after those of beds
         const auto is_bound = [](const Inequality& each) { return each.kind == Kind::kBound; };
         for (std::size_t n = 0; n < active_.all().size(); ++n) {
             if (!active_.states()[n].active) continue;
@@ -413,6 +443,9 @@ private:
     std::vector<double> gaps_, plain_shares_;
     Likely likely_;
     ActiveInequalities active_;
+    EvenSteepness beds_;
+    std::vector<Vec3> even_;  // of its places
+    double even_error_ = 0, scale_ = 0;
     std::size_t first_contact_ = 0, first_active_ = 0;
     double misfit_ = 0;
     std::optional<Spline> spline_;

@@ -37,20 +37,19 @@ std::vector<double> FrameFunction::at_nodes(const Lattice& lattice, std::size_t 
             std::vector<Vec3> places(positions.size());
             std::transform(positions.begin(), positions.end(), places.begin(),
                            [&](const Vec3& at) { return known_.frame().to_local(at); });
-            values_at(places, lifts_at(positions, side), values);
+            values_at(places, lifts_at(known_, positions, side), values);
         },
         execution, known_.data().slits.count == 0 && drawn_ == nullptr);
 }
 
-/// The further coordinates of positions in the lattice, linear between its nodes.
-std::vector<double> FrameFunction::lifts_at(std::span<const Vec3> positions,
-                                            std::size_t side) const {
-    const Slits& slits = known_.data().slits;
+std::vector<double> lifts_at(const KnownData& known, std::span<const Vec3> positions,
+                             std::size_t side) {
+    const Slits& slits = known.data().slits;
     std::vector<double> out;
     if (slits.count == 0) return out;
-    const std::size_t first = side * known_.lattice().nodes();
+    const std::size_t first = side * known.lattice().nodes();
     for (const Vec3& at : positions) {
-        const auto corners = corners_at(known_.lattice(), at);
+        const auto corners = corners_at(known.lattice(), at);
         for (std::size_t k = 0; k < slits.count; ++k) {
             double sum = 0;
             for (const auto& [node, weight] : corners)

@@ -12,6 +12,12 @@
 
 namespace realmodel::fields {
 
+/// The further coordinates of positions in the lattice, linear between its nodes, those of one
+/// position together.
+/// @param side  combination of sides of slits
+std::vector<double> lifts_at(const KnownData& known, std::span<const Vec3> positions,
+                             std::size_t side);
+
 /// f as the solution has it, in its frame: a spline, and what is drawn beside it.
 class FrameFunction {
 public:
@@ -33,8 +39,6 @@ public:
                                  const Execution& execution) const;
 
 private:
-    std::vector<double> lifts_at(std::span<const Vec3> positions, std::size_t side) const;
-
     const KnownData& known_;
     const Spline& spline_;
     const RandomFunction* drawn_;

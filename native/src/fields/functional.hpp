@@ -107,7 +107,8 @@ struct Functional {
     std::vector<ValueAtom> values;
     std::vector<SlopeAtom> slopes;
     double right = 0;
-    bool measured_slope = false;  ///< it has an error of its own
+    bool measured_slope = false;  ///< it has the error of slopes
+    double error = 0;             ///< else the variance of an error, in units of the kernel
 
     /// f(at) - f(from), both measured
     static Functional difference(const Vec3& at, const Vec3& from, const Lift& lift = {},

@@ -64,23 +64,33 @@ Lattice coarsened(const Lattice& lattice, std::size_t most) {
     return out;
 }
 
-/// How many connected parts critical points are.
-std::size_t connected_parts(const std::vector<CriticalPoint>& points, const Lattice& lattice) {
-    const std::int64_t row = lattice.counts[0], layer = row * lattice.counts[1];
+/// How many connected parts critical points are. Where the field hardly changes along an axis they
+/// come in lines, of which a lattice shows a few: so they are next to each other whose distance in
+/// the space that the field is the same in all directions of is no more than a cell's diagonal.
+std::size_t connected_parts(const std::vector<CriticalPoint>& points, const Lattice& lattice,
+                            const AxisRatios& anisotropy) {
+    Map3 map = map_of(anisotropy);
+    const double most = std::ranges::max(anisotropy.ratios);
+    for (Vec3& row : map)
+        row = times(1 / most, row);
+    std::vector<Vec3> at;
+    const auto nx = lattice.counts[0], ny = lattice.counts[1];
+    for (const CriticalPoint& point : points) {
+        const auto node = static_cast<int>(point.node);
+        at.push_back(mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny)));
+    }
+    const double next = (1 + 1e-9) * length(lattice.spacing);
     DisjointSets sets(points.size());
     const auto count = static_cast<std::int32_t>(points.size());
+    std::size_t parts = points.size();
     for (std::int32_t n = 0; n < count; ++n) {
-        for (int step = 14; step < 27; ++step) {
-            const std::int64_t neighbor =
-                points[n].node + step % 3 - 1 + row * (step / 3 % 3 - 1) + layer * (step / 9 - 1);
-            const auto found = std::ranges::lower_bound(points, neighbor, {}, &CriticalPoint::node);
-            if (found != points.end() && found->node == neighbor)
-                sets.join(n, static_cast<std::int32_t>(found - points.begin()));
+        for (std::int32_t other = 0; other < n; ++other) {
+            if (sets.find(n) == sets.find(other) || length(minus(at[n], at[other])) > next)
+                continue;
+            sets.join(n, other);
+            --parts;
         }
     }
-    std::size_t parts = 0;
-    for (std::int32_t n = 0; n < count; ++n)
-        parts += sets.find(n) == n ? 1 : 0;
     return parts;
 }
 
@@ -106,6 +116,15 @@ public:
         find_gaps(apart, likely_);
         look();
         return free.cost_ <= cost_ ? free.result() : result();
+    }
+
+    /// Whether the field predicts data better if beds keep their thickness.
+    bool is_better_even(const LikelyField& found) const {
+        if (!is_told_by_dips()) return false;
+        std::vector<Likely> kinds{found.likely, found.likely};
+        kinds[1].is_even = true;
+        const auto costs = CrossValidation(known_, found.gaps).costs(kinds, execution_);
+        return costs[1] + kBetter < costs[0];
     }
 
 private:
@@ -274,8 +293,9 @@ private:
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
-        // where the field hardly changes along an axis they come in lines
-        return is_told_by_dips() ? connected_parts(points, coarse) : points.size();
+        const bool has_axes = likely.anisotropy.ratios != kIsotropic.ratios;
+        return has_axes || is_told_by_dips() ? connected_parts(points, coarse, likely.anisotropy)
+                                             : points.size();
     }
 
     /// How much of the lattice each block is.
@@ -333,8 +353,12 @@ private:
 
 }  // namespace
 
-LikelyField likely_field(const KnownData& known, const Execution& execution) {
-    return LikelySearch(known, execution).found();
+LikelyField likely_field(const KnownData& known, std::optional<bool> is_even,
+                         const Execution& execution) {
+    LikelySearch search(known, execution);
+    LikelyField out = search.found();
+    out.likely.is_even = is_even ? *is_even : search.is_better_even(out);
+    return out;
 }
 
 }  // namespace realmodel::fields

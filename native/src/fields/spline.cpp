@@ -61,7 +61,8 @@ void Spline::factor(const Execution& execution) {
     }
     const Kernel kernel = smoothness_.kernel();
     const auto entry = [&](Eigen::Index i, Eigen::Index j) {
-        const double error = i == j && known_[i].measured_slope ? smoothness_.errors.slope : 0;
+        double error = 0;
+        if (i == j) error = known_[i].measured_slope ? smoothness_.errors.slope : known_[i].error;
         return known_[i].with(known_[j], kernel) + error +
                kProducts * (terms(i, 0) * terms(j, 0) + terms(i, 1) * terms(j, 1) +
                             terms(i, 2) * terms(j, 2) +

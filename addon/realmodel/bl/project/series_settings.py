@@ -21,8 +21,9 @@ def fill(rock, series):
     for each in series:
         row = rock.series.add()
         resolution = None if each.resolution == AUTO else each.resolution
-        for key, value in (("name", each.name), ("kind", each.kind), ("resolution", resolution)):
-            method_settings.set_value(row, key, SERIES, value)
+        method_settings.set_value(row, "resolution", SERIES, resolution)
+        for key in ("name", "kind", "thickness"):
+            method_settings.set_value(row, key, SERIES, getattr(each, key))
         keep_dips(row, each.dips)
 
 
@@ -32,9 +33,12 @@ def of_rock(rock):
 
 
 def _series(row):
-    resolution = method_settings.value(row, "resolution", SERIES) if row.kind == FIELD else None
+    given = {}  # what sheets do not have is kept, but has no effect
+    if row.kind == FIELD:
+        values = {key: method_settings.value(row, key, SERIES) for key in ("resolution", "thickness")}
+        given = {key: value for key, value in values.items() if value is not None}
     with naming(f"series '{row.name}'"):
-        return Series(row.name, row.kind, dips_of(row), AUTO if resolution is None else resolution)
+        return Series(row.name, row.kind, dips_of(row), **given)
 
 
 def keep_dips(row, dips):

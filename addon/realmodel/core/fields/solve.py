@@ -70,7 +70,9 @@ class LevelSetData:
     points; normals: (M, 3) of length 1, the direction there in which rock gets younger. bounds: (B, 3)
     points between surfaces: above surface bound_below (B,) and below surface bound_above (B,), -1: none.
     slits: faults that die out. error: how far contacts may be off, as a standard deviation. item: names a
-    datum in errors, from "contact", "dip" or "bound" and its row.
+    datum in errors, from "contact", "dip" or "bound" and its row. keeps_thickness: whether beds keep their
+    thickness around bends and beyond the data, as in parallel folds; None: if this predicts data better that
+    are left out.
     """
 
     names: Sequence[str]
@@ -84,6 +86,7 @@ class LevelSetData:
     slits: SlitData | None = None
     item: Callable[[str, int], str] = _item
     error: float = 0.0
+    keeps_thickness: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,8 @@ class FieldDraw:
     def native(self, data: LevelSetData) -> tuple:
         """The argument of the native module."""
         slits = 0 if data.slits is None else data.slits.nodes.shape[2]
-        counts = _LINES * (3 + slits), _LINES * _STEPS, 2 * len(data.dips)
+        directions = self.kind[-2]  # of places where beds keep their thickness
+        counts = _LINES * (3 + slits), _LINES * _STEPS, 2 * len(data.dips) + len(directions)
         return (self.kind, *map(self.normal, counts))
 
 
@@ -158,7 +162,7 @@ def solve_field(
                 (len(data.names), data.contacts, data.contact_surfaces, data.error),
                 (data.dips, data.normals),
                 (data.bounds, data.bound_below, data.bound_above),
-                (tolerance, MOST_CENTERS),
+                (tolerance, MOST_CENTERS, data.keeps_thickness),
                 None if data.slits is None else data.slits.native(),
                 None if draw is None else draw.native(data),
             )

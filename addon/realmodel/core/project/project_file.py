@@ -23,7 +23,17 @@ from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
 from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
-from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SERIES, SURFACE
+from ..settings.schema import (
+    BODY,
+    FAULT,
+    MESH_READING,
+    PROJECT,
+    READING,
+    ROCK,
+    SERIES,
+    SERIES_VALUES,
+    SURFACE,
+)
 from ..settings.setting import Settings
 from .entry import check_file, is_file, refused_by
 from .library import load_library
@@ -283,7 +293,7 @@ def _read_series(table: Table, folder: Path) -> Series:
         name,
         dips=_read_field_table(table, "dips", folder, DipFile, "dips.csv"),
         source=Source(table.document, table.path),
-        **_values(table, SERIES, ("kind", "resolution")),
+        **_values(table, SERIES, SERIES_VALUES),
     )
 
 

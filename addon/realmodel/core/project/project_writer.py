@@ -180,6 +180,7 @@ def _series_lines(rock: Rock, series: Series, beside: Callable, write: Callable)
         "kind": series.kind if series.kind != FIELD else None,
         "dips": file,
         "resolution": series.resolution if series.resolution != AUTO else None,
+        "thickness": series.thickness if series.thickness != AUTO else None,
     }
     return _lines(values)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.dips import DipFile, Dips, SpaceDips, dip_file_of
-from ..settings.series import AUTO, FIELD
+from ..settings.series import AUTO, FIELD, PARALLEL
 from .entry import Entry
 
 
@@ -21,18 +21,25 @@ class Series(Entry):
     which rises from older to younger; "sheets": they have one height at each position, and are interpolated
     together. dips: of the bedding, a file, a DipFile or SpaceDips; of sheets also Dips: each counts for the
     surface that it names, those of the series under and over its block, or for all where it names nothing.
-    resolution: edge length of the lattice of a field, in model units, or "auto".
+    resolution: edge length of the lattice of a field, in model units, or "auto". thickness: of the beds of a
+    field away from the data: "parallel", they keep it; "free"; or "auto", what the data say.
     """
 
     name: str
     kind: str = FIELD
     dips: SpaceDips | Dips | DipFile | str | Path | None = None
     resolution: float | str = AUTO
+    thickness: str = AUTO
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @property
     def item(self) -> str:
         return f"series '{self.name}'"
+
+    @property
+    def keeps_thickness(self) -> bool | None:
+        """Whether the beds of a field keep their thickness away from the data; None: as the data say."""
+        return None if self.thickness == AUTO else self.thickness == PARALLEL
 
     @property
     def dip_file(self) -> DipFile | None:

@@ -7,7 +7,7 @@ from functools import partial
 from itertools import pairwise
 
 from ..settings.dips import Dips, SpaceDips
-from ..settings.schema import SERIES
+from ..settings.schema import SERIES, SERIES_VALUES
 from ..settings.series import AUTO, FIELD, SHEET_METHODS
 from .entry import Refuse, check_file, check_values, named_once, refused_by
 from .project import Rock, Surface
@@ -21,7 +21,7 @@ def check_series(rock: Rock) -> None:
     """Refuses series that make no sense. Raises InputRefused."""
     for series in named_once(rock.series, "series"):
         refuse = partial(series.refused, item=f"{rock.item}, {series.item}")
-        check_values(series, SERIES, ("kind", "resolution"), refuse)
+        check_values(series, SERIES, SERIES_VALUES, refuse)
         _check_dips(series, refuse)
         own = rock.members(series)
         if not own:
@@ -41,6 +41,9 @@ def check_series(rock: Rock) -> None:
 def _check_sheets(rock: Rock, series: Series, own: list[int], refuse: Refuse) -> None:
     if series.resolution != AUTO:
         raise refuse("'resolution' has no effect, as sheets have no lattice", "resolution", "leave it out")
+    if series.thickness != AUTO:
+        what = "'thickness' has no effect, as sheets always share how their thickness varies"
+        raise refuse(what, "thickness", "leave it out")
     for number in own:
         surface = rock.surfaces[number]
         if not surface.interpolated or (surface.method or SHEET_METHODS[0]) not in SHEET_METHODS:

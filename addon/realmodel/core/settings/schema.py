@@ -14,7 +14,7 @@ from .meshers import DEFAULT_MESHER, MESHERS
 from .method_options import OptionRefused
 from .methods import DEFAULT_METHOD, DEFAULT_OPTIONS, METHODS, OPTIONS
 from .rules import DEFAULT_RULE, RULES
-from .series import FIELD, KINDS, resolution_fault
+from .series import AUTO, FIELD, KINDS, THICKNESSES, resolution_fault
 from .setting import Setting
 
 _OTHER = Setting(kind="other")  # with its row in the document alone
@@ -117,7 +117,16 @@ SERIES = {
         unset="auto",
         more='`"auto"` (default): by the spacing of the contacts and the size of the rock mass',
     ),
+    "thickness": Setting(
+        AUTO,
+        kind="word",
+        label="Thickness",
+        tip="How thick the beds of a field are away from the data",
+        words=THICKNESSES,
+    ),
 }
+
+SERIES_VALUES = ("kind", "resolution", "thickness")  # of SERIES, that are read and checked as they stand
 
 SIZE = {
     "length": Setting(kind="length", label="Length", tip="Edge length there", start=1.0, low=1e-6),

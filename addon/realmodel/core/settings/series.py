@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The kinds of series and the resolution of their fields."""
+"""The kinds of series, and the resolution of their fields and how thick beds of these are."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from ..base.finite import is_number
 
-AUTO = "auto"  # a resolution by the data
+AUTO = "auto"  # by the data
 FIELD, SHEETS = "field", "sheets"
 KINDS = {
     FIELD: (
@@ -15,6 +15,22 @@ KINDS = {
         "Level sets of one scalar field in space: they may be vertical, overturned or recumbent",
     ),
     SHEETS: ("Sheets", "Sheets with one elevation at each position, interpolated together"),
+}
+
+PARALLEL, FREE = "parallel", "free"
+THICKNESSES = {  # of the beds of a field
+    AUTO: (
+        "Automatic",
+        "Beds keep their thickness away from the data if the data, some of them left out, say that they do",
+    ),
+    PARALLEL: (
+        "Parallel",
+        "Beds keep their thickness around bends and away from the data, as in parallel folds",
+    ),
+    FREE: (
+        "Free",
+        "Beds get thicker or thinner away from the data, as the smoothest field does",
+    ),
 }
 
 SHEET_METHODS = ("universal_kriging", "kriging", "dsi")  # by which sheets are interpolated together

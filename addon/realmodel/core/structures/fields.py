@@ -195,7 +195,7 @@ def _field_of(work: Work, entry: RockInput, series: Series, top: float) -> Serie
             slits = Slits.of(entry, family, within, lattice)
             where = slits.numbers(sides[chosen])
             parts = [own.contacts, own.dips, own.bounds]
-            known = own.level_set_data(slits.data(work, parts, where))
+            known = own.level_set_data(slits.data(work, parts, where), series.keeps_thickness)
             if draws is None:
                 field = solve_field(lattice, known, work)
             else:

@@ -113,8 +113,8 @@ class SeriesData:
         lacks = np.setdiff1d(all_data.surfaces, self.surfaces).tolist()
         return [self.rock.surfaces[self.numbers[each]].name for each in lacks]
 
-    def level_set_data(self, slits: SlitData | None) -> LevelSetData:
-        """The same for the solver, with what faults that die out say of it."""
+    def level_set_data(self, slits: SlitData | None, keeps_thickness: bool | None) -> LevelSetData:
+        """The same for the solver, with what faults that die out say of it, and as of Series."""
         none = np.int32(-1)
         return LevelSetData(
             [self.rock.surfaces[number].name for number in self.numbers],
@@ -128,6 +128,7 @@ class SeriesData:
             slits,
             self.item,
             float(np.sqrt(mean_error([self.rock.surfaces[number] for number in self.numbers]))),
+            keeps_thickness,
         )
 
     def item(self, kind: str, row: int) -> str:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,15 +65,19 @@ struct FunctionKind {
     std::vector<double> gaps;                   ///< differences of the levels; none: they are free
     std::vector<std::uint8_t> centers;          ///< (contacts) which of them carry the field
     std::vector<std::uint8_t> left_out;         ///< inequalities that contradict other data
+    /// Where beds keep their thickness, of places all over the lattice the vector along which the
+    /// field rises by about 1, and the variance of its error, in units of the kernel.
+    std::vector<std::array<double, 3>> even;
+    double even_error = 0;
 };
 
 /// Independent normal numbers that a random function is made of: on lines in random directions a
 /// motion in random steps.
 struct DrawnNumbers {
-    std::size_t dimensions = 3;          ///< three, and one more for each slit
-    std::span<const double> directions;  ///< of each line so many
-    std::span<const double> steps;       ///< of line 0, then of line 1
-    std::span<const double> dip_errors;  ///< two for each dip
+    std::size_t dimensions = 3;            ///< three, and one more for each slit
+    std::span<const double> directions;    ///< of each line so many
+    std::span<const double> steps;         ///< of line 0, then of line 1
+    std::span<const double> slope_errors;  ///< two for each dip, then one for each place of `even`
 };
 
 /// A field that is drawn as the data allow: with the kind that solve_field() found of the same data
@@ -86,6 +91,8 @@ struct FieldOptions {
     double tolerance = 0;     ///< distance by which surfaces may miss contacts; 0: only by rounding
     int most_centers = 2500;  ///< at most so many contacts carry the field
     const FieldDraw* draw = nullptr;  ///< null: the smoothest field, the mean of all
+    /// Beds keep their thickness, as in parallel folds; none: if data that are left out say so.
+    std::optional<bool> is_even{};
 };
 
 /// A contact, dip or bound, by its row.
@@ -126,6 +133,9 @@ struct Field {
 ///
 /// Contacts that may be off are passed near by: values have errors under which the data are most
 /// likely, and no smaller ones than these where f rises as in the mean.
+///
+/// Where beds keep their thickness it rises nearly as steeply along each of them (parallel folds):
+/// contacts, dips and inequalities hold as before.
 ///
 /// Of more contacts than the options allow those carry the field that it would miss most (Carr et
 /// al. 2001, "Reconstruction and representation of 3D objects with radial basis functions").
