@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from object_models import assert_closed, crossing_surfaces, volume
 from realmodel.core import Library, Project, Property, Rock, build, build_surfaces
+from realmodel.core.exporters.shapes.parts import model_parts
 from realmodel.core.readers import read_mesh
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -41,8 +42,8 @@ def test_obj_has_a_group_for_each_block(model, folder):
     ]
     assert "newmtl property_1\nKd 0.784314 0.392157 0.196078" in (folder / "m.mtl").read_text()
     read = meshio.read(folder / "m.obj")
-    vertices = np.concatenate([model.block_boundary(k).vertices for k in range(4)])
-    assert np.array_equal(read.points, vertices)
+    assert np.array_equal(read.points, np.concatenate([part.vertices for part in model_parts(model)]))
+    assert set(map(tuple, read.points)) <= set(map(tuple, model.vertices))
     triangles = np.concatenate([cells.data for cells in read.cells])
     assert {cells.type for cells in read.cells} == {"triangle"}
     assert_closed(triangles)

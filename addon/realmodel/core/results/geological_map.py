@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base.algebra import dot, norm, twice_area
 from ..base.errors import BuildFailed, InputRefused
+from ..base.near_positions import apart, near_positions
 from ..base.work import native_module
 from ..cells.model_data import ModelData
 from ..project.region_rings import checked_region, given_rings
@@ -18,7 +19,6 @@ from .booleans import intersect
 from .plan_rings import covers_once, net_edges, polygons_of
 
 _WALL = -1
-_ROUNDINGS = 64  # positions nearer than so many units in the last place are one
 _UPRIGHT = 2.0**-40  # the slope from which on a face is upright but for the rounding of its corners
 
 
@@ -103,26 +103,8 @@ def _plan_vertices(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Positions in plan that differ, and the number of each vertex's. Those that are some roundings apart are
     one: a line would zigzag between them, which no polygon may."""
     plan, vertex = np.unique(places + 0.0, axis=0, return_inverse=True)  # no -0.0
-    apart = _apart(plan)
-    number = np.arange(len(plan))
-    pairs = [(number, number)]
-    for shift in (
-        (0.0, 0.0),
-        (0.5, 0.0),
-        (0.0, 0.5),
-        (0.5, 0.5),
-    ):  # near ones share a cell of one of these grids
-        cells = np.floor((plan - plan[:1]) / (2 * apart) + shift)
-        _, cell = np.unique(cells, axis=0, return_inverse=True)
-        pairs.append((cell.ravel() + (pairs[-1][0].max(initial=-1) + 1), number))
-    joined = _joined(*(np.concatenate(column) for column in zip(*pairs, strict=True)))[: len(plan)]
-    kept, number = np.unique(joined, return_inverse=True)
+    kept, number = np.unique(near_positions(plan), return_inverse=True)
     return plan[kept], number.ravel()[vertex.ravel()]
-
-
-def _apart(plan: np.ndarray) -> np.ndarray:
-    """(2,) how near positions are one, in x and in y."""
-    return _ROUNDINGS * np.spacing(np.abs(plan).max(axis=0, initial=1.0))
 
 
 def _outside(model: ModelData) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -176,41 +158,24 @@ def _vertices_on_edges(
 ) -> dict[tuple[int, int], list[int]]:
     """For each edge the ends of other edges that lie on it up to rounding, in their order."""
     among = np.unique(np.concatenate([start, end]))
-    apart = _apart(plan).max()
+    near = apart(plan)
     sorted_by = [among[np.argsort(plan[among, axis], kind="stable")] for axis in (0, 1)]
-    low, high = np.minimum(plan[start], plan[end]) - apart, np.maximum(plan[start], plan[end]) + apart
+    low, high = np.minimum(plan[start], plan[end]) - near, np.maximum(plan[start], plan[end]) + near
     begins = [np.searchsorted(plan[sorted_by[k], k], low[:, k]) for k in (0, 1)]
     ends = [np.searchsorted(plan[sorted_by[k], k], high[:, k], "right") for k in (0, 1)]
     axis = (ends[1] - begins[1] < ends[0] - begins[0]).astype(np.int64)
     found = {}
     for edge, (a, b, k) in enumerate(zip(start.tolist(), end.tolist(), axis.tolist(), strict=True)):
-        near = sorted_by[k][begins[k][edge] : ends[k][edge]]
-        if len(near) < 3:
+        beside = sorted_by[k][begins[k][edge] : ends[k][edge]]
+        if len(beside) < 3:
             continue
-        way, to = plan[b] - plan[a], plan[near] - plan[a]
+        way, to = plan[b] - plan[a], plan[beside] - plan[a]
         length = norm(way)
         along, across = dot(to, way) / length, (to[:, 0] * way[1] - to[:, 1] * way[0]) / length
-        on = (np.abs(across) <= apart) & (along > 0) & (along < length) & (near != a) & (near != b)
+        on = (np.abs(across) <= near) & (along > 0) & (along < length) & (beside != a) & (beside != b)
         if on.any():
-            found[a, b] = near[on][np.argsort(along[on], kind="stable")].tolist()
+            found[a, b] = beside[on][np.argsort(along[on], kind="stable")].tolist()
     return found
-
-
-def _joined(edge: np.ndarray, face: np.ndarray) -> np.ndarray:
-    """For each (edge, face) a number that is equal for all faces that such edges connect."""
-    _, edge = np.unique(edge, return_inverse=True)
-    _, face = np.unique(face, return_inverse=True)
-    edge, face = edge.ravel(), face.ravel()
-    label = np.arange(int(face.max(initial=-1)) + 1)
-    while True:
-        least = np.full(int(edge.max(initial=-1)) + 1, len(label))
-        np.minimum.at(least, edge, label[face])
-        lower = label.copy()
-        np.minimum.at(lower, face, least[edge])
-        lower = lower[lower]
-        if (lower == label).all():
-            return label[face]
-        label = lower
 
 
 def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:

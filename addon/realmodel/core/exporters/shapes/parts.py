@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
+from ...base.near_positions import near_positions
 from ...base.work import native_module
 from ...cells.model_data import ModelData, UsedSurfaces
 from ...results.sections.section_data import SectionData
@@ -22,8 +24,7 @@ class Part:
     closed shape counter-clockwise seen from outside.
 
     name: no other part of the list has it. property: id of the library, 0: none. material: the name of what
-    it is made of. color: red, green, blue from 0 to 1, sRGB. divided: the polygons as triangles, where these
-    are known already.
+    it is made of. color: red, green, blue from 0 to 1, sRGB.
     """
 
     name: str
@@ -33,13 +34,15 @@ class Part:
     property: int = 0
     material: str = ""
     color: tuple[float, float, float] = field(default=_PLAIN)
-    divided: np.ndarray | None = None
+
+    @classmethod
+    def of_triangles(cls, name: str, vertices: np.ndarray, triangles: np.ndarray, *of_what) -> Part:
+        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
+        return cls(name, vertices, offsets, triangles.ravel(), *of_what)
 
     @cached_property
     def triangles(self) -> np.ndarray:
         """(T, 3) int32: the polygons divided; what they close is closed."""
-        if self.divided is not None:
-            return self.divided
         if (np.diff(self.offsets) == 3).all():
             return np.ascontiguousarray(self.corners, np.int32).reshape(-1, 3)
         offsets = np.ascontiguousarray(self.offsets, np.int64)
@@ -49,7 +52,8 @@ class Part:
 @dataclass(frozen=True, eq=False)
 class FaceTriangles:
     """The faces around blocks, each divided into triangles once, so that the blocks on both of its sides have
-    the same ones.
+    the same ones. Vertices that only rounding keeps apart are one, as programs that take shapes join them:
+    triangles that have no area then are not there, and triangles with the same corners are one.
 
     corners (T, 3) int32: vertices of the model, counter-clockwise seen from outside the first block. face
     (T,) int64: the face of each. blocks (T, 2) int32: the block on each side, -1 outside.
@@ -67,7 +71,9 @@ class FaceTriangles:
         offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
         triangles, begins = native_module().triangulate_faces(model.vertices, offsets, corners)
         face = np.repeat(faces, np.diff(begins))
-        return cls(triangles.reshape(-1, 3), face, blocks[face])
+        corners = near_positions(model.vertices).astype(np.int32)[triangles.reshape(-1, 3)]
+        has_area = (corners != corners[:, [1, 2, 0]]).all(axis=1)
+        return cls(*_once_each(corners[has_area], face[has_area], blocks[face[has_area]]))
 
     def around(self, block: int) -> tuple[np.ndarray, np.ndarray]:
         """Of one block the numbers of its triangles, and their corners (N, 3), counter-clockwise seen from
@@ -77,6 +83,30 @@ class FaceTriangles:
         turned = self.blocks[own, 1] == block
         corners[turned] = corners[turned, ::-1]
         return own, corners
+
+
+def _once_each(corners: np.ndarray, face: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Of triangles with the same corners those that lie between two blocks when what is between them is not
+    there. Arguments and result as in FaceTriangles."""
+    _, same, counts = np.unique(np.sort(corners, axis=1), axis=0, return_inverse=True, return_counts=True)
+    several = np.flatnonzero(counts[same.ravel()] > 1)
+    if not len(several):
+        return corners, face, blocks
+    several = several[np.argsort(same.ravel()[several], kind="stable")]
+    corners, blocks, kept = corners.copy(), blocks.copy(), np.ones(len(corners), bool)
+    kept[several] = False
+    for group in np.split(several, np.cumsum(counts[counts > 1])[:-1]):
+        first, between = corners[group[0]], Counter[int]()
+        for triangle in group.tolist():
+            at = int(np.flatnonzero(corners[triangle] == first[0])[0])
+            is_turned = corners[triangle, (at + 1) % 3] != first[1]
+            below, above = blocks[triangle, ::-1] if is_turned else blocks[triangle]
+            between[int(below)] += 1
+            between[int(above)] -= 1
+        sides = sorted((+between).elements()), sorted((-between).elements())
+        for triangle, below, above in zip(group.tolist(), *sides, strict=False):
+            kept[triangle], corners[triangle], blocks[triangle] = True, first, (below, above)
+    return corners[kept], face[kept], blocks[kept]
 
 
 def model_parts(model: ModelData, triangles: FaceTriangles | None = None) -> list[Part]:
@@ -89,19 +119,15 @@ def model_parts(model: ModelData, triangles: FaceTriangles | None = None) -> lis
     for number, block in enumerate(model.blocks):
         if not block.cells:
             continue
-        shape = model.block_boundary(number)
-        used = np.unique(model.face_corners(shape.faces, np.zeros(len(shape.faces), bool))[1])
-        divided = np.searchsorted(used, triangles.around(number)[1]).astype(np.int32)
+        used, corners = np.unique(triangles.around(number)[1], return_inverse=True)
         parts.append(
-            Part(
+            Part.of_triangles(
                 names[number],
-                shape.vertices,
-                shape.face_offsets,
-                shape.face_vertices,
+                model.vertices[used],
+                corners.reshape(-1, 3).astype(np.int32),
                 block.property,
                 materials[block.property],
                 tuple(colors[number]),
-                divided,
             )
         )
     return parts
@@ -121,8 +147,7 @@ def surface_parts(surfaces: UsedSurfaces) -> list[Part]:
     parts = []
     for number, name in enumerate(distinct_names(surfaces.surface_names)):
         vertices, triangles = surfaces.surface(number)
-        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
-        parts.append(Part(name, vertices, offsets, triangles.ravel()))
+        parts.append(Part.of_triangles(name, vertices, triangles))
     return parts
 
 
