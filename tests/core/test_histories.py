@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Series of random histories with errors: nothing is refused, and no field is much worse than planes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from histories import folded, near_flat
+from histories import folded, lattice_of, near_flat
+from realmodel.core import Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.fields import Lattice, LevelSetData, solve_field
+from realmodel.core.structures.field_warnings import warn_of_volumes
 
 NODES = 6000  # enough for dips to say how a field runs between surfaces
 
@@ -42,3 +46,43 @@ def test_two_flat_beds_with_ten_dips_stay_flat():
     places = np.random.default_rng(1).uniform(0, 1000, (5000, 3))
     right = np.searchsorted([848.0, 918.0], places[:, 2])
     assert np.mean(np.searchsorted(field.levels, field.at(places)) == right) > 0.98
+
+
+def model_of(history, nodes):
+    """The whole model: the series under a flat ground."""
+    size = history.size
+    ring = np.array([(0.0, 0.0), (size[0], 0.0), (size[0], size[1]), (0.0, size[1])])
+    top = np.column_stack([ring, np.full(4, size[2])])
+    data = history.data
+    surfaces = [
+        Surface(name, series="all", points=data.contacts[data.contact_surfaces == k])
+        for k, name in enumerate(data.names)
+    ]
+    surfaces.append(Surface("ground", vertices=top, triangles=[[0, 1, 2], [0, 2, 3]], rule="erosional"))
+    dips = SpaceDips(data.dips, data.normals)
+    series = [Series("all", dips=dips, resolution=float(np.cbrt(size.prod() / nodes)))]
+    return build(Project("history", [Rock("r", surfaces, region=ring, base_elevation=0.0, series=series)]))
+
+
+def test_a_whole_model_of_a_history():
+    model = model_of(near_flat(1), NODES)
+    assert model.validate(500).passed
+    assert not model.warnings
+
+
+def test_blocks_that_depend_on_the_kind_of_field_are_named():
+    history = near_flat(1)
+    model = model_of(history, NODES)
+    field = run(lambda work: solve_field(lattice_of(history, NODES), history.data, work))
+    shares = np.bincount(np.searchsorted(field.levels, field.values)) / len(field.values)
+    entry, series = model.rock_inputs[0], model.project.rocks[0].series[0]
+    count = len(entry.warnings)
+    warn_of_volumes(entry, series, [0, 1, 2], replace(field, plain_shares=1.3 * shares))
+    assert len(entry.warnings) == count
+    warn_of_volumes(entry, series, [0, 1, 2], replace(field, plain_shares=shares * [1.0, 1.6, 0.7, 1.0]))
+    (warning,) = entry.warnings[count:]
+    assert warning.kind == "volumes"
+    assert "volumes differ by a third" in warning.text
+    assert "above 'A' " in warning.text
+    assert "above 'B' " in warning.text
+    assert "below" not in warning.text
