@@ -23,6 +23,8 @@ constexpr int kIdleMoves = 10;           ///< with moves of heights
 constexpr int kIdleRepairs = 40;         ///< and with those that only remove heights
 constexpr double kMostFailing = 0.01;    ///< a share of elements: with more nothing is removed
 constexpr double kMostRepaired = 0.002;  ///< how much blocks may change for it, of all volumes
+constexpr double kMostOfBlock = 0.25;    ///< how much one block may change, of itself,
+constexpr double kMostIfSkewed = 0.5;    ///< and for what checkMesh fails without any options
 constexpr double kFarthest = 8;  ///< minimum thicknesses: how far heights move at what still fails
 
 /// Calls visit(corner) for the corners of all elements and faces.
@@ -114,7 +116,7 @@ private:
                 auto weak = filling_->quality.weak(is_narrow_);
                 if (!remove(weak)) break;
             }
-        } while (takes_back(start));
+        } while (takes_back(start, kMostOfBlock));
     }
 
     bool remove(ElementQuality::Removals& removals, bool several = false) {
@@ -126,8 +128,8 @@ private:
     }
 
     /// Whether a step took too much, so that it begins again where it did.
-    bool takes_back(const PostLevels& start) {
-        if (!limits_->take_back(filling_->columns.mesh.volumes)) return false;
+    bool takes_back(const PostLevels& start, double most) {
+        if (!limits_->take_back(filling_->columns.mesh.volumes, most)) return false;
         levels_ = start;
         refill();
         return true;
@@ -194,7 +196,7 @@ private:
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             changed += std::abs(filling_->columns.mesh.volumes[b] - volumes[b]);
             total += volumes[b];
-            if (limits_->changes_much(b, filling_->columns.mesh.volumes)) return true;
+            if (limits_->changes_much(b, filling_->columns.mesh.volumes, kMostOfBlock)) return true;
         }
         return changed > kMostRepaired * total;
     }
@@ -211,7 +213,7 @@ private:
                                                  std::move(skewed.tall)};
                 break;
             }
-        } while (takes_back(start));
+        } while (takes_back(start, kMostIfSkewed));
     }
 
     const ColumnInput& input_;

@@ -12,8 +12,7 @@ namespace realmodel::simulation {
 namespace {
 
 constexpr std::int32_t kJudgedRing = 6;  ///< a front that has more places there than at first grows
-constexpr double kMostOfBlock = 0.25;    ///< how much of itself a block may lose or gain,
-constexpr double kMostOfAll = 0.0005;    ///< if that is more than this share of all volumes
+constexpr double kMostOfAll = 0.0005;    ///< that and less of all volumes every block may change by
 
 }  // namespace
 
@@ -97,9 +96,9 @@ void RepairLimits::for_taken_around(const Place& place, const Visit& visit) cons
     }
 }
 
-bool RepairLimits::changes_much(std::size_t block, std::span<const double> volumes) const {
-    return std::abs(volumes[block] - volumes_[block]) >
-           std::max(kMostOfBlock * volumes_[block], least_);
+bool RepairLimits::changes_much(std::size_t block, std::span<const double> volumes,
+                                double most) const {
+    return std::abs(volumes[block] - volumes_[block]) > std::max(most * volumes_[block], least_);
 }
 
 /// The places that were taken in one piece.
@@ -122,10 +121,10 @@ std::vector<std::vector<std::size_t>> RepairLimits::fronts() const {
     return made;
 }
 
-bool RepairLimits::take_back(std::span<const double> volumes) {
+bool RepairLimits::take_back(std::span<const double> volumes, double most) {
     std::vector<std::uint8_t> is_much(volumes.size(), 0);
     for (std::size_t b = 0; b < volumes.size(); ++b)
-        is_much[b] = is_whole_[b] == 0 && changes_much(b, volumes) ? 1 : 0;
+        is_much[b] = is_whole_[b] == 0 && changes_much(b, volumes, most) ? 1 : 0;
     std::vector<std::uint8_t> is_answered(volumes.size(), 0);
     bool any = false;
     for (const std::vector<std::size_t>& front : fronts()) {

@@ -25,13 +25,14 @@ public:
     /// Notes what removals that are about to be made change.
     void note(const PostLevels& levels, std::span<const PostLevels::Removal> removals);
 
-    /// Whether a block has changed by more than repairs may cost.
-    bool changes_much(std::size_t block, std::span<const double> volumes) const;
+    /// Whether a block has changed by more than repairs may cost: a share of itself, and a little
+    /// of all volumes.
+    bool changes_much(std::size_t block, std::span<const double> volumes, double most) const;
 
     /// Judges what was noted and notes anew. @return whether blocks stay as they are at more places
     /// from now on, because there a front grew, or their repair cost too much: then the step that
     /// made the removals has to begin again
-    bool take_back(std::span<const double> volumes);
+    bool take_back(std::span<const double> volumes, double most);
 
     /// The blocks that stay as they are somewhere.
     std::vector<std::int32_t> kept_blocks() const;
