@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import build, load_project
-from realmodel.core.base.near_positions import apart, near_positions
+from realmodel.core.cells.near_positions import apart, near_positions
 from realmodel.core.exporters.shapes.parts import FaceTriangles, _once_each, model_parts
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..base.algebra import dot, norm, twice_area
 from ..base.errors import BuildFailed, InputRefused
-from ..base.near_positions import apart, near_positions
 from ..base.work import native_module
 from ..cells.model_data import ModelData
+from ..cells.near_positions import apart, near_positions
 from ..project.region_rings import checked_region, given_rings
 from .booleans import intersect
 from .plan_rings import covers_once, net_edges, polygons_of

@@ -10,9 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...base.near_positions import near_positions
 from ...base.work import native_module
 from ...cells.model_data import ModelData, UsedSurfaces
+from ...cells.near_positions import near_positions
 from ...results.sections.section_data import SectionData
 
 _PLAIN = (0.7, 0.7, 0.7)  # for parts without a property

@@ -26,7 +26,8 @@ def near_positions(positions: np.ndarray) -> np.ndarray:
         (0.0, 0.5), repeat=positions.shape[1]
     ):  # near ones share a cell of one of these grids
         own = np.floor((positions - positions[:1]) / size + shift).astype(np.int64)
-        _, key, sharing = np.unique(own @ _MIXED[: own.shape[1]], return_inverse=True, return_counts=True)
+        mixed = (own * _MIXED[: own.shape[1]]).sum(axis=1)
+        _, key, sharing = np.unique(mixed, return_inverse=True, return_counts=True)
         shared = np.flatnonzero(sharing[key.ravel()] > 1)  # few; and some that are not, by chance
         _, cell = np.unique(own[shared], axis=0, return_inverse=True)
         cells.append(cell.ravel() + numbers)
