@@ -370,6 +370,18 @@ def test_modflow_disu_of_a_model(tmp_path):
     ).all()
 
 
+def test_modflow_disu_of_cells_as_narrow_as_rounding(tmp_path):
+    """Two cells had a negative volume over no area to speak of: their tops were 52 m below their bottoms."""
+    build(load_project("blend_samples/castle_hill/project.toml")).save(tmp_path / "g.disu")
+    text = (tmp_path / "g.disu").read_text()
+    parts = [text.split(f"  {name}\n    INTERNAL FACTOR 1\n")[1] for name in ("TOP", "BOT", "AREA")]
+    top, bottom, area = (np.array(part[: re.search("[A-Z]", part).start()].split(), float) for part in parts)
+    assert len(top) == len(bottom) == len(area) > 80_000
+    assert (top > bottom).all()
+    assert (top - bottom < 400.0).all()
+    assert (area > 0).all()
+
+
 @pytest.mark.skipif(shutil.which("mf6") is None, reason="MODFLOW 6 is absent: neither Debian nor PyPI has it")
 @pytest.mark.parametrize("name", ["two_layers", "gravel_plain", "castle_hill"])
 def test_modflow_computes_a_flow_through_the_exact_cells(tmp_path, name):

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -36,9 +37,9 @@ class Part:
     color: tuple[float, float, float] = field(default=_PLAIN)
 
     @classmethod
-    def of_triangles(cls, name: str, vertices: np.ndarray, triangles: np.ndarray, *of_what) -> Part:
+    def of_triangles(cls, name: str, vertices: np.ndarray, triangles: np.ndarray, **more: Any) -> Part:
         offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
-        return cls(name, vertices, offsets, triangles.ravel(), *of_what)
+        return cls(name, vertices, offsets, triangles.ravel(), **more)
 
     @cached_property
     def triangles(self) -> np.ndarray:
@@ -125,9 +126,9 @@ def model_parts(model: ModelData, triangles: FaceTriangles | None = None) -> lis
                 names[number],
                 model.vertices[used],
                 corners.reshape(-1, 3).astype(np.int32),
-                block.property,
-                materials[block.property],
-                tuple(colors[number]),
+                property=block.property,
+                material=materials[block.property],
+                color=tuple(colors[number]),
             )
         )
     return parts

@@ -208,10 +208,11 @@ def write_disu(
 def _height_range(mesh: PolyhedralMesh, faces: CellFaces) -> tuple[np.ndarray, np.ndarray]:
     """The lowest and the highest corner of each cell, (C,) each."""
     heights = mesh.points[mesh.face_vertices, 2]
-    return tuple(
-        each.reduceat(each.reduceat(heights, mesh.face_offsets[:-1])[faces.face], faces.begin[:-1])
-        for each in (np.minimum, np.maximum)
-    )
+
+    def extreme(of: np.ufunc) -> np.ndarray:
+        return of.reduceat(of.reduceat(heights, mesh.face_offsets[:-1])[faces.face], faces.begin[:-1])
+
+    return extreme(np.minimum), extreme(np.maximum)
 
 
 def _from_top(mesh: PolyhedralMesh, normals: np.ndarray) -> np.ndarray:
