@@ -80,9 +80,8 @@ def rank_of_a_volume(seed, places, method, realizations=40):
     distance = np.linalg.norm(at[:, None] - at[None], axis=2)
     between, drawn = 0.0, 0.0
     for number, sign in enumerate((-1.0, 1.0)):
-        covariance = np.exp(-(((distance / chance.uniform(200.0, 500.0)) * 1.7) ** 2)) + 1e-9 * np.eye(
-            len(at)
-        )
+        covariance = np.exp(-(((distance / chance.uniform(200.0, 500.0)) * 1.7) ** 2))
+        covariance += 1e-9 * np.eye(len(at))
         field = 15.0 * np.linalg.cholesky(covariance) @ chance.standard_normal(len(at))
         z = field + at @ chance.uniform(-0.05, 0.05, 2) + 200.0 * number
         data = np.column_stack([known, z[:places]])

@@ -185,6 +185,12 @@ def write_modflow_simulation(folder, package, file, more=()):
     (folder / "m.nam").write_text("BEGIN packages\n" + "\n".join(lines) + "\nEND packages\n")
 
 
+def run_mf6(folder):
+    """MODFLOW 6 runs the simulation of a folder to its end."""
+    done = subprocess.run(["mf6"], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    assert "Normal termination of simulation." in done.stdout, done.stdout[-3000:]
+
+
 def run_modflow(folder, file, conductivity, heads):
     """Steady flow through a grid of DISU: the conductivity of each cell, and the cells whose head is held.
     Returns the head of each cell."""
@@ -204,8 +210,7 @@ def run_modflow(folder, file, conductivity, heads):
     (folder / "m.oc").write_text(
         "BEGIN options\n HEAD FILEOUT m.hds\nEND options\nBEGIN period 1\n SAVE HEAD ALL\nEND period 1\n"
     )
-    done = subprocess.run(["mf6"], cwd=folder, capture_output=True, text=True, check=False)
-    assert "Normal termination of simulation." in done.stdout, done.stdout[-3000:]
+    run_mf6(folder)
     balance = re.findall(r"PERCENT DISCREPANCY = *(\S+)", (folder / "m.lst").read_text())
     assert max(abs(float(percent)) for percent in balance) < 0.1
     with contextlib.closing(flopy.utils.HeadFile(str(folder / "m.hds"))) as file:

@@ -3,8 +3,9 @@
 //
 //   allocation_fuzzer [--seconds S] [--seed K]      seeds from K on
 //
-// Each seed is judged in a process of its own. A build is made, or says that there is no memory; a
-// crash, another error and another result are findings. The exit status is 1 where there is one.
+// Each build of a seed is judged in a process of its own. It is made, or says that there is no
+// memory; a crash, another error and another result are findings. The exit status is 1 where there
+// is one.
 #include <sys/mman.h>
 
 #include <chrono>
@@ -23,7 +24,7 @@ namespace {
 using namespace realmodel::fuzz;
 
 constexpr int kTries = 60;         ///< of each build
-constexpr double kPatience = 300;  ///< seconds of processors for a seed
+constexpr double kPatience = 300;  ///< seconds of processors for a build
 
 struct Try {
     int threads = 0;

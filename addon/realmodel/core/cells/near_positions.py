@@ -22,9 +22,8 @@ def near_positions(positions: np.ndarray) -> np.ndarray:
     between join them."""
     size, count = 2.0 * apart(positions), len(positions)
     cells, members, numbers = [np.empty(0, np.int64)], [np.empty(0, np.int64)], 0
-    for shift in product(
-        (0.0, 0.5), repeat=positions.shape[1]
-    ):  # near ones share a cell of one of these grids
+    # near ones share a cell of one of these grids
+    for shift in product((0.0, 0.5), repeat=positions.shape[1]):
         own = np.floor((positions - positions[:1]) / size + shift).astype(np.int64)
         mixed = (own * _MIXED[: own.shape[1]]).sum(axis=1)
         _, key, sharing = np.unique(mixed, return_inverse=True, return_counts=True)
