@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "base/disjoint_sets.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "fields/cross_validation.hpp"
 #include "fields/frame_function.hpp"
@@ -64,31 +64,68 @@ Lattice coarsened(const Lattice& lattice, std::size_t most) {
     return out;
 }
 
-/// How many connected parts critical points are. Where the field hardly changes along an axis they
+/// Inner nodes where a field turns back: its gradient is turned by more than 90 degrees from that
+/// at the next node along an axis. Where it falls again behind its data, in a valley as wide as the
+/// lattice, it has no critical point inside.
+std::vector<std::int64_t> turning_points(const Lattice& lattice, std::span<const double> values,
+                                         const Execution& execution) {
+    const auto [nx, ny, nz] = lattice.counts;
+    const std::array<std::int64_t, 3> steps{1, nx, static_cast<std::int64_t>(nx) * ny};
+    const auto gradient = [&](std::int64_t node) {
+        Vec3 out{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out[axis] =
+                (values[node + steps[axis]] - values[node - steps[axis]]) / lattice.spacing[axis];
+        return out;
+    };
+    std::vector<std::vector<std::int64_t>> found(static_cast<std::size_t>(nz));
+    parallel_chunks(found.size(), execution, [&, nx = nx, ny = ny, nz = nz](std::size_t layer) {
+        const auto k = static_cast<std::int64_t>(layer);
+        if (k == 0 || k >= nz - 1) return;
+        for (std::int64_t j = 1; j < ny - 1; ++j) {
+            for (std::int64_t i = 1; i < nx - 1; ++i) {
+                const std::int64_t node = i + steps[1] * j + steps[2] * k;
+                const Vec3 here = gradient(node);
+                const std::array<bool, 3> has_next{i + 2 < nx, j + 2 < ny, k + 2 < nz};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (!has_next[axis] || dot(here, gradient(node + steps[axis])) >= 0) continue;
+                    found[layer].push_back(node);
+                    break;
+                }
+            }
+        }
+    });
+    return joined(found);
+}
+
+/// How many connected parts nodes are. Where the field hardly changes along an axis they
 /// come in lines, of which a lattice shows a few: so they are next to each other whose distance in
 /// the space that the field is the same in all directions of is no more than a cell's diagonal.
-std::size_t connected_parts(const std::vector<CriticalPoint>& points, const Lattice& lattice,
+std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& lattice,
                             const AxisRatios& anisotropy) {
     Map3 map = map_of(anisotropy);
     const double most = std::ranges::max(anisotropy.ratios);
     for (Vec3& row : map)
         row = times(1 / most, row);
-    std::vector<Vec3> at;
+    std::vector<Vec3> left;  // in no part yet
     const auto nx = lattice.counts[0], ny = lattice.counts[1];
-    for (const CriticalPoint& point : points) {
-        const auto node = static_cast<int>(point.node);
-        at.push_back(mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny)));
+    for (const std::int64_t n : nodes) {
+        const auto node = static_cast<int>(n);
+        left.push_back(mapped(map, lattice.position(node % nx, node / nx % ny, node / nx / ny)));
     }
     const double next = (1 + 1e-9) * length(lattice.spacing);
-    DisjointSets sets(points.size());
-    const auto count = static_cast<std::int32_t>(points.size());
-    std::size_t parts = points.size();
-    for (std::int32_t n = 0; n < count; ++n) {
-        for (std::int32_t other = 0; other < n; ++other) {
-            if (sets.find(n) == sets.find(other) || length(minus(at[n], at[other])) > next)
-                continue;
-            sets.join(n, other);
-            --parts;
+    std::size_t parts = 0;
+    for (; !left.empty(); ++parts) {
+        std::vector<Vec3> reached{left.back()};
+        left.pop_back();
+        while (!reached.empty()) {
+            const Vec3 from = reached.back();
+            reached.pop_back();
+            const auto near = std::partition(left.begin(), left.end(), [&](const Vec3& at) {
+                return length(minus(at, from)) > next;
+            });
+            reached.insert(reached.end(), near, left.end());
+            left.erase(near, left.end());
         }
     }
     return parts;
@@ -293,9 +330,11 @@ private:
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
-        const bool has_axes = likely.anisotropy.ratios != kIsotropic.ratios;
-        return has_axes || is_told_by_dips() ? connected_parts(points, coarse, likely.anisotropy)
-                                             : points.size();
+        if (!is_told_by_dips()) return points.size();
+        std::vector<std::int64_t> nodes = turning_points(coarse, values, execution_);
+        for (const CriticalPoint& point : points)
+            nodes.push_back(point.node);
+        return connected_parts(nodes, coarse, likely.anisotropy);
     }
 
     /// How much of the lattice each block is.
