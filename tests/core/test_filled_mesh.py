@@ -112,7 +112,7 @@ def test_names_of_boundaries(faulted):
 )
 def test_outside_faces_have_the_patch_that_they_come_from(sample, edge, thickness):
     """No patch of a top or base has faces of walls or tunnels (a field was wrong by 19 of 30 K), and walls
-    and the flat base are plane but for a few corners."""
+    and the flat base are plane but for a few corners, where exact edges are shorter than elements'."""
     model = build(load_project(SAMPLES / sample / "project.toml"))
     mesh = filled(model, edge, thickness)
     names = {part.name for part in ElementFaces(mesh).sets() if part.group}
@@ -121,8 +121,8 @@ def test_outside_faces_have_the_patch_that_they_come_from(sample, edge, thicknes
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     rise = np.abs(normal[:, 2]) / np.linalg.norm(normal, axis=1)
     surface = mesh.face_surface["triangle"]
-    assert (rise[surface == -1] < 1e-6).mean() > 0.95
-    assert (rise[surface == -2] > 1 - 1e-6).mean() > 0.95
+    assert (rise[surface == -1] < 1e-6).mean() > 0.99
+    assert (rise[surface == -2] > 1 - 1e-6).mean() > 0.99
 
 
 def test_bodies_and_voids():

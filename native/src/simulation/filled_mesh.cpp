@@ -7,6 +7,8 @@
 #include "realmodel/simulation/filled_mesh.hpp"
 
 #include "exact/without_mpfr.hpp"
+// after it
+#include "exact/cgal_kernel.hpp"
 // CGAL
 // A table of 32 kB of each thread goes to the heap: a module that is loaded late has room for few
 // thread-local bytes (realmodel_loaded_late). An exception, as where there is no memory, leaves
@@ -27,7 +29,6 @@
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_3/Mesher_3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
@@ -476,6 +477,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     divide_corner_tetrahedra(mesh, execution.progress);
     sort_outside_faces(mesh, model, faces.triangles, kReach * lengths.largest(),
                        execution.progress);
+    divide_corner_tetrahedra(mesh, execution.progress);  // what was covered at sharp edges
     thicken_flat_tetrahedra(mesh, tolerance, execution.progress);
     return mesh;
 }

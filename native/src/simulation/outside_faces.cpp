@@ -16,6 +16,7 @@
 #include "base/vectors.hpp"
 #include "simulation/corner_tetrahedra.hpp"
 #include "simulation/flat_tetrahedra.hpp"
+#include "simulation/outside_covers.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::simulation {
@@ -28,6 +29,7 @@ constexpr double kTurned = 0.25;          ///< of the reach: what a face turned 
 constexpr double kLeastRoundness = 0.01;  ///< roundness that elements keep, if they had it
 constexpr std::size_t kMostPlaces = 64;
 constexpr int kSortings = 8;
+constexpr int kCoverings = 3;
 
 Vec3 nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
     const Vec3 way = minus(b, a);
@@ -231,12 +233,56 @@ public:
             if (!patch) continue;
             mesh_.surface[faces_[i]] = outside_.surface(*patch);
             for (const std::int32_t v : corners)
-                if (distance(v, *patch) > outside_.rounding()) any |= move(v, *patch);
+                if (!is_on(near_[index(v)], *patch)) any |= move(v, *patch);
+        }
+        return any;
+    }
+
+    /// Covers what is still off its patch where no corner may move: edges from one patch to
+    /// another by a point of both, corners that are on none.
+    /// @return whether anything was
+    bool cover(double reach, Progress* progress) {
+        bool any = false;
+        OutsideCovers covers(mesh_);
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            poll(progress, i);
+            const auto corners = mesh_.triangles[faces_[i]];
+            if (std::ranges::any_of(corners, [&](auto v) { return index(v) >= near_.size(); }))
+                continue;  // new
+            const auto patch = patch_of(corners, reach);
+            if (!patch) continue;
+            for (const std::int32_t v : corners) {
+                const auto& own = near_[index(v)];
+                if (is_on(own, *patch)) continue;
+                const auto other = std::ranges::find_if(
+                    own, [&](const Near& near) { return near.distance <= outside_.rounding(); });
+                if (other == own.end()) {
+                    any |= cover(covers, v, *patch);
+                    continue;
+                }
+                for (const std::int32_t u : corners)
+                    if (is_on(near_[index(u)], *patch) && !is_on(near_[index(u)], other->patch))
+                        any |= cover(covers, {v, u}, {other->patch, *patch});
+            }
         }
         return any;
     }
 
 private:
+    bool cover(OutsideCovers& covers, const std::array<std::int32_t, 2>& edge,
+               const std::array<std::int32_t, 2>& patches) const {
+        const Vec3 middle =
+            times(0.5, plus(mesh_.points[index(edge[0])], mesh_.points[index(edge[1])]));
+        return std::ranges::any_of(outside_.places_on(patches[0], middle), [&](const Vec3& place) {
+            return is_on(outside_.patches_near(place), patches[1]) && covers.add(edge, place);
+        });
+    }
+    bool cover(OutsideCovers& covers, std::int32_t v, std::int32_t patch) const {
+        return std::ranges::any_of(
+            outside_.places_on(patch, mesh_.points[index(v)]),
+            [&](const Vec3& place) { return covers.add(std::array{v}, place); });
+    }
+
     bool is_outside(const std::array<std::int32_t, 3>& face) const {
         const auto own = around_[index(face[0])];
         return std::ranges::count_if(own, [&](std::int32_t t) {
@@ -249,10 +295,12 @@ private:
         near_[index(v)] = outside_.patches_near(mesh_.points[index(v)]);
     }
     /// HUGE_VAL beyond reach.
-    double distance(std::int32_t v, std::int32_t patch) const {
-        const auto& own = near_[index(v)];
-        const auto at = std::ranges::lower_bound(own, patch, {}, &Near::patch);
-        return at != own.end() && at->patch == patch ? at->distance : HUGE_VAL;
+    static double distance(const std::vector<Near>& near, std::int32_t patch) {
+        const auto at = std::ranges::lower_bound(near, patch, {}, &Near::patch);
+        return at != near.end() && at->patch == patch ? at->distance : HUGE_VAL;
+    }
+    bool is_on(const std::vector<Near>& near, std::int32_t patch) const {
+        return distance(near, patch) <= outside_.rounding();
     }
 
     /// The patch that all corners of a face are nearest to, and that lies as the face does.
@@ -266,7 +314,7 @@ private:
         for (const Near& near : near_[index(face[0])]) {
             double far = near.distance;
             for (const std::int32_t v : face)
-                far = std::max(far, distance(v, near.patch));
+                far = std::max(far, distance(near_[index(v)], near.patch));
             if (!(far < least)) continue;
             far += kTurned * reach * outside_.turn(near.patch, middle, normal);
             if (!(far < least)) continue;
@@ -284,10 +332,7 @@ private:
         for (const Vec3& place : outside_.places_on(patch, from)) {
             const auto there = outside_.patches_near(place);
             const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const Near& own) {
-                if (own.distance > outside_.rounding()) return true;
-                const auto same = std::ranges::lower_bound(there, own.patch, {}, &Near::patch);
-                return same != there.end() && same->patch == own.patch &&
-                       same->distance <= outside_.rounding();
+                return own.distance > outside_.rounding() || is_on(there, own.patch);
             });
             if (!stays_on) continue;
             at = place;
@@ -323,8 +368,11 @@ void sort_outside_faces(FilledMesh& mesh, const ComplexView& model,
                         std::span<const BoundaryTriangle> triangles, double reach,
                         Progress* progress) {
     const Outside outside(model, triangles, reach);
-    OutsideSorter sorter(mesh, outside);
-    for (int round = 0; round < kSortings && sorter.run(reach, progress); ++round) {
+    for (int covering = 0;; ++covering) {
+        OutsideSorter sorter(mesh, outside);
+        for (int round = 0; round < kSortings && sorter.run(reach, progress); ++round) {
+        }
+        if (covering == kCoverings || !sorter.cover(reach, progress)) return;
     }
 }
 

@@ -11,8 +11,8 @@ namespace realmodel::simulation {
 
 /// Gives each outside face of the mesh the surface of the exact outside face that it comes from.
 /// Corners that are off it (where a sharp edge is cut short, or flat elements were left out) move
-/// onto it where the elements around stay positive, so that walls and flat bases stay in their
-/// planes.
+/// onto it where the elements around stay positive, or are covered by new elements, so that walls
+/// and flat bases stay in their planes.
 /// @param reach  how far corners may lie from the face that they come from, and move
 /// @throws Cancelled
 void sort_outside_faces(FilledMesh& mesh, const ComplexView& model,

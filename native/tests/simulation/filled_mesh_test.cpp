@@ -14,6 +14,7 @@
 #include "realmodel/base/errors.hpp"
 #include "simulation/corner_tetrahedra.hpp"
 #include "simulation/flat_tetrahedra.hpp"
+#include "simulation/outside_covers.hpp"
 
 namespace realmodel::simulation {
 namespace {
@@ -284,6 +285,44 @@ FilledMesh octahedron(const std::array<double, 3>& middle, bool is_divided) {
         mesh.surface.push_back(0);
     }
     return mesh;
+}
+
+double volume_of_all(const FilledMesh& mesh) {
+    return volume(mesh, 0) + volume(mesh, 1);
+}
+
+TEST(OutsideCoversTest, ACornerIsCoveredByBothRegionsThatMeetThere) {
+    FilledMesh mesh = octahedron({0, 0, 0}, true);
+    ASSERT_TRUE(OutsideCovers(mesh).add(std::array{0}, {1.5, 0, 0}));
+    expect_valid(mesh);
+    // four elements, each of height 0.5 over a face whose projection along x is half a square
+    EXPECT_NEAR(volume(mesh, 0), 2.0 / 3 + 0.5 / 3, 1e-12);
+    EXPECT_NEAR(volume(mesh, 1), volume(mesh, 0), 1e-12);
+    EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), 0), 4 + 2);
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+        for (const std::int32_t v : mesh.triangles[f])
+            EXPECT_TRUE(mesh.surface[f] != 0 || mesh.points[static_cast<std::size_t>(v)][2] == 0);
+    }
+}
+
+TEST(OutsideCoversTest, AnEdgeIsCoveredByTheRegionsOfItsFaces) {
+    FilledMesh mesh = octahedron({0, 0, 0}, true);
+    OutsideCovers covers(mesh);
+    ASSERT_TRUE(covers.add(std::array{0, 1}, {0.8, 0.8, 0}));
+    EXPECT_FALSE(covers.add(std::array{1}, {0, 1.5, 0}));  // touches what was covered
+    expect_valid(mesh);
+    EXPECT_NEAR(volume_of_all(mesh), 4.0 / 3 + 0.6 / 3, 1e-12);
+    EXPECT_NEAR(volume(mesh, 1), volume(mesh, 0), 1e-12);
+    EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), 0), 4 + 1);
+}
+
+TEST(OutsideCoversTest, NothingIsCoveredByTurnedOrFlatElements) {
+    FilledMesh mesh = octahedron({0, 0, 0}, true);
+    for (const double x : {0.5, 1.0, 1.0001}) {
+        EXPECT_FALSE(OutsideCovers(mesh).add(std::array{0}, {x, 0, 0}));
+        EXPECT_EQ(mesh.points.size(), 7);
+    }
+    EXPECT_NEAR(volume_of_all(mesh), 4.0 / 3, 1e-12);
 }
 
 double flattest(const FilledMesh& mesh) {
