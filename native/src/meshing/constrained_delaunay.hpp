@@ -2,9 +2,10 @@
 // The CGAL triangulation behind meshing. Private: CGAL stays out of the public headers.
 #pragma once
 
+#include "exact/cgal_kernel.hpp"
+// CGAL
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_data_structure_2.h>
 #include <CGAL/Triangulation_vertex_base_2.h>
 

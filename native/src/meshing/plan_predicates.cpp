@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "meshing/plan_predicates.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <cstdio>
 
 #include "base/vectors.hpp"
+#include "exact/cgal_kernel.hpp"
 
 namespace realmodel::meshing {
 
