@@ -162,7 +162,7 @@ def beside_a_corner(seed):
     return region, corner, trace, rng.choice([30.0, 45.0, 60.0, rng.uniform(20, 85)]), direction
 
 
-def corner_model(region, trace, dip, direction):
+def corner_model(region, trace, dip, direction, **options):
     """Two surfaces of points below a level ground at 400 that the trace is on."""
     rng = np.random.default_rng(0)
     low, high = region.min(axis=0), region.max(axis=0)
@@ -175,8 +175,19 @@ def corner_model(region, trace, dip, direction):
     corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
     ground = Surface("ground", np.column_stack([corners, np.full(4, 400.0)]), [[0, 1, 2], [0, 2, 3]])
     rock = Rock("r", [*surfaces, ground], region=region, edge_length=150.0, base_elevation=0.0)
-    fault = Fault("F", trace=trace, dip=dip, dip_direction=direction, elevation=400.0, youngest="B")
+    fault = Fault(
+        "F", trace=trace, dip=dip, dip_direction=direction, elevation=400.0, youngest="B", **options
+    )
     return build(Project("p", [rock], faults=[fault]))
+
+
+def require_no_slivers(model):
+    """Its proof passes, and no two vertices are as near to each other as rounding."""
+    assert not [(test.name, test.failed) for test in model.validate(100).tests if test.failed]
+    vertices = model.vertices
+    away = np.abs(vertices[:, None] - vertices).max(axis=2)
+    np.fill_diagonal(away, np.inf)
+    assert away.min() > 4 * np.spacing(np.abs(vertices).max())
 
 
 @pytest.mark.parametrize("seed", [None, *range(8), 60])
@@ -191,6 +202,62 @@ def test_a_trace_from_a_corner_of_the_region_leaves_no_sliver_there(seed):
     assert not [(test.name, test.failed) for test in model.validate(100).tests if test.failed]
     away = np.abs(model.vertices - [*corner, 400.0]).max(axis=1)
     assert (away < 1e-6).sum() == 1
+
+
+WHOLE = [[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]]
+OBLIQUE = [
+    [233.13210604436847, 197.00084449687765],
+    [-287.1597529089942, 164.86738282161244],
+    [-63.92747179774037, -442.66062748396286],
+    [303.5187955982292, -151.48739306358263],
+]
+
+
+@pytest.mark.parametrize(
+    ("region", "trace", "dip", "direction"),
+    [
+        (WHOLE, [[0.0, 0.0], [-111.87750418976714, 0.0]], 45.0, 180.0),
+        (WHOLE, [[0.0, 0.0], [175.39889940424223, 0.0]], 45.0, 180.0),
+        (WHOLE, [[729.5141327590196, 0.0], [1000.0, 0.0]], 60.0, 180.0),
+        (OBLIQUE, [[221.0, 255.0], [262.43288745300055, 51.93111985206485]], 90.0, None),
+    ],
+)
+def test_a_fault_that_dies_out_at_a_wall_leaves_no_sliver_beside_it(region, trace, dip, direction):
+    """Where the surface goes on beyond its tip it runs along the wall, or there is less than rounding between
+    the tip and the wall."""
+    model = corner_model(np.array(region), np.array(trace), dip, direction, dies_out=True)
+    assert not [(test.name, test.failed) for test in model.validate(100).tests if test.failed]
+
+
+@pytest.mark.parametrize(
+    ("region", "trace", "dip", "direction"),
+    [
+        (
+            [[159.0, 579.0], [-511.0, -314.0], [553.0, -232.0]],
+            [[553.0, -232.0], [465.6604777344208, -238.7310534076856]],
+            60.0,
+            175.5930589429607,
+        ),
+        (
+            [[505.0, 324.0], [-421.0, 428.0], [154.0, -580.0]],
+            [[154.0, -580.0], [226.7494065803234, -392.6340069840103]],
+            45.0,
+            111.2199134979131,
+        ),
+    ],
+)
+def test_a_trace_on_the_outline_leaves_no_vertices_that_only_rounding_keeps_apart(
+    region, trace, dip, direction
+):
+    """The part of the rock beyond the fault is a point but for rounding."""
+    require_no_slivers(corner_model(np.array(region), np.array(trace), dip, direction))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("dies_out", [False, True])
+def test_traces_beside_the_outline_leave_no_slivers(seed, dies_out):
+    region, _, trace, dip, direction = beside_a_corner(seed)
+    require_no_slivers(corner_model(region, trace, float(dip), direction, dies_out=dies_out))
 
 
 def test_a_side_gives_the_plane_through_the_line_back():

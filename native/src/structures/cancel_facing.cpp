@@ -37,11 +37,17 @@ void cancel_facing(cutting::RoundedParts& parts) {
         assert(left[0].size() + left[1].size() <= before);
         if (left[0].size() + left[1].size() == before) continue;
         any = true;
+        // what ends at no rock is what ended there before, not what was between two parts
+        const bool ends = left[0].size() != left[1].size();
+        const auto alike = std::ranges::find_if(equal, [&](std::size_t p) {
+            return (pieces[p].parts[0] < 0 || pieces[p].parts[1] < 0) == ends;
+        });
+        const CutPiece& named = pieces[alike == equal.end() ? equal[0] : *alike];
         const auto first = pieces.polygons[equal[0]];
         std::vector<NodeId> nodes(first.begin(), first.end());
         if (cutting::winding_of(nodes) < 0) std::ranges::reverse(nodes);
         for (std::size_t i = 0; i < std::max(left[0].size(), left[1].size()); ++i) {
-            CutPiece piece = pieces[equal[0]];
+            CutPiece piece = named;
             for (std::size_t k = 0; k < 2; ++k) {
                 const bool has_part = i < left[k].size();
                 piece.parts[k] = has_part ? left[k][i] : -1;

@@ -114,13 +114,16 @@ private:
         }
     }
 
-    /// Makes the greater of the nodes that its ends became the lesser one where no part comes to
-    /// touch itself for it.
+    /// Makes the nodes that its ends became one, the lesser one if walls allow it, where no part
+    /// comes to touch itself for it.
     bool contract(const Edge& edge, Scratch& scratch) {
         const NodeId a = contraction_.becomes[index(edge[0])];
         const NodeId b = contraction_.becomes[index(edge[1])];
         const NodeId to = std::min(a, b), from = std::max(a, b);
-        if (a == b || !parts_.is_new(from) || leaves_wall(from, to)) return false;
+        return a != b && (become_one(to, from, scratch) || become_one(from, to, scratch));
+    }
+    bool become_one(NodeId to, NodeId from, Scratch& scratch) {
+        if (!parts_.is_new(from) || leaves_wall(from, to)) return false;
         std::map<std::int32_t, std::optional<Shape>> after;
         for (const NodeId node : nodes_of(from))
             each_part_at(node, [&after](std::int32_t part) { after[part]; });
@@ -128,7 +131,10 @@ private:
             return false;
         for (auto& [part, found] : after) {
             found = contracted(part, to, from, scratch);
-            if (!found || found->touches > now(part, scratch)->touches) return false;
+            const Shape& before = *now(part, scratch);
+            if (!found || found->touches > before.touches ||
+                (!contraction_.is_sound(*found, part) && contraction_.is_sound(before, part)))
+                return false;
         }
         assert(contraction_.becomes[index(to)] == to && !nodes_.at(from).empty());
         become(from, to);
@@ -138,19 +144,38 @@ private:
         added.clear();
         for (auto& [part, found] : after)
             now_.at(part) = found;
-        parts_.on_wall[index(to)] |= parts_.on_wall[index(from)];
         return true;
     }
 
-    /// Whether a node on a wall would go off it, if it moved to another one: near 0 on an axis
-    /// walls are as precise as their small coordinates.
+    /// Whether some of the nodes that became one would go off a wall that they are on, if these
+    /// moved to another one. Along it they may: near 0 on an axis walls are as precise as their
+    /// small coordinates.
     bool leaves_wall(NodeId from, NodeId to) const {
-        if (parts_.on_wall[index(from)] == 0) return false;
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            const double x = parts_.at(from)[axis], y = parts_.at(to)[axis];
-            if (std::abs(x - y) > 4 * ulp(std::max(std::abs(x), std::abs(y)))) return true;
+        return std::ranges::any_of(nodes_of(from), [&](NodeId node) {
+            return parts_.on_wall[index(node)] != 0 &&
+                   std::ranges::any_of(pieces_at_[index(node)], [&](std::int32_t p) {
+                       return parts_.surface_of(index(p), kCutFace) == kWall &&
+                              goes_off(node, to, index(p));
+                   });
+        });
+    }
+    /// Whether a node of a wall would go off it, by more than rounding of its coordinates.
+    bool goes_off(NodeId node, NodeId to, std::size_t wall) const {
+        const Position &old = parts_.at(node), &now = parts_.at(to), by = minus(now, old);
+        const auto size = [](const Position& p) {
+            return std::max(std::abs(p[0]), std::abs(p[1]));
+        };
+        Position way{0, 0, 0};  // along the wall
+        for (const NodeId corner : parts_.pieces.polygons[wall]) {
+            const Position own = minus(parts_.at(corner), old);
+            if (size(own) > size(way)) way = own;
         }
-        return false;
+        double allowed = 0;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            allowed += 4 * ulp(std::max(std::abs(old[axis]), std::abs(now[axis]))) *
+                       std::abs(way[1 - axis]);
+        }
+        return std::abs(by[0] * way[1] - by[1] * way[0]) > allowed;
     }
 
     /// The nodes that became one.
@@ -168,7 +193,7 @@ private:
         if (!known) known.emplace(contraction_.shape(part, scratch));
         return *known;
     }
-    /// What a part, which is sound, would be like.
+    /// What a part would be like.
     std::optional<Shape> contracted(std::int32_t part, NodeId to, NodeId from, Scratch& scratch) {
         if (parts_.pieces_of[index(part)].size() > kMany) {
             const std::vector<std::int32_t> pieces = pieces_near(part, to, from);

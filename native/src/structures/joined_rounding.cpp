@@ -39,6 +39,7 @@ void round_joined_parts(cutting::RoundedParts&& parts, const std::array<bool, 2>
     // is weighed by what the parts are like without these, and what faces each other then cancels
     // before nodes are set apart. Nodes in the middle of polygons may make others the same once
     // more. Where a part touches itself is only known at the end.
+    merge_needles(parts, least_rounding);
     cutting::drop_hollow(parts);
     cutting::level_base(parts);
     cutting::join_coincident(parts, touches, true);

@@ -17,8 +17,12 @@ void round_joined_parts(cutting::RoundedParts&& parts, const std::array<bool, 2>
 
 // The passes that joining has beside those of cutting (cutting/rounding/part_rounding.hpp).
 
+/// Parts that are narrower than rounding all along become one with a part of their block beside
+/// them that nothing but such slivers parts from them.
+void merge_needles(cutting::RoundedParts& parts, double least_rounding);
+
 /// Contracts edges of new nodes that are as short as rounding, one after another, where no part
-/// comes to touch itself for it.
+/// comes to touch itself for it. Parts that only rounding keeps open vanish.
 void join_short_edges(cutting::RoundedParts& parts, double least_rounding);
 
 /// Of polygons that are the same, those that face each other within one part cancel: what is left

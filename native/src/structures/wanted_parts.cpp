@@ -5,18 +5,14 @@
 #include <cassert>
 
 #include "base/lists.hpp"
+#include "structures/narrow.hpp"
 
 namespace realmodel::structures {
 
 using cutting::kAbove;
 using cutting::kOn;
-
-namespace {
-
-/// How many times rounding a region may be wide that rounding alone left.
-constexpr double kSliver = 64;
-
-}  // namespace
+using cutting::NodeId;
+using cutting::Position;
 
 WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                          const StructureSides& sides, std::span<const std::int32_t> model_of_cell,
@@ -138,12 +134,34 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
         }
     }
     if (model.block(low) == model.block(high)) return -2 - kWall;
+    const std::int32_t fault = parting(region);
+    if (fault >= 0 && is_tall(region)) return -2 - (model.surfaces + fault);
     std::int32_t surface = std::max(model.block(low), model.block(high));
     if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
     // bodies have a block for each rock mass
     const auto count = static_cast<std::int32_t>(acts_.size() / model.blocks);
     if (surface >= model.surfaces) surface = model.surfaces + (surface - model.surfaces) % count;
     return -2 - surface;
+}
+
+/// The first structure that has what is below and above a region on two sides, -1 none.
+std::int32_t WantedParts::parting(std::size_t region) const {
+    const Sides& below = sides_.sides(sides_.part_at(region, 0));
+    const Sides& above = sides_.sides(sides_.part_at(region, 1));
+    const auto& structures = sides_.structures_at(region);
+    const auto found = std::ranges::find_if(structures, [&](const RegionOf& of) {
+        return below[index(of.structure)] != above[index(of.structure)];
+    });
+    return found == structures.end() ? -1 : found->structure;
+}
+
+/// Whether a region extends farther in height than in plan.
+bool WantedParts::is_tall(std::size_t region) const {
+    spatial::Box box;
+    for (const NodeId node : overlay_.loops(region)[0])
+        box.include(overlay_.position(node));
+    const Position extent = minus(box.high, box.low);
+    return extent[2] > std::max(extent[0], extent[1]);
 }
 
 /// The cell that is wanted on one side of a region, -1 none.
@@ -169,20 +187,14 @@ bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t l
 
 /// Whether a region of the surface is narrower than rounding may have made it.
 bool WantedParts::is_sliver(std::size_t region) const {
-    double length = 0, area = 0, rounding = 0;
+    Narrow narrow;
     const auto loops = overlay_.loops(region);
     for (std::size_t k = 0; k < loops.size(); ++k) {
         const auto corners =
             mapped(loops[k], [this](NodeId node) { return overlay_.position(node); });
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            length += realmodel::length(minus(corners[(i + 1) % corners.size()], corners[i]));
-        }
-        const Position normal = polygon_normal(corners);
-        const double size = realmodel::length(normal);
-        area += k == 0 ? size : -size;
-        rounding = std::max(rounding, cutting::rounding_of(corners));
+        narrow.add(corners, k > 0);
     }
-    return area <= kSliver * rounding * length;
+    return static_cast<bool>(narrow);
 }
 
 /// Refuses a fault that is continued through rock that it displaces, unless it says that it dies
@@ -226,10 +238,9 @@ bool WantedParts::are_same(std::size_t region, bool may_be_sliver) const {
     if (ends_itself(low, region) && ends_itself(high, region) &&
         (!is_beyond_tip || is_there_without_structures(region, low, high)))
         return false;
-    const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",
-                  fault == structures.end() ? -1 : fault->structure, region);
+                  parting(region), region);
 }
 
 }  // namespace realmodel::structures

@@ -40,6 +40,8 @@ private:
     bool does_act(std::int32_t structure, std::int32_t cell) const;
     bool is_in_body(const Sides& sides) const;
     bool is_there_without_structures(std::size_t region, std::int32_t low, std::int32_t high) const;
+    std::int32_t parting(std::size_t region) const;
+    bool is_tall(std::size_t region) const;
     bool is_sliver(std::size_t region) const;
     void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;
     bool are_same(std::size_t region, bool may_be_sliver) const;

@@ -34,6 +34,18 @@ TEST_F(JoinedHalves, PolygonsThatFaceEachOtherWithinAPartCancel) {
     EXPECT_EQ(nodes(0), node_loop({8, 9, 11, 10}));
 }
 
+TEST_F(JoinedHalves, ANeedleBecomesOneWithThePartBesideIt) {
+    for (std::size_t y = 1; y < vertices_.size(); y += 3)
+        vertices_[y] *= 0x1p-50;
+    for (Position& p : new_)
+        p = {p[0], p[1] * 0x1p-50, 0x1p-50};
+    RoundedParts parts = rounded_parts(true);
+    merge_needles(parts, 0);
+    EXPECT_TRUE(parts.pieces_of[0].empty());
+    EXPECT_EQ(parts.pieces_of[1].size(), 10U);
+    EXPECT_EQ(pieces_[kCap].parts, (std::array{-1, -1}));
+}
+
 TEST_F(JoinedHalves, PolygonsOfTwoPartsStay) {
     add_piece({8, 9, 11, 10}, {0, -1});
     RoundedParts parts = rounded_parts(true);
@@ -61,13 +73,31 @@ TEST_F(JoinedHalves, ALongerEdgeIsContractedOnlyWhereRoundingIsCoarser) {
     EXPECT_EQ(nodes(kCap), node_loop({8, 11, 10}));
 }
 
-TEST_F(JoinedHalves, ShortEdgesStayWhereAPartWouldVanish) {
+TEST_F(JoinedHalves, APartThatRoundingAloneKeepsOpenIsNoMore) {
     for (Position& p : new_)
         p[2] = ulp(0.5);
     RoundedParts parts = rounded_parts(true);
     join_short_edges(parts, 0);
-    EXPECT_FALSE(parts.pieces_of[0].empty());
-    EXPECT_GE(parts.pieces_of[0].size(), 4U);
+    cancel_facing(parts);
+    EXPECT_TRUE(parts.pieces_of[0].empty());
+    ASSERT_EQ(parts.pieces_of[1].size(), 6U);
+    // what it stands on was below the other part
+    EXPECT_EQ(pieces_[0].parts, (std::array{-1, 1}));
+    EXPECT_EQ(pieces_[0].face, 0);
+}
+
+TEST_F(JoinedHalves, ANodeMovesAlongAWallButNotOffIt) {
+    surfaces_[3] = 1;  // node 9 is on the wall of y = 0 alone
+    new_[1] = {0x1p-30, 0x1p-30, 0.5};
+    {
+        RoundedParts parts = rounded_parts(true);
+        join_short_edges(parts, 0x1p-29);
+        EXPECT_EQ(nodes(kCap), node_loop({8, 9, 11, 10}));
+    }
+    new_[1][1] = 0;
+    RoundedParts parts = rounded_parts(true);
+    join_short_edges(parts, 0x1p-29);
+    EXPECT_EQ(nodes(kCap), node_loop({8, 11, 10}));
 }
 
 TEST_F(JoinedHalves, WhereAPartTouchesItselfTheWayRoundGetsANodeOfItsOwn) {

@@ -103,13 +103,16 @@ std::optional<Contraction::Shape> Contraction::shape(std::span<const std::int32_
 }
 
 std::optional<Contraction::Shape> Contraction::shape(std::int32_t part, Scratch& scratch) const {
-    const auto found = shape(parts_.pieces_of[index(part)], part, scratch);
-    if (found && parts_.has_far_faces[index(part)] != 0) return found;
-    if (!found || found->count < 4) return std::nullopt;
+    return shape(parts_.pieces_of[index(part)], part, scratch);
+}
+
+bool Contraction::is_sound(const Shape& shape, std::int32_t part) const {
+    if (parts_.has_far_faces[index(part)] != 0) return true;
+    if (shape.count < 4) return shape.count == 0 && may_fold_;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (found->box.low[k] == found->box.high[k]) return std::nullopt;
+        if (shape.box.low[k] == shape.box.high[k]) return false;
     }
-    return found;
+    return true;
 }
 
 void Contraction::apply() {

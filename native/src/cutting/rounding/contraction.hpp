@@ -39,8 +39,10 @@ public:
     /// two have the same nodes.
     std::optional<Shape> shape(std::span<const std::int32_t> pieces, std::int32_t part,
                                Scratch& scratch) const;
-    /// The same of a whole part, which stays closed; none where it has no extent, either.
+    /// The same of a whole part, which stays closed.
     std::optional<Shape> shape(std::int32_t part, Scratch& scratch) const;
+    /// Whether a whole part has an extent, or vanishes where its polygons may cancel.
+    bool is_sound(const Shape& shape, std::int32_t part) const;
     /// Makes it so: polygons that vanish are no more.
     void apply();
 

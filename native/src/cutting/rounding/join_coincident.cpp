@@ -61,8 +61,9 @@ void keep_sound(const RoundedParts& parts, Contraction& contraction,
     }
     const auto stays_sound = [&](std::int32_t part, Contraction::Scratch& scratch) {
         const auto found = contraction.shape(part, scratch);
-        return found && (found->touches == 0 || parts.model.cell_kind == CellKind::kBlocks ||
-                         touches[parts.half_cells[index(part)].side == kAbove ? 1 : 0]);
+        return found && contraction.is_sound(*found, part) &&
+               (found->touches == 0 || parts.model.cell_kind == CellKind::kBlocks ||
+                touches[parts.half_cells[index(part)].side == kAbove ? 1 : 0]);
     };
     // what all of them are like at first is found on all threads
     const std::vector<std::int32_t> all(involved.begin(), involved.end());

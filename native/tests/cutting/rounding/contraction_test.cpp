@@ -28,6 +28,24 @@ TEST_F(AHalvedBox, APartIsNoMoreWhereItsNodesBecomeThoseOfOnePolygon) {
     EXPECT_TRUE(contraction.shape(1, scratch));
 }
 
+TEST_F(AHalvedBox, APartIsSoundWithAnExtentOrWhereItVanishes) {
+    cut_at(0.5);
+    RoundedParts parts = rounded_parts();
+    Contraction contraction(parts, true);
+    Contraction::Scratch scratch;
+    EXPECT_TRUE(contraction.is_sound(*contraction.shape(0, scratch), 0));
+    for (NodeId node = 0; node < 4; ++node)
+        contraction.becomes[index(node + 8)] = node;
+    const auto vanished = contraction.shape(0, scratch);
+    ASSERT_TRUE(vanished);
+    EXPECT_EQ(vanished->count, 0U);
+    EXPECT_TRUE(contraction.is_sound(*vanished, 0));
+    EXPECT_FALSE(Contraction(parts, false).is_sound(*vanished, 0));
+    for (Position& p : new_)
+        p[2] = 0;
+    EXPECT_FALSE(Contraction(parts, true).is_sound(*Contraction(parts, true).shape(0, scratch), 0));
+}
+
 TEST_F(AHalvedBox, EqualPolygonsOfAPartThatFaceEachOtherCancelWhereTheyMay) {
     cut_at(0.5);
     const CutPiece in_two{-1, {0, 0}, {kBelow, kBelow}, false, {0, 0}};
