@@ -5,6 +5,7 @@ with a plane through each surface. Prints those that are worse than planes by mo
 
     scripts/compare_histories.py near_flat 0 1000
     scripts/compare_histories.py folded 0 100
+    scripts/compare_histories.py rough 0 24
 """
 
 import sys

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random successions of known truth, with what is seen of them: near-flat beds with errors, and folds."""
+"""Random successions of known truth, with what is seen of them: near-flat beds with errors, rough ones that few
+data show, and folds."""
 
 from dataclasses import dataclass
 
@@ -83,6 +84,40 @@ def near_flat(seed):
     at[:, 2] = height(at) + random.uniform(levels[0] - 50, levels[2] + 50, dips)
     rise = slope + (wave * np.cos(at[:, :2] @ waves + phase))[:, None] * waves
     rise = rise + tilt * random.normal(size=(dips, 2))
+    normals = np.column_stack([-rise, np.ones(dips)])
+    for places in (contacts, at):
+        places[:, 2] = np.clip(places[:, 2], 5, 995)
+    return _history(contacts, surfaces, at, normals, lambda p: p[:, 2] - height(p), levels, size)
+
+
+def rough(seed):
+    """2 by 2 km, three surfaces 120 to 150 m apart that keep their distance: a plane of up to 10 degrees, with a
+    rough field of 20 to 60 m on it; 3 to 8 contacts each, and 2 to 6 dips in all."""
+    random = np.random.default_rng([63, seed])
+    size = np.array([2000.0, 2000.0, 1000.0])
+    dip, azimuth = np.radians(random.uniform(0, 10)), random.uniform(0, 2 * np.pi)
+    slope = np.tan(dip) * np.array([np.sin(azimuth), np.cos(azimuth)])
+    rises = random.normal(size=(40, 2)) / random.uniform(250, 600)  # of a field with a Gaussian variogram
+    phases = random.uniform(0, 2 * np.pi, 40)
+    deviation = random.uniform(20, 60) * np.sqrt(2 / 40)
+    levels = np.cumsum([0, *random.uniform(120, 150, 2)])
+    levels -= levels.mean()
+
+    def height(points):
+        plan = points[:, :2]
+        waves = np.cos(np.outer(plan[:, 0], rises[:, 0]) + np.outer(plan[:, 1], rises[:, 1]) + phases)
+        return 500 + (plan - 1000) @ slope + deviation * waves.sum(axis=1)
+
+    count, dips = int(random.integers(3, 9)), int(random.integers(2, 7))
+    noise, tilt = random.uniform(0, 5), np.tan(np.radians(random.uniform(0, 5)))
+    contacts = random.uniform(40, 1960, (3 * count, 3))
+    surfaces = np.repeat(np.arange(3, dtype=np.int32), count)
+    contacts[:, 2] = height(contacts) + levels[surfaces] + random.normal(0, noise, 3 * count)
+    at = random.uniform(40, 1960, (dips, 3))
+    at[:, 2] = height(at) + random.choice(levels, dips)
+    east, north = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
+    rise = np.column_stack([height(at + step) - height(at - step) for step in (east, north)]) / 2
+    rise += tilt * random.normal(size=(dips, 2))
     normals = np.column_stack([-rise, np.ones(dips)])
     for places in (contacts, at):
         places[:, 2] = np.clip(places[:, 2], 5, 995)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from histories import folded, lattice_of, near_flat
+from histories import folded, lattice_of, near_flat, rough
 from realmodel.core import Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.fields import Lattice, LevelSetData, solve_field
@@ -26,6 +26,12 @@ def test_a_field_that_falls_again_behind_its_data_is_not_taken():
     """Along a valley as wide as the lattice, which has no critical point inside (1 of 1,000 histories)."""
     history = near_flat(1040)
     assert history.share_right(50_000) > history.share_of_planes() - 0.01
+
+
+def test_sparse_and_rough_histories_are_no_worse_than_planes():
+    for seed in range(20):
+        history = rough(seed)
+        assert history.share_right(NODES) > history.share_of_planes() - 0.05, seed
 
 
 @pytest.mark.parametrize("first", range(0, 30, 10))
