@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random successions of known truth, with what is seen of them: near-flat beds with errors, rough ones that few
-data show, and folds."""
+"""Random successions of known truth, with what is seen of them: near-flat beds with errors, rough ones with
+few data, and folds."""
 
 from dataclasses import dataclass
 
@@ -91,8 +91,8 @@ def near_flat(seed):
 
 
 def rough(seed):
-    """2 by 2 km, three surfaces 120 to 150 m apart that keep their distance: a plane of up to 10 degrees, with a
-    rough field of 20 to 60 m on it; 3 to 8 contacts each, and 2 to 6 dips in all."""
+    """2 by 2 km, three surfaces 120 to 150 m apart: a plane of up to 10 degrees, a Gaussian field of 20 to
+    60 m on it, 3 to 8 contacts each, and 2 to 6 dips in all."""
     random = np.random.default_rng([63, seed])
     size = np.array([2000.0, 2000.0, 1000.0])
     dip, azimuth = np.radians(random.uniform(0, 10)), random.uniform(0, 2 * np.pi)
