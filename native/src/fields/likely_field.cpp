@@ -331,10 +331,20 @@ private:
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
         if (!is_told_by_dips()) return points.size();
-        std::vector<std::int64_t> nodes = turning_points(coarse, values, execution_);
+        std::vector<std::int64_t> nodes;
+        if (rises_one_way()) nodes = turning_points(coarse, values, execution_);
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
         return connected_parts(nodes, coarse, likely.anisotropy);
+    }
+
+    /// Whether dips say nothing of limbs that are overturned.
+    bool rises_one_way() const {
+        const auto& normals = known_.data().normals;
+        Vec3 sum{};
+        for (const Vec3& normal : normals)
+            sum = plus(sum, normal);
+        return std::ranges::all_of(normals, [&](const Vec3& n) { return dot(n, sum) > 0; });
     }
 
     /// How much of the lattice each block is.
