@@ -14,7 +14,8 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kMoved = 0.5;  ///< of the tolerance: how far corners on surfaces move
+constexpr double kFlatTetrahedron = 0.002;  ///< twice the limit of checkMesh
+constexpr double kMoved = 0.5;              ///< of the tolerance: how far corners on surfaces move
 constexpr double kBetter = 1.02;
 constexpr int kRounds = 20;
 constexpr std::array kSteps{0.4, 0.2, 0.1, 0.05, 0.025};  ///< of an edge

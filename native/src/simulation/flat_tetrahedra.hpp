@@ -5,9 +5,6 @@
 
 namespace realmodel::simulation {
 
-/// Tetrahedra below this roundness are flat: twice the limit of checkMesh.
-constexpr double kFlatTetrahedron = 0.002;
-
 /// Makes flat tetrahedra thicker by moving their corners: those inside regions as far as it takes,
 /// those inside of one surface between regions by half of `tolerance` at most, no others. No
 /// element near them becomes flatter than the flattest there was.

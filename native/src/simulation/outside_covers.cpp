@@ -12,6 +12,9 @@ namespace realmodel::simulation {
 
 namespace {
 
+// Flatter ones would be under-determined: one of their faces is outside, where checkMesh sees none.
+constexpr double kLeastOfCovers = 0.01;
+
 template <std::size_t N>
 bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
     return std::ranges::all_of(
@@ -85,7 +88,7 @@ bool OutsideCovers::add(std::span<const std::int32_t> corners, const Vec3& at) {
     };
     const auto is_good = [&](const Outer& face) {
         return six_volumes(mesh_, covered(face)) > 0 &&
-               roundness(mesh_, covered(face)) >= kFlatTetrahedron;
+               roundness(mesh_, covered(face)) >= kLeastOfCovers;
     };
     if (!std::ranges::all_of(outer, is_good)) {
         mesh_.points.pop_back();

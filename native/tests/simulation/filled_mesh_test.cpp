@@ -293,10 +293,10 @@ double volume_of_all(const FilledMesh& mesh) {
 
 TEST(OutsideCoversTest, ACornerIsCoveredByBothRegionsThatMeetThere) {
     FilledMesh mesh = octahedron({0, 0, 0}, true);
-    ASSERT_TRUE(OutsideCovers(mesh).add(std::array{0}, {1.5, 0, 0}));
+    ASSERT_TRUE(OutsideCovers(mesh).add(std::array{0}, {2, 0, 0}));
     expect_valid(mesh);
-    // four elements, each of height 0.5 over a face whose projection along x is half a square
-    EXPECT_NEAR(volume(mesh, 0), 2.0 / 3 + 0.5 / 3, 1e-12);
+    // the faces of a region are a triangle of area 1, seen along x; the new point is 1 farther out
+    EXPECT_NEAR(volume(mesh, 0), 2.0 / 3 + 1.0 / 3, 1e-12);
     EXPECT_NEAR(volume(mesh, 1), volume(mesh, 0), 1e-12);
     EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), 0), 4 + 2);
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
