@@ -112,7 +112,7 @@ def test_names_of_boundaries(faulted):
 )
 def test_outside_faces_have_the_patch_that_they_come_from(sample, edge, thickness):
     """No patch of a top or base has faces of walls or tunnels (a field was wrong by 19 of 30 K), and walls
-    and the flat base are plane but for a few corners, where exact edges are shorter than elements'."""
+    and the flat base are plane but for a few corners, where elements that fill a dent would be flat."""
     model = build(load_project(SAMPLES / sample / "project.toml"))
     mesh = filled(model, edge, thickness)
     names = {part.name for part in ElementFaces(mesh).sets() if part.group}
