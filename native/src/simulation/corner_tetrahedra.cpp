@@ -20,18 +20,6 @@ constexpr int kMostRounds = 20;
 constexpr std::int32_t kGone = INT32_MIN;  ///< the surface of a triangle that is no longer one
 constexpr double kFlatCorner = 0.87;       ///< cosine between normals: 30 degrees
 
-template <std::size_t N>
-bool has(const std::array<std::int32_t, N>& corners, std::int32_t v) {
-    return std::find(corners.begin(), corners.end(), v) != corners.end();
-}
-
-template <std::size_t N>
-std::array<std::int32_t, N> with(std::array<std::int32_t, N> corners, std::int32_t old,
-                                 std::int32_t instead) {
-    std::replace(corners.begin(), corners.end(), old, instead);
-    return corners;
-}
-
 Triangle opposite(const Tetrahedron& corners, std::size_t corner) {
     Triangle face{};
     for (std::size_t i = 0, at = 0; i < 4; ++i)

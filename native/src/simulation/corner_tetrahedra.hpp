@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
@@ -25,6 +29,20 @@ Buckets<std::int32_t> rows_at(const FilledMesh& mesh, const Rows& rows) {
                 put(index(v), static_cast<std::int32_t>(i));
         }
     });
+}
+
+/// Whether an element or a face has a corner.
+template <std::size_t N>
+bool has(const std::array<std::int32_t, N>& corners, std::int32_t v) {
+    return std::find(corners.begin(), corners.end(), v) != corners.end();
+}
+
+/// It with another corner in the place of one.
+template <std::size_t N>
+std::array<std::int32_t, N> with(std::array<std::int32_t, N> corners, std::int32_t old,
+                                 std::int32_t instead) {
+    std::replace(corners.begin(), corners.end(), old, instead);
+    return corners;
 }
 
 }  // namespace realmodel::simulation

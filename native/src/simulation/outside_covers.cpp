@@ -17,14 +17,7 @@ constexpr double kLeastOfCovers = 0.01;
 
 template <std::size_t N>
 bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
-    return std::ranges::all_of(
-        wanted, [&](std::int32_t v) { return std::ranges::find(corners, v) != corners.end(); });
-}
-
-std::array<std::int32_t, 3> with(std::array<std::int32_t, 3> corners, std::int32_t old,
-                                 std::int32_t instead) {
-    std::ranges::replace(corners, old, instead);
-    return corners;
+    return std::ranges::all_of(wanted, [&](std::int32_t v) { return has(corners, v); });
 }
 
 }  // namespace
