@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from histories import folded, lattice_of, near_flat, rough
+from histories import History, folded, lattice_of, near_flat, rough
 from realmodel.core import Project, Rock, Series, SpaceDips, Surface, build
 from realmodel.core.base.work import run
 from realmodel.core.fields import Lattice, LevelSetData, solve_field
 from realmodel.core.structures.field_warnings import warn_of_volumes
+from stacks import places
 
 NODES = 6000  # enough for dips to say how a field runs between surfaces
 
@@ -42,6 +43,32 @@ def test_folded_histories_are_no_worse_than_planes(first):
             assert history.share_right(NODES) > history.share_of_planes() - 0.05, seed
 
 
+@pytest.mark.skipif(not places.REAL_DATA.is_dir(), reason=places.DATA_ABSENT)
+@pytest.mark.parametrize("seed", [4, 5, 7])
+def test_few_data_of_a_rough_surface_are_not_taken_for_parallel_planes(seed):
+    """Fields were chosen that turn back in planes: 0.51 to 0.53 of places beside other dips were right."""
+    folder, random = places.REAL_DATA / "folds" / "moureze", np.random.default_rng([9, seed])
+    contacts = np.loadtxt(folder / "s0.csv", delimiter=",", skiprows=1)
+    rows = np.loadtxt(folder / "dips.csv", delimiter=",", skiprows=1)
+    low = np.minimum(contacts.min(axis=0), rows[:, :3].min(axis=0)) - 20
+    size = np.maximum(contacts.max(axis=0), rows[:, :3].max(axis=0)) + 20 - low
+    dip, azimuth = np.radians(rows[:, 3:5]).T
+    normals = np.column_stack([np.sin(dip) * np.sin(azimuth), np.sin(dip) * np.cos(azimuth), np.cos(dip)])
+    at, normals = rows[:, :3] - low, normals * rows[:, 5:6]
+    count, dips = random.integers(5, 40), random.integers(3, 16)
+    seen = contacts[random.choice(len(contacts), count, replace=False)] - low
+    known = random.choice(len(at), dips, replace=False)
+    surfaces = np.zeros(count, np.int32)
+    history = History(LevelSetData("A", seen, surfaces, at[known], normals[known]), None, np.zeros(1), size)
+    field = run(lambda work: solve_field(lattice_of(history, 50_000), history.data, work))
+    beside = random.choice([5.0, 10.0, 20.0, 40.0], len(at)) * random.choice([-1, 1], len(at))
+    asked = at + beside[:, None] * normals
+    counts = np.all((asked > 0) & (asked < size), axis=1)
+    counts[known] = False
+    is_above = field.at(asked[counts]) > field.levels[0]
+    assert np.mean(is_above == (beside[counts] > 0)) > 0.55
+
+
 def test_two_flat_beds_with_ten_dips_stay_flat():
     """The oldest block had vanished, with four contacts that are off by a meter."""
     contacts = np.array([[700.0, 350, 847], [250, 950, 848], [650, 750, 916], [650, 850, 919]])
@@ -55,9 +82,9 @@ def test_two_flat_beds_with_ten_dips_stay_flat():
     data = LevelSetData("AB", contacts, np.array([0, 0, 1, 1], np.int32), dips, normals)
     lattice = Lattice((0.0, 0.0, 0.0), (50.0, 50.0, 50.0), (21, 21, 21))
     field = run(lambda work: solve_field(lattice, data, work))
-    places = np.random.default_rng(1).uniform(0, 1000, (5000, 3))
-    right = np.searchsorted([848.0, 918.0], places[:, 2])
-    assert np.mean(np.searchsorted(field.levels, field.at(places)) == right) > 0.98
+    asked = np.random.default_rng(1).uniform(0, 1000, (5000, 3))
+    right = np.searchsorted([848.0, 918.0], asked[:, 2])
+    assert np.mean(np.searchsorted(field.levels, field.at(asked)) == right) > 0.98
 
 
 def model_of(history, nodes):

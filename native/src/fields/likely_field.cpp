@@ -46,6 +46,7 @@ constexpr std::array<Errors, 3> kErrorsOfFifth{{{1e-4, 1e-3}, {1e-3, 1e-2}, {1e-
 constexpr double kRuledOut = 20;
 // By so much one kind predicts clearly better than another.
 constexpr double kClearly = 10;
+constexpr double kLayered = 0.1;  // of ratios
 constexpr std::size_t kMostCounted = 50000;
 // So many dips tell how the field runs between surfaces, on a lattice of so many nodes.
 constexpr std::size_t kLeastDips = 10;
@@ -129,6 +130,14 @@ std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& 
         }
     }
     return parts;
+}
+
+/// Whether a field hardly changes but along one axis: where it turns back, critical points fill a
+/// plane, and each of them counts. Rough surfaces of few contacts look like such fields by chance.
+bool is_layered(const Likely& likely) {
+    std::array<double, 3> ratios = likely.anisotropy.ratios;
+    std::ranges::sort(ratios);
+    return ratios[1] < kLayered * ratios[2];
 }
 
 bool is_plain(const Likely& likely) {
@@ -335,6 +344,7 @@ private:
         if (rises_one_way()) nodes = turning_points(coarse, values, execution_);
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
+        if (is_layered(likely)) return nodes.size();
         return connected_parts(nodes, coarse, likely.anisotropy);
     }
 

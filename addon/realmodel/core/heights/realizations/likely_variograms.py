@@ -32,9 +32,9 @@ class LikelyVariograms:
     @classmethod
     def of(cls, task: Task, settings: dict, fitted: Variogram) -> LikelyVariograms | None:
         """Those of a task with the settings of a method; None where there are many points, or nearly none, or
-        where the fitted one has several structures. Ranges are as likely as their logarithms (Handcock and
-        Stein 1993, "A Bayesian analysis of kriging", Technometrics 35)."""
-        if len(task.points) > _MOST or fitted.structures:
+        where the fitted one has waves. Ranges are as likely as their logarithms (Handcock and Stein 1993, "A
+        Bayesian analysis of kriging", Technometrics 35)."""
+        if len(task.points) > _MOST or any(part.model == "wave" for part in fitted.structures):
             return None
         drift = settings.get("drift", "constant")
         if drift == "auto":
@@ -54,7 +54,7 @@ class LikelyVariograms:
         logarithms = np.array(density)
         probable = exp(logarithms - logarithms.max())
         shapes = [
-            replace(fitted, model=model, range=range_, sill=1.0, nugget=nugget)
+            replace(fitted, model=model, range=range_, sill=1.0, nugget=nugget, structures=())
             for model, range_, nugget in zip(models, ranges, nuggets, strict=True)
         ]
         return cls(shapes, np.cumsum(probable) / probable.sum(), np.array(squares), free[0])
