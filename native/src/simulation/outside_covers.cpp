@@ -13,7 +13,7 @@ namespace realmodel::simulation {
 namespace {
 
 // Flatter ones would be under-determined: one of their faces is outside, where checkMesh sees none.
-constexpr double kLeastOfCovers = 0.01;
+constexpr double kLeastOfCovers = 0.003;
 
 template <std::size_t N>
 bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
