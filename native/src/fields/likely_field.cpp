@@ -133,7 +133,8 @@ std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& 
 }
 
 /// Whether a field hardly changes but along one axis: where it turns back, critical points fill a
-/// plane, and each of them counts. Rough surfaces of few contacts look like such fields by chance.
+/// plane. Rough surfaces of few contacts look like such fields by chance: unless dips say that limbs
+/// are overturned, each of these points counts.
 bool is_layered(const Likely& likely) {
     std::array<double, 3> ratios = likely.anisotropy.ratios;
     std::ranges::sort(ratios);
@@ -340,11 +341,12 @@ private:
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
         if (!is_told_by_dips()) return points.size();
+        const bool none_overturned = rises_one_way();
         std::vector<std::int64_t> nodes;
-        if (rises_one_way()) nodes = turning_points(coarse, values, execution_);
+        if (none_overturned) nodes = turning_points(coarse, values, execution_);
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
-        if (is_layered(likely)) return nodes.size();
+        if (none_overturned && is_layered(likely)) return nodes.size();
         return connected_parts(nodes, coarse, likely.anisotropy);
     }
 
