@@ -133,8 +133,8 @@ std::size_t connected_parts(std::span<const std::int64_t> nodes, const Lattice& 
 }
 
 /// Whether a field hardly changes but along one axis: where it turns back, critical points fill a
-/// plane. Rough surfaces of few contacts look like such fields by chance: unless dips say that limbs
-/// are overturned, each of these points counts.
+/// plane. Rough surfaces of few contacts look like such fields by chance: unless it predicts
+/// clearly better than plain ones, each of these points counts.
 bool is_layered(const Likely& likely) {
     std::array<double, 3> ratios = likely.anisotropy.ratios;
     std::ranges::sort(ratios);
@@ -320,8 +320,8 @@ private:
         cost_ = HUGE_VAL;
         for (const std::size_t n : ranked) {
             if (!(costs[n] < cost_)) break;
-            const double cost =
-                costs[n] + kPerCriticalPoint * static_cast<double>(critical_points_of(kinds[n]));
+            const std::size_t points = critical_points_of(kinds[n], costs[n]);
+            const double cost = costs[n] + kPerCriticalPoint * static_cast<double>(points);
             if (!(cost < cost_)) continue;
             cost_ = cost;
             likely_ = kinds[n];
@@ -334,19 +334,19 @@ private:
                 execution_};
     }
 
-    std::size_t critical_points_of(const Likely& likely) const {
+    /// @param cost  of what it predicts
+    std::size_t critical_points_of(const Likely& likely, double cost) const {
         const Spline spline = through_contacts(likely);
         const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
         const std::vector<double> values =
             FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
         const auto points = critical_points(coarse, values, execution_);
         if (!is_told_by_dips()) return points.size();
-        const bool none_overturned = rises_one_way();
         std::vector<std::int64_t> nodes;
-        if (none_overturned) nodes = turning_points(coarse, values, execution_);
+        if (rises_one_way()) nodes = turning_points(coarse, values, execution_);
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
-        if (none_overturned && is_layered(likely)) return nodes.size();
+        if (is_layered(likely) && plain_cost_ < cost + kClearly) return nodes.size();
         return connected_parts(nodes, coarse, likely.anisotropy);
     }
 
