@@ -347,7 +347,7 @@ with MappedArrays(folder / "arrays") as arrays:
     divided(points[:5_000], arrays, "kriging")  # the libraries are there then
     status = Path("/proc/self/status").read_text()
     now = int(status.split("VmData:")[1].split()[0]) * 1024
-    resource.setrlimit(resource.RLIMIT_DATA, (now + 60_000_000, -1))
+    resource.setrlimit(resource.RLIMIT_DATA, (now + 52_000_000, -1))
     (folder / "kriging").rename(folder / "before")
     done, nodes = [], np.array([[503.5, 507.0], [509.0, 501.5]])
     for method in ("spline", "kriging", "universal_kriging"):
