@@ -9,7 +9,7 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff types shellcheck site native core blender gui (a window under Xvfb) walk (random
+#                   format ruff types shellcheck sizes site native core blender gui (a window under Xvfb) walk (random
 #                   steps in it, random_walk.sh) bpy package asan builds; and three that are not run unless asked
 #                   for: tidy tsan odr (check_odr.sh). Asked for
 #                   alone, builds compares clang++'s optimised code too
@@ -19,15 +19,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff types shellcheck site native core blender gui walk bpy package asan builds)
+all_steps=(format ruff types shellcheck sizes site native core blender gui walk bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff types shellcheck site native core blender gui walk bpy package) ;;
+        --quick) steps=(format ruff types shellcheck sizes site native core blender gui walk bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | types | shellcheck | site | native | core | blender | gui | walk | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
+                format | ruff | types | shellcheck | sizes | site | native | core | blender | gui | walk | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
@@ -179,6 +179,8 @@ check_types() { "$venv/bin/mypy"; } # of core and distributed: pyproject.toml
 
 check_site() { scripts/site.sh "$python"; } # no document that is lost, no link that leads nowhere
 
+check_sizes() { "$python" scripts/check_sizes.py; } # no folder has outgrown its ceiling
+
 check_shell() { shellcheck scripts/*.sh .ci/run; }
 
 test_native() { # PRESET: it is configured
@@ -249,6 +251,7 @@ wants site && alone+=(site check_site)
 wants ruff && alone+=(ruff check_ruff)
 wants format && alone+=(format check_format)
 wants shellcheck && alone+=(shellcheck check_shell)
+wants sizes && alone+=(sizes check_sizes)
 wants asan && alone+=(asan test_asan) # uses all processors; begins when the first one has nothing else to do
 beside "${alone[@]}"
 if wants builds; then

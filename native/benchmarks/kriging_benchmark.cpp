@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "realmodel/interpolation/inverse_distance.hpp"
+#include "realmodel/interpolation/distances.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 

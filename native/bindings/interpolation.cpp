@@ -12,10 +12,9 @@
 
 #include "execution.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/interpolation/inverse_distance.hpp"
+#include "realmodel/interpolation/distances.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/line_sums.hpp"
-#include "realmodel/interpolation/nearest_distance.hpp"
 #include "realmodel/interpolation/sheet_fit.hpp"
 #include "realmodel/interpolation/thin_plate.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"

@@ -9,7 +9,7 @@
 #include "arrays.hpp"
 #include "execution.hpp"
 #include "lattice.hpp"
-#include "realmodel/fields/rising_field.hpp"
+#include "realmodel/fields/critical_points.hpp"
 #include "realmodel/fields/values_through.hpp"
 #include "rows.hpp"
 

@@ -39,11 +39,11 @@ endforeach()
 if(TARGET allocation_fuzzer)
     target_link_libraries(allocation_fuzzer PRIVATE realmodel_failing_allocations)
 endif()
-# A debugger that has stopped in one can then call the functions of src/*/dump.hpp.
+# A debugger that has stopped in one can then call the functions of src/debug/dump.hpp.
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump,--undefined=realmodel_cutting_dump)
-    target_link_options(boolean_fuzzer PRIVATE
-        -Wl,--undefined=realmodel_dump_pieces,--undefined=realmodel_dump_regions)
+    foreach(program IN ITEMS stack_fuzzer boolean_fuzzer)
+        target_link_options(${program} PRIVATE -Wl,--undefined=realmodel_dump)
+    endforeach()
 endif()
 if(TARGET coverage_fuzzer)
     target_link_options(coverage_fuzzer PRIVATE -fsanitize=fuzzer)

@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 
 namespace realmodel::fuzz {
 

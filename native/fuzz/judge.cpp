@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 #include "digest.hpp"
 #include "exact_volumes.hpp"
 #include "realmodel/base/errors.hpp"

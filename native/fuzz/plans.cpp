@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::fuzz {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::fuzz {
 

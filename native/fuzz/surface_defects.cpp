@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 #include "complex_defects.hpp"
 
 namespace realmodel::fuzz {

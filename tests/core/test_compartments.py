@@ -123,6 +123,15 @@ def test_the_larger_part_of_the_area_remains():
     assert side[0, 1] != 0 and side[1, 1] == 0
 
 
+def test_a_branch_that_is_cut_into_halves_is_refused():
+    vertices = np.array([[at, 5.0, z] for at in (-10.0, 20.0) for z in (-20.0, 20.0)])
+    branch = Fault("B", vertices, np.array([[0, 1, 2], [2, 1, 3]]), ends_at=("M",))
+    with pytest.raises(
+        InputRefused, match=r"fault 'B': fault 'M', at which it ends, cuts it into two halves.*make it longer"
+    ):
+        network([Fault("M", *plane_fault()), branch])
+
+
 def test_a_branch_that_meets_nothing_is_refused():
     far = Fault("B", *plane_fault(turn=90.0, y=(6.5, 15.0)), ends_at=("M",))
     main = Fault("M", *plane_fault())

@@ -13,7 +13,7 @@
 #include "generate.hpp"
 #include "judge.hpp"
 #include "mutate.hpp"
-#include "realmodel/interpolation/inverse_distance.hpp"
+#include "realmodel/interpolation/distances.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 #include "realmodel/meshing/region_mesh.hpp"

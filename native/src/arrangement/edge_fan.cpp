@@ -6,7 +6,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::arrangement {
 
@@ -33,10 +33,10 @@ void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::Sp
                    : exact::orient3d(points, a, b, items[i].towards, items[j].towards);
     };
     // in the direction of the first (0), in the half from there (1), against it (2), in the other
-    constexpr std::size_t kFew = 8;
-    std::array<int, kFew> few{};
-    std::vector<int> many(items.size() > kFew ? items.size() : 0);
-    int* const quarter = items.size() > kFew ? many.data() : few.data();
+    constexpr std::size_t kOnStack = 8;
+    std::array<int, kOnStack> few{};
+    std::vector<int> many(items.size() > kOnStack ? items.size() : 0);
+    int* const quarter = items.size() > kOnStack ? many.data() : few.data();
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (const int side = orientation(0, i)) {
             quarter[i] = side < 0 ? 1 : 3;
@@ -52,7 +52,7 @@ void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::Sp
     };
     fan.order.resize(items.size());
     std::iota(fan.order.begin(), fan.order.end(), std::size_t{0});
-    if (items.size() > kFew) {
+    if (items.size() > kOnStack) {
         std::stable_sort(fan.order.begin(), fan.order.end(),
                          [&](std::size_t i, std::size_t j) { return compare(i, j) < 0; });
     } else {  // by insertion, which takes no memory

@@ -10,7 +10,7 @@
 
 #include "arrangement/polygons.hpp"
 #include "base/counting_sort.hpp"
-#include "base/packed_pair.hpp"
+#include "base/index.hpp"
 #include "exact/space_points.hpp"
 #include "realmodel/base/array.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 
 namespace realmodel::arrangement {
 

@@ -12,9 +12,9 @@ namespace realmodel::arrangement {
 
 using exact::orient3d;
 
-TriangleArrangement::Triangle TriangleArrangement::triangle_of(
+TriangleArrangement::ArrangedTriangle TriangleArrangement::triangle_of(
     const std::array<SpacePointId, 3>& corners) const {
-    Triangle t;
+    ArrangedTriangle t;
     t.corners = corners;
     const std::array<Position, 3> at{points_.rounded(corners[0]), points_.rounded(corners[1]),
                                      points_.rounded(corners[2])};
@@ -61,7 +61,7 @@ void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> c
 
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,
                                               SpacePointId to) const {
-    const Triangle& t = triangles_[index(triangle)];
+    const ArrangedTriangle& t = triangles_[index(triangle)];
     // first the one that is farthest to the left in doubles: where the line runs along an edge, its
     // ends are not seen to be on it before exact arithmetic
     const std::size_t k = (t.axis + 1) % 3, l = (t.axis + 2) % 3;
@@ -81,7 +81,7 @@ SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointI
 void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, SpacePointId p,
                                       SpacePointId q) {
     for (const auto& [mine, yours] : {std::pair(one, other), std::pair(other, one)}) {
-        Triangle& t = triangles_[index(mine)];
+        ArrangedTriangle& t = triangles_[index(mine)];
         if (t.points.capacity() == 0) {  // what the least piece of memory holds
             t.points.reserve(6);
             t.segments.reserve(2);
@@ -96,16 +96,16 @@ void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, Spac
 std::int32_t TriangleArrangement::add_line(std::int32_t triangle, SpacePointId p, SpacePointId q) {
     const std::int32_t number = checked_number(within_lines_.size(), "lines in triangles");
     within_lines_.emplace_back();
-    Triangle& t = triangles_[index(triangle)];
+    ArrangedTriangle& t = triangles_[index(triangle)];
     t.points.push_back(p);
     t.points.push_back(q);
     t.segments.push_back({unordered(p, q), -1 - number});
     return number;
 }
 
-TriangleArrangement::Sides TriangleArrangement::sides_of(const Triangle& own,
-                                                         const Triangle& plane) const {
-    Sides sides;
+TriangleArrangement::CornerSides TriangleArrangement::sides_of(
+    const ArrangedTriangle& own, const ArrangedTriangle& plane) const {
+    CornerSides sides;
     const exact::SidesOfPlane side_of(points_, plane.corners);
     for (std::size_t i = 0; i < 3; ++i) {
         sides.of[i] = side_of(own.corners[i]);
@@ -117,7 +117,8 @@ TriangleArrangement::Sides TriangleArrangement::sides_of(const Triangle& own,
 
 /// Of two triangles in one plane with two corners in common: whether neither covers a part of the
 /// other.
-bool TriangleArrangement::are_folded_apart(const Triangle& a, const Triangle& b) const {
+bool TriangleArrangement::are_folded_apart(const ArrangedTriangle& a,
+                                           const ArrangedTriangle& b) const {
     std::array<SpacePointId, 2> edge{}, tip{};
     std::size_t found = 0;
     for (const SpacePointId p : a.corners) {
@@ -134,17 +135,17 @@ bool TriangleArrangement::are_folded_apart(const Triangle& a, const Triangle& b)
     return orientation(a, edge[0], edge[1], tip[0]) != orientation(a, edge[0], edge[1], tip[1]);
 }
 
-TriangleArrangement::Interval TriangleArrangement::interval_of(const Triangle& own,
-                                                               const Sides& sides,
-                                                               std::int32_t plane) {
+TriangleArrangement::LineInterval TriangleArrangement::interval_of(const ArrangedTriangle& own,
+                                                                   const CornerSides& sides,
+                                                                   std::int32_t plane) {
     assert(sides.above < 3 && sides.below < 3 && sides.above + sides.below > 0);
-    Interval interval{};
+    LineInterval interval{};
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3, before = (i + 2) % 3;
         const int here = sides.of[i];
         if (here == 0) {
             const int from = sides.of[before], to = sides.of[next];
-            const End corner{own.corners[i]};
+            const SegmentEnd corner{own.corners[i]};
             if (from <= 0 && to >= 0 && from != to) interval.up = corner;
             if (from >= 0 && to <= 0 && from != to) interval.down = corner;
             if (from == to) interval = {corner, corner};
@@ -162,8 +163,9 @@ TriangleArrangement::Interval TriangleArrangement::interval_of(const Triangle& o
 /// Which of two ends comes first along the line of two planes, in the direction of the product of
 /// a's normal and b's: 1 a's, -1 b's, 0 they coincide. `sides`: of a's corners from b's
 /// plane.
-int TriangleArrangement::order(const Triangle& a, const Sides& sides, const End& on_a,
-                               const Triangle& b, const End& on_b) const {
+int TriangleArrangement::order(const ArrangedTriangle& a, const CornerSides& sides,
+                               const SegmentEnd& on_a, const ArrangedTriangle& b,
+                               const SegmentEnd& on_b) const {
     if (on_a.to != kNone && on_b.to != kNone)
         return orient3d(points_, on_a.from, on_a.to, on_b.from, on_b.to);
     if (on_a.to != kNone) return orientation(a, on_a.from, on_a.to, on_b.from);
@@ -174,28 +176,28 @@ int TriangleArrangement::order(const Triangle& a, const Sides& sides, const End&
     return -sides.of[off] * orientation(a, a.corners[off], on_a.from, on_b.from);
 }
 
-std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersection(
+std::optional<TriangleArrangement::TriangleIntersection> TriangleArrangement::intersection(
     std::int32_t one, std::int32_t other) const {
     assert(one != other);
-    const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
+    const ArrangedTriangle &a = triangles_[index(one)], &b = triangles_[index(other)];
     if (a.facing == 0 || b.facing == 0) return std::nullopt;
     const auto shared = std::count_if(a.corners.begin(), a.corners.end(), [&b](SpacePointId p) {
         return std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
     });
-    std::array<Sides, 2> sides;
+    std::array<CornerSides, 2> sides;
     for (std::size_t which = 0; which < 2; ++which) {
         sides[which] = which == 0 ? sides_of(a, b) : sides_of(b, a);
         const auto [low, high] = std::minmax(sides[which].above, sides[which].below);
         if (high == 3 || (shared == 1 && high == 2 && low == 0)) return std::nullopt;
         if (which == 0 && high == 0) {
             if (shared == 2 && are_folded_apart(a, b)) return std::nullopt;
-            return Intersection{one, other, true, {}};
+            return TriangleIntersection{one, other, true, {}};
         }
         if (shared >= 2) return std::nullopt;  // an edge is all that they have in common
     }
-    const Interval of_a = interval_of(a, sides[0], other), of_b = interval_of(b, sides[1], one);
+    const LineInterval of_a = interval_of(a, sides[0], other), of_b = interval_of(b, sides[1], one);
     // along the product of both normals a is passed from `up` to `down`, and b from `down` to `up`
-    const auto order_of = [&](const End& on_a, const End& on_b) {
+    const auto order_of = [&](const SegmentEnd& on_a, const SegmentEnd& on_b) {
         return order(a, sides[0], on_a, b, on_b);
     };
     if (order_of(of_a.down, of_b.down) > 0 || order_of(of_a.up, of_b.up) < 0) return std::nullopt;
@@ -203,17 +205,17 @@ std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersecti
     // of two that coincide a corner, which has a number
     const bool from_b = first > 0 || (first == 0 && of_a.up.to != kNone);
     const bool to_b = last < 0 || (last == 0 && of_a.down.to != kNone);
-    return Intersection{
+    return TriangleIntersection{
         one, other, false, {from_b ? of_b.down : of_a.up, to_b ? of_b.up : of_a.down}};
 }
 
-SpacePointId TriangleArrangement::point_of(const End& end) {
+SpacePointId TriangleArrangement::point_of(const SegmentEnd& end) {
     if (end.to == kNone) return end.from;
     const auto& plane = triangles_[index(end.plane)].corners;
     return points_.intersection(end.from, end.to, plane[0], plane[1], plane[2]);
 }
 
-void TriangleArrangement::insert(const Intersection& intersection) {
+void TriangleArrangement::insert(const TriangleIntersection& intersection) {
     if (intersection.in_one_plane) {
         clip_edges(intersection.one, intersection.other);
         clip_edges(intersection.other, intersection.one);
@@ -233,7 +235,8 @@ void TriangleArrangement::clip_edges(std::int32_t edges_of, std::int32_t into) {
 
 /// Whether a segment in the plane of a triangle has no point of it: then a line along an edge or
 /// along the segment parts them. No point has to be made to know it.
-bool TriangleArrangement::passes_by(const Triangle& t, SpacePointId p, SpacePointId q) const {
+bool TriangleArrangement::passes_by(const ArrangedTriangle& t, SpacePointId p,
+                                    SpacePointId q) const {
     for (std::size_t k = 0; k < 3; ++k) {
         const SpacePointId a = t.corners[k], b = t.corners[(k + 1) % 3];
         if (orientation(t, a, b, p) < 0 && orientation(t, a, b, q) < 0) return true;
@@ -246,7 +249,7 @@ bool TriangleArrangement::passes_by(const Triangle& t, SpacePointId p, SpacePoin
 /// Where a segment of one triangle runs over another in its plane.
 void TriangleArrangement::clip_segment(SpacePointId p, SpacePointId q, std::int32_t of,
                                        std::int32_t into) {
-    const Triangle& t = triangles_[index(into)];
+    const ArrangedTriangle& t = triangles_[index(into)];
     if (passes_by(t, p, q)) return;
     for (std::size_t k = 0; k < 3; ++k) {
         const SpacePointId a = t.corners[k], b = t.corners[(k + 1) % 3];

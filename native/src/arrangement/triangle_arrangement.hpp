@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "arrangement/polygons.hpp"
-#include "arrangement/region_loops.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 #include "realmodel/base/execution.hpp"
 
 namespace realmodel::arrangement {
@@ -22,19 +21,16 @@ using exact::SpacePointId;
 //             -1 right, 0 it has no area
 //   segment   what two triangles that cross have in common: on the line of both planes, from where
 //             one of them passes the other's plane from below (up) or back (down) to the next such
-//             End; or where an edge of one runs over the other in their common plane
+//             end (SegmentEnd); or where an edge of one runs over the other in their common plane
 //   line      of a triangle: one of its segments, or one of its edges
 //   node      a corner of a triangle, an end of its segments, or where these cross
 //   edge      a part of a line between two nodes that follow one another on it
-//   half-edge an edge in one of its directions (PlaneGraph); its twin is the other one. The next of
-//   a
-//             half-edge is the one with which the region to its left goes on
+//   half-edge an edge in one of its directions (PlaneGraph); its twin is the other one. Its next is
+//             the half-edge with which the region to its left goes on
 //   loop      half-edges that follow one another and close: an outline turns as its triangle does,
-//   a
-//             hole the other way round
+//             a hole the other way round
 //   region    what an outline and the holes in it bound: nothing crosses it. The regions of a
-//   triangle
-//             tile it: each edge within has one region on either side
+//             triangle tile it: each edge within has one region on either side
 
 /// A part of a triangle that nothing crosses. The outline turns as the triangle does, holes follow
 /// the other way round.
@@ -67,25 +63,25 @@ public:
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
-    struct End {
+    struct SegmentEnd {
         SpacePointId from;        ///< the corner, or the end of the edge below the plane
         SpacePointId to = kNone;  ///< the other end, none of a corner
         std::int32_t plane = 0;   ///< of which triangle
     };
     /// Where two triangles intersect: along a segment, in a point (two equal ends), or in one
     /// plane.
-    struct Intersection {
+    struct TriangleIntersection {
         std::int32_t one, other;
         bool in_one_plane;
-        std::array<End, 2> ends;
+        std::array<SegmentEnd, 2> ends;
     };
     /// Where two triangles intersect beside the corners and edges that they share. May be asked by
     /// several threads at once.
-    std::optional<Intersection> intersection(std::int32_t one, std::int32_t other) const;
+    std::optional<TriangleIntersection> intersection(std::int32_t one, std::int32_t other) const;
     /// The point that an end is.
-    SpacePointId point_of(const End& end);
+    SpacePointId point_of(const SegmentEnd& end);
     /// Adds its points and its segment to both triangles.
-    void insert(const Intersection& intersection);
+    void insert(const TriangleIntersection& intersection);
     /// Adds a line between two points within a triangle, of something that needs no triangle of its
     /// own.
     /// @return its number, from 0 on
@@ -110,17 +106,17 @@ public:
     SpacePointId left_corner(std::int32_t triangle, SpacePointId from, SpacePointId to) const;
 
 private:
-    struct Segment {
+    struct SharedSegment {
         std::array<SpacePointId, 2> ends;  ///< in order
         std::int32_t other;                ///< the triangle that it is shared with; -1 - a line
-        auto operator<=>(const Segment&) const = default;
+        auto operator<=>(const SharedSegment&) const = default;
     };
-    struct Triangle {
+    struct ArrangedTriangle {
         std::array<SpacePointId, 3> corners;
         std::size_t axis = 0;
         int facing = 0;                    ///< which way it turns seen along its axis, 0: no area
         std::vector<SpacePointId> points;  ///< in order, once all are there
-        std::vector<Segment> segments;     ///< likewise
+        std::vector<SharedSegment> segments;  ///< likewise
         /// Its segments, then its edges.
         std::size_t line_count() const { return segments.size() + 3; }
         std::array<SpacePointId, 2> line(std::size_t i) const {
@@ -129,14 +125,14 @@ private:
         }
     };
     /// On which sides of the plane of another triangle corners lie.
-    struct Sides {
+    struct CornerSides {
         std::array<int, 3> of;
         int above = 0, below = 0;
     };
     /// What a triangle has of the line of its plane and another's. It passes that other plane from
     /// below at `up`, and back at `down`; both are one where only a corner touches it.
-    struct Interval {
-        End up, down;
+    struct LineInterval {
+        SegmentEnd up, down;
     };
     /// A point of one triangle that is also on another.
     struct Message {
@@ -148,17 +144,19 @@ private:
     using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
 
-    Triangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
-    int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
+    ArrangedTriangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
+    int orientation(const ArrangedTriangle& t, SpacePointId a, SpacePointId b,
+                    SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }
-    Sides sides_of(const Triangle& own, const Triangle& plane) const;
-    bool are_folded_apart(const Triangle& a, const Triangle& b) const;
-    static Interval interval_of(const Triangle& own, const Sides& sides, std::int32_t plane);
-    int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
-              const End& on_b) const;
+    CornerSides sides_of(const ArrangedTriangle& own, const ArrangedTriangle& plane) const;
+    bool are_folded_apart(const ArrangedTriangle& a, const ArrangedTriangle& b) const;
+    static LineInterval interval_of(const ArrangedTriangle& own, const CornerSides& sides,
+                                    std::int32_t plane);
+    int order(const ArrangedTriangle& a, const CornerSides& sides, const SegmentEnd& on_a,
+              const ArrangedTriangle& b, const SegmentEnd& on_b) const;
     void add_segment(std::int32_t one, std::int32_t other, SpacePointId p, SpacePointId q);
-    bool passes_by(const Triangle& t, SpacePointId p, SpacePointId q) const;
+    bool passes_by(const ArrangedTriangle& t, SpacePointId p, SpacePointId q) const;
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
@@ -166,11 +164,11 @@ private:
     void each_triangle(const Execution& execution, const Visit& visit) const;
     std::vector<std::int32_t> large_triangles(std::span<const std::int32_t> among) const;
     void sort_all(const Execution& execution);
-    std::vector<SegmentPair> crossing_segments(const Triangle& t) const;
+    std::vector<SegmentPair> crossing_segments(const ArrangedTriangle& t) const;
     struct LargeTriangle;
     std::vector<SegmentPair> crossing_segments(const LargeTriangle& large,
                                                const Execution& execution) const;
-    bool do_cross(const Triangle& t, const SegmentPair& pair) const;
+    bool do_cross(const ArrangedTriangle& t, const SegmentPair& pair) const;
     void intersect_segments(const Execution& execution);
     std::vector<std::vector<Edge>> exchange_points(const Execution& execution);
     void messages_of(std::int32_t triangle, NodesOnLines& nodes_on, std::vector<Message>& messages,
@@ -181,7 +179,7 @@ private:
     void find_all_regions(std::vector<std::vector<Edge>>& edges, const Execution& execution);
 
     exact::SpacePoints& points_;
-    std::vector<Triangle> triangles_;
+    std::vector<ArrangedTriangle> triangles_;
     /// The edges of all triangles, in order, with the triangle of each.
     std::vector<std::pair<std::array<SpacePointId, 2>, std::int32_t>> of_edge_;
     Regions regions_;

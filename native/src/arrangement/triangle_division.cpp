@@ -7,8 +7,7 @@
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "arrangement/triangle_regions.hpp"
-#include "base/keep_single.hpp"
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
@@ -49,19 +48,19 @@ class TriangleArrangement::NodesOnLines {
 public:
     explicit NodesOnLines(const TriangleArrangement& arrangement)
         : arrangement_(arrangement), points_(arrangement.points_) {}
-    NodesOnLines(const TriangleArrangement& arrangement, const Triangle& t)
+    NodesOnLines(const TriangleArrangement& arrangement, const ArrangedTriangle& t)
         : NodesOnLines(arrangement) {
         take(t);
     }
 
     /// Goes on to another triangle.
-    void take(const Triangle& t) {
+    void take(const ArrangedTriangle& t) {
         t_ = &t;
         axis_ = (t.axis + 1) % 3;
         tree_.reset();
         in_order_.assign(t.points.begin(), t.points.end());
         if (in_order_.size() > kLarge) {
-            tree_.emplace(mapped(in_order_, [this](SpacePointId p) {
+            tree_.emplace(transformed(in_order_, [this](SpacePointId p) {
                 return box_of(points_, {&p, 1});
             }));
             return;
@@ -116,7 +115,7 @@ private:
 
     const TriangleArrangement& arrangement_;
     const exact::SpacePoints& points_;
-    const Triangle* t_ = nullptr;
+    const ArrangedTriangle* t_ = nullptr;
     std::size_t axis_ = 0;
     /// The triangle's points: in the order of one coordinate, unless there is a tree of them.
     std::vector<SpacePointId> in_order_;
@@ -128,7 +127,7 @@ std::vector<std::int32_t> TriangleArrangement::large_triangles(
     std::span<const std::int32_t> among) const {
     std::vector<std::int32_t> found;
     for (const std::int32_t triangle : among) {
-        const Triangle& t = triangles_[index(triangle)];
+        const ArrangedTriangle& t = triangles_[index(triangle)];
         if (t.facing != 0 && std::max(t.points.size(), t.segments.size()) > kLarge)
             found.push_back(triangle);
     }
@@ -144,7 +143,7 @@ void TriangleArrangement::sort_all(const Execution& execution) {
 }
 
 /// Whether segments of a triangle whose boxes meet cross each other.
-bool TriangleArrangement::do_cross(const Triangle& t, const SegmentPair& pair) const {
+bool TriangleArrangement::do_cross(const ArrangedTriangle& t, const SegmentPair& pair) const {
     const auto& [a, b, c, d] = pair;
     if (a == c || a == d || b == c || b == d) return false;
     return orientation(t, a, b, c) * orientation(t, a, b, d) < 0 &&
@@ -194,33 +193,34 @@ std::vector<std::optional<Item>> made_for_all(std::size_t count, const Execution
 /// Where two triangles lie in one plane, what meets one of them there divides the other as well,
 /// whether or not the two were asked for.
 void TriangleArrangement::exchange_segments() {
-    struct Found {
-        Segment segment;
+    struct ExchangedSegment {
+        SharedSegment segment;
         std::int32_t of, into;
     };
     std::unordered_map<std::int32_t, spatial::BoxTree> trees;
     const auto tree_of = [&](std::int32_t triangle) -> const spatial::BoxTree& {
         const auto at = trees.find(triangle);
         if (at != trees.end()) return at->second;
-        auto boxes = mapped(triangles_[index(triangle)].segments,
-                            [&](const Segment& s) { return box_of(points_, s.ends); });
+        auto boxes = transformed(triangles_[index(triangle)].segments,
+                                 [&](const SharedSegment& s) { return box_of(points_, s.ends); });
         return trees.try_emplace(triangle, std::move(boxes)).first->second;
     };
-    std::vector<Found> found;
+    std::vector<ExchangedSegment> found;
     for (const auto& [one, other] : in_one_plane_) {
         for (const auto& pair : {std::pair(one, other), std::pair(other, one)}) {
             const std::int32_t of = pair.first, into = pair.second;
             const auto& segments = triangles_[index(of)].segments;
             const std::size_t first = found.size();
             tree_of(of).find(box_of(points_, triangles_[index(into)].corners), [&](std::int32_t n) {
-                const Segment& s = segments[index(n)];
+                const SharedSegment& s = segments[index(n)];
                 if (s.other != into) found.push_back({s, of, into});
             });
             const auto own = found.begin() + static_cast<std::ptrdiff_t>(first);
-            std::sort(own, found.end(),
-                      [](const Found& a, const Found& b) { return a.segment < b.segment; });
+            std::sort(own, found.end(), [](const ExchangedSegment& a, const ExchangedSegment& b) {
+                return a.segment < b.segment;
+            });
             found.erase(std::unique(own, found.end(),
-                                    [](const Found& a, const Found& b) {
+                                    [](const ExchangedSegment& a, const ExchangedSegment& b) {
                                         return a.segment.ends == b.segment.ends;
                                     }),
                         found.end());
@@ -232,7 +232,7 @@ void TriangleArrangement::exchange_segments() {
 
 /// Pairs of segments of one triangle that cross each other.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
-    const Triangle& t) const {
+    const ArrangedTriangle& t) const {
     std::vector<SegmentPair> found;
     if (t.facing == 0 || t.segments.size() < 2) return found;
     const std::size_t axis = (t.axis + 1) % 3;
@@ -251,20 +251,20 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
 
 /// The segments of a large triangle, which are found by a tree.
 struct TriangleArrangement::LargeTriangle {
-    LargeTriangle(const exact::SpacePoints& points, std::int32_t of, const Triangle& t)
+    LargeTriangle(const exact::SpacePoints& points, std::int32_t of, const ArrangedTriangle& t)
         : number(of),
           boxed(boxed_segments(points, t.segments, (t.axis + 1) % 3)),
-          tree(mapped(boxed, &BoxedSegment<Segment>::box)) {}
+          tree(transformed(boxed, &BoxedSegment<SharedSegment>::box)) {}
 
     std::int32_t number;
-    std::vector<BoxedSegment<Segment>> boxed;
+    std::vector<BoxedSegment<SharedSegment>> boxed;
     spatial::BoxTree tree;
 };
 
 /// The same, in the same order, of a large triangle.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
     const LargeTriangle& large, const Execution& execution) const {
-    const Triangle& t = triangles_[index(large.number)];
+    const ArrangedTriangle& t = triangles_[index(large.number)];
     const auto& boxed = large.boxed;
     return found_in_ranges<SegmentPair>(
         boxed.size(), kChunk, execution,
@@ -335,7 +335,7 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
 /// they divide it into.
 void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
                                       std::vector<Message>& messages, std::vector<Edge>& edges) {
-    const Triangle& t = triangles_[index(triangle)];
+    const ArrangedTriangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
     nodes_on.take(t);
@@ -347,9 +347,9 @@ void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes
 void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
                                       std::size_t begin, std::size_t end,
                                       std::vector<Message>& messages, std::vector<Edge>& edges) {
-    const Triangle& t = triangles_[index(triangle)];
+    const ArrangedTriangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
-        const Triangle& other = triangles_[index(to)];
+        const ArrangedTriangle& other = triangles_[index(to)];
         if (to == triangle ||
             std::find(other.corners.begin(), other.corners.end(), p) != other.corners.end() ||
             std::binary_search(other.points.begin(), other.points.end(), p))
@@ -407,7 +407,7 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
             [&](std::size_t i) { return NodesOnLines(*this, triangles_[index(large[i])]); });
         for (std::size_t which = 0; which < large.size(); ++which) {
             const std::int32_t triangle = large[which];
-            const Triangle& t = triangles_[index(triangle)];
+            const ArrangedTriangle& t = triangles_[index(triangle)];
             const std::size_t first = messages.size();
             const std::size_t chunks = (t.line_count() + kChunk - 1) / kChunk;
             messages.resize(first + chunks);
@@ -419,7 +419,7 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
                                 messages[first + begin / kChunk], own[begin / kChunk]);
                 },
                 0.02);
-            edges[index(triangle)] = realmodel::joined(own);
+            edges[index(triangle)] = concatenated(own);
             nodes_on_large[which].reset();
         }
         changed.clear();
@@ -445,7 +445,7 @@ public:
 
     /// @param edges  all that its lines are divided into; put in order. None: nothing divides it
     void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
-        const Triangle& t = arrangement_.triangles_[index(triangle)];
+        const ArrangedTriangle& t = arrangement_.triangles_[index(triangle)];
         if (t.facing == 0) return;
         if (edges.empty()) {
             regions.loops.add_loop(t.corners);
@@ -462,7 +462,7 @@ public:
 
 private:
     /// Whether regions tile a triangle: of their edges, those have no twin that lie on its outline.
-    bool tile(const Triangle& t, const Regions& regions, std::size_t first) const {
+    bool tile(const ArrangedTriangle& t, const Regions& regions, std::size_t first) const {
         std::vector<std::pair<Edge, int>> edges;
         for (std::size_t r = first; r < regions.size(); ++r) {
             for (const auto loop : regions.loops[r]) {
@@ -508,12 +508,12 @@ Regions joined(std::vector<Regions>& ranges, const Execution& execution) {
         nodes.push_back(range.loops.nodes.size());
     }
     Regions all;
-    const std::size_t count = count_before(regions);
+    const std::size_t count = exclusive_scan(regions);
     checked_number(count, "regions of triangles");
     all.triangles.resize(count);
     all.loops.region_begins.resize(count + 1);
-    all.loops.loop_begins.resize(count_before(loops) + 1);
-    all.loops.nodes.resize(count_before(nodes));
+    all.loops.loop_begins.resize(exclusive_scan(loops) + 1);
+    all.loops.nodes.resize(exclusive_scan(nodes));
     parallel_chunks(ranges.size(), execution, [&](std::size_t i) {
         const Regions range = std::move(ranges[i]);
         std::ranges::copy(range.triangles, all.triangles.begin() + regions[i]);
@@ -568,8 +568,8 @@ void TriangleArrangement::divide(const Execution& execution) {
     intersect_segments(execution);
     sort_all(execution);
     auto edges = exchange_points(execution);
-    assert(std::ranges::all_of(triangles_,
-                               [](const Triangle& t) { return std::ranges::is_sorted(t.points); }));
+    assert(std::ranges::all_of(
+        triangles_, [](const ArrangedTriangle& t) { return std::ranges::is_sorted(t.points); }));
     find_all_regions(edges, execution);
 }
 

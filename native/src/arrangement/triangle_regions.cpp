@@ -5,8 +5,8 @@
 #include <cassert>
 #include <set>
 
-#include "base/keep_single.hpp"
-#include "exact/space_predicates.hpp"
+#include "base/algorithms.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::arrangement {
 
@@ -77,7 +77,7 @@ void PlaneGraph::link() {
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
         const auto out = leaving(node);
         std::sort(out.begin(), out.end(), [&](std::int32_t a, std::int32_t b) {
-            const HalfEdge &g = half(a), &h = half(b);
+            const GraphHalfEdge &g = half(a), &h = half(b);
             const bool left_g = is_before(g.to, g.from), left_h = is_before(h.to, h.from);
             if (left_g != left_h) return left_h;
             return orientation(g.from, g.to, h.to) > 0;
@@ -86,8 +86,9 @@ void PlaneGraph::link() {
         for (std::size_t i = 0; i < out.size(); ++i)
             halves_[index(twin(out[i]))].next = out[(i + out.size() - 1) % out.size()];
     }
-    assert(std::ranges::all_of(
-        halves_, [this](const HalfEdge& h) { return h.next >= 0 && half(h.next).from == h.to; }));
+    assert(std::ranges::all_of(halves_, [this](const GraphHalfEdge& h) {
+        return h.next >= 0 && half(h.next).from == h.to;
+    }));
 }
 
 void PlaneGraph::trace_loops() {
@@ -138,7 +139,7 @@ void PlaneGraph::find_components() {
 
 /// Whether one of two half-edges to the right is below the other where both are above one another.
 bool PlaneGraph::is_below(std::int32_t g, std::int32_t h) const {
-    const HalfEdge &e = half(g), &f = half(h);
+    const GraphHalfEdge &e = half(g), &f = half(h);
     if (e.from == f.from) return orientation(e.from, e.to, f.to) > 0;
     return is_before(e.from, f.from) ? orientation(e.from, e.to, f.from) > 0
                                      : orientation(f.from, f.to, e.from) < 0;

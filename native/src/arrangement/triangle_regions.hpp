@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "arrangement/polygons.hpp"
-#include "arrangement/region_loops.hpp"
 #include "exact/space_points.hpp"
 
 namespace realmodel::arrangement {
@@ -31,14 +30,14 @@ public:
 
 private:
     /// Half-edges 2 i and 2 i + 1 are those of edge i.
-    struct HalfEdge {
+    struct GraphHalfEdge {
         SpacePointId from, to;
         std::size_t origin;  ///< the position of `from` among the nodes
         std::int32_t next = -1, loop = -1;
     };
 
     static std::int32_t twin(std::int32_t h) { return h ^ 1; }
-    const HalfEdge& half(std::int32_t h) const { return halves_[index(h)]; }
+    const GraphHalfEdge& half(std::int32_t h) const { return halves_[index(h)]; }
     std::span<std::int32_t> leaving(std::size_t node) {
         return {leaving_.data() + first_leaving_[node], leaving_.data() + first_leaving_[node + 1]};
     }
@@ -62,7 +61,7 @@ private:
     const exact::SpacePoints& points_;
     Projection view_{};
     std::vector<SpacePointId> nodes_;  ///< in order
-    std::vector<HalfEdge> halves_;
+    std::vector<GraphHalfEdge> halves_;
     std::vector<std::size_t> first_leaving_;  ///< of nodes, in `leaving_`
     std::vector<std::int32_t> leaving_;       ///< of nodes: counter-clockwise
     std::vector<SpacePointId> loop_nodes_;

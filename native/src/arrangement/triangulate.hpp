@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "arrangement/polygons.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::arrangement {
 

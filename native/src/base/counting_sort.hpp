@@ -67,14 +67,14 @@ Buckets<Value> bucketize_in_any_order(std::size_t buckets, std::size_t chunks,
     parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         produce(chunk, [&](std::size_t bucket, const Value&) {
             assert(bucket < buckets);
-            count_one(made.offsets[bucket + 1]);
+            atomic_increment(made.offsets[bucket + 1]);
         });
     });
     running_totals(made.offsets, UINT32_MAX, execution);
     made.values.resize(made.offsets.back());
     parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         produce(chunk, [&](std::size_t bucket, const Value& value) {
-            made.values[count_one(made.offsets[bucket + 1])] = value;
+            made.values[atomic_increment(made.offsets[bucket + 1])] = value;
         });
     });
     made.offsets.pop_back();

@@ -6,7 +6,10 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <tuple>
+#include <vector>
 
+#include "base/index.hpp"
 #include "realmodel/base/array.hpp"
 
 namespace realmodel {
@@ -18,7 +21,7 @@ class KeyTable {
 public:
     using Key = std::array<std::int32_t, 4>;
 
-    struct Found {
+    struct Insertion {
         std::int32_t number;
         bool is_new;
     };
@@ -28,18 +31,18 @@ public:
     /// The number of the key, which is `size()` before the call where the key is new; key_of gives
     /// the key of a number that was given before.
     template <class KeyOf>
-    Found insert(const Key& key, const KeyOf& key_of) {
+    Insertion insert(const Key& key, const KeyOf& key_of) {
         return insert(key, size_, key_of);
     }
     /// The same with numbers that the caller gives: a new key's is `next`.
     template <class KeyOf>
-    Found insert(const Key& key, std::int32_t next, const KeyOf& key_of) {
+    Insertion insert(const Key& key, std::int32_t next, const KeyOf& key_of) {
         return find_or_add(hash(key), next,
                            [&](std::int32_t number) { return same(key_of(number), key); });
     }
     /// The number of the thing with this hash of which `is_it` holds; `next` where there is none.
     template <class IsIt>
-    Found find_or_add(std::uint32_t tag, std::int32_t next, const IsIt& is_it) {
+    Insertion find_or_add(std::uint32_t tag, std::int32_t next, const IsIt& is_it) {
         if ((static_cast<std::size_t>(size_) + 1) * 3 > slots_.size() * 2) grow();
         for (std::size_t slot = tag & mask_;; slot = (slot + 1) & mask_) {
             Slot& here = slots_[slot];
@@ -117,6 +120,49 @@ private:
     Array<Slot> slots_;
     std::size_t mask_ = 0;
     std::int32_t size_ = 0;
+};
+
+/// Numbers things by arrays of numbers, in the order in which they come. Both zeros are alike.
+template <class Key>
+class KeyNumbers {
+public:
+    std::size_t size() const { return keys_.size(); }
+    const Key& operator[](std::int32_t number) const { return keys_[index(number)]; }
+    const std::vector<Key>& keys() const { return keys_; }
+    /// -1 where it is not there.
+    std::int32_t find(const Key& key) const {
+        return table_.find(hash(key), [&](std::int32_t i) { return keys_[index(i)] == key; });
+    }
+    std::int32_t add(const Key& key) {
+        const auto found =
+            table_.find_or_add(hash(key), static_cast<std::int32_t>(keys_.size()),
+                               [&](std::int32_t i) { return keys_[index(i)] == key; });
+        if (found.is_new) keys_.push_back(key);
+        return found.number;
+    }
+    /// @return false where it is there already
+    bool insert(const Key& key) {
+        const std::size_t before = size();
+        return index(add(key)) == before;
+    }
+    void reserve(std::size_t count) { table_.reserve(count); }
+
+    static std::uint32_t hash(const Key& key) {
+        std::array<std::uint64_t, std::tuple_size_v<Key>> words;
+        std::transform(key.begin(), key.end(), words.begin(), [](auto of) { return word(of); });
+        return KeyTable::hash(words);
+    }
+
+private:
+    template <class Kind>
+    static std::uint64_t word(Id<Kind> id) {
+        return static_cast<std::uint64_t>(id.number());
+    }
+    static std::uint64_t word(std::int64_t number) { return static_cast<std::uint64_t>(number); }
+    static std::uint64_t word(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
+
+    KeyTable table_;
+    std::vector<Key> keys_;
 };
 
 }  // namespace realmodel

@@ -14,7 +14,7 @@ namespace realmodel {
 
 /// How many items there are before each of several chunks, from how many each has.
 /// @return how many there are in all
-inline std::size_t count_before(std::vector<std::size_t>& counts) {
+inline std::size_t exclusive_scan(std::vector<std::size_t>& counts) {
     std::size_t total = 0;
     for (std::size_t& count : counts)
         total += std::exchange(count, total);
@@ -33,7 +33,7 @@ void number_in_order(std::size_t items, const Execution& execution, const IsOne&
         for (std::size_t i = begin; i < end; ++i)
             before[begin / kChunk] += is_one(i) ? 1 : 0;
     });
-    make_room(count_before(before));
+    make_room(exclusive_scan(before));
     parallel_ranges(items, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         std::size_t number = before[begin / kChunk];
         for (std::size_t i = begin; i < end; ++i) {
@@ -64,7 +64,7 @@ void running_totals(Array<Number>& counts, std::uint64_t largest, const Executio
             sum += static_cast<std::size_t>(counts[i]);
         before[begin / kChunk] = sum;
     });
-    const std::size_t total = count_before(before);
+    const std::size_t total = exclusive_scan(before);
     check_total(total, largest);
     parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         std::size_t sum = before[begin / kChunk];
@@ -89,7 +89,7 @@ Array<Number> zeros(std::size_t size, const Execution& execution) {
 
 /// Counts one more item, from any thread; the number of those before it. Which thread comes first
 /// is left to chance, so nothing that is kept may depend on the answer.
-inline std::uint32_t count_one(std::uint32_t& counter) {
+inline std::uint32_t atomic_increment(std::uint32_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -101,7 +101,7 @@ inline std::uint32_t count_one(std::uint32_t& counter) {
 
 /// Makes a value the least of what any thread gives, or the greatest by another order.
 template <class Value, class Before>
-void take_extreme(Value& value, Value other, const Before& before) {
+void atomic_min_by(Value& value, Value other, const Before& before) {
     const std::atomic_ref shared(value);
     Value known = shared.load(std::memory_order_relaxed);
     while (before(other, known) &&
@@ -110,7 +110,7 @@ void take_extreme(Value& value, Value other, const Before& before) {
 }
 
 /// Says so of an item, from any thread: all write the same.
-inline void mark(std::uint8_t& flag) {
+inline void atomic_set(std::uint8_t& flag) {
     std::atomic_ref(flag).store(1, std::memory_order_relaxed);
 }
 

@@ -2,27 +2,34 @@
 #include "realmodel/bedding/bedding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
-#include <numeric>
-#include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/vectors.hpp"
-#include "bedding/sheet_heights.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/strata/stack.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::bedding {
 
 namespace {
 
+using spatial::PlanPosition;
 using strata::meaning;
 using strata::Rule;
 
@@ -32,15 +39,269 @@ constexpr double kBeside = 8 * kNear;      // of it: from an upright polygon to 
 constexpr double kInwards = 1.0 / 64;      // of the way from a corner to the middle of its polygon
 constexpr std::size_t kPolygons = 16'384;  // polygons that a thread takes at once
 constexpr std::size_t kCorners = 16'384;   // corners, likewise
+constexpr double kSame = 1e-6;             // of the heights of a sheet
+
+enum class HeightState : std::uint8_t {
+    kAbsent,  ///< no triangle is there
+    kHeight,  ///< one height
+    kBorder   ///< a border or a step of the sheet is there: a side has to be chosen
+};
+
+/// The triangles of a sheet in plan, kept by the tiles that their boxes meet. Sheets whose heights
+/// alone differ share one, so that a position is located once for all of them.
+class SheetPlan {
+public:
+    using Areas = std::array<double, 3>;
+    struct SheetLocation {
+        HeightState state = HeightState::kAbsent;
+        std::int32_t triangle = -1;
+        Areas areas{};  ///< twice those of the position with each edge of the triangle
+    };
+
+    /// @param near  what rounding may move a position by
+    /// @throws InputError kind bad_index (items: the triangle)
+    SheetPlan(const TriangleView& sheet, double near) : near_(near) {
+        add_triangles(sheet);
+        std::vector<spatial::PlanBox> boxes;
+        boxes.reserve(triangles_.size());
+        spatial::PlanBox frame = spatial::kNoBox;
+        for (const SheetTriangle& triangle : triangles_) {
+            boxes.push_back(spatial::box_around(triangle.corner).widened(near));
+            frame = frame.united(boxes.back());
+        }
+        tiles_ = spatial::PlanTiles(frame, triangles_.size());
+        triangles_at_ = bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
+            for (std::size_t t = 0; t < boxes.size(); ++t) {
+                tiles_.for_each(tiles_.span(boxes[t]),
+                                [&](std::size_t tile) { put(tile, static_cast<std::int32_t>(t)); });
+            }
+        });
+    }
+
+    /// The vertices of the triangles that have an area in plan, counter-clockwise.
+    std::span<const std::array<std::int32_t, 3>> triangles() const { return numbers_; }
+    SheetLocation at(const PlanPosition& position) const {
+        SheetLocation found;
+        if (triangles_.empty() || !tiles_.frame().contains(position)) return found;
+        double best = -HUGE_VAL;
+        for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+            const SheetTriangle& triangle = triangles_[index(t)];
+            const Areas areas = triangle.areas(position);
+            const auto& slack = triangle.slack;
+            if (!triangle.is_near(areas)) continue;
+            if (areas[0] > slack[0] && areas[1] > slack[1] && areas[2] > slack[2])
+                return {HeightState::kHeight, t, areas};
+            if (triangle.has_border_near(position, areas, near_))
+                return {HeightState::kBorder, t, areas};
+            const double least =
+                std::min({areas[0] / slack[0], areas[1] / slack[1], areas[2] / slack[2]});
+            if (least > best) {
+                best = least;
+                found = {HeightState::kHeight, t, areas};
+            }
+        }
+        return found;
+    }
+    /// A triangle that holds a position, or none: -1.
+    std::int32_t holding(const PlanPosition& position) const {
+        if (triangles_.empty() || !tiles_.frame().contains(position)) return -1;
+        for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+            const Areas found = areas(t, position);
+            if (found[0] >= 0 && found[1] >= 0 && found[2] >= 0) return t;
+        }
+        return -1;
+    }
+    Areas areas(std::int32_t triangle, const PlanPosition& position) const {
+        return triangles_[index(triangle)].areas(position);
+    }
+    /// Calls visit(triangle, areas) for those that hold a position or are near it.
+    template <class Visit>
+    void for_each_near(const PlanPosition& position, const Visit& visit) const {
+        for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+            const Areas found = areas(t, position);
+            if (triangles_[index(t)].is_near(found)) visit(t, found);
+        }
+    }
+
+private:
+    struct SheetTriangle {
+        std::array<PlanPosition, 3> corner;
+        std::array<double, 3> slack;  ///< of the edge from a corner to the next: length times near
+        std::uint8_t border_edges = 0, border_corners = 0;  ///< bits
+
+        Areas areas(const PlanPosition& p) const {
+            Areas found{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                found[i] = twice_area(corner[i], corner[(i + 1) % 3], p);
+            }
+            return found;
+        }
+        bool is_near(const Areas& areas) const {
+            return areas[0] >= -slack[0] && areas[1] >= -slack[1] && areas[2] >= -slack[2];
+        }
+        /// Whether a border passes within `near` of a position beside the triangle.
+        bool has_border_near(const PlanPosition& p, const Areas& areas, double near) const {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const unsigned bit = 1U << i;
+                if ((border_edges & bit) != 0 && areas[i] <= slack[i]) return true;
+                if ((border_corners & bit) != 0 && std::abs(p[0] - corner[i][0]) <= near &&
+                    std::abs(p[1] - corner[i][1]) <= near)
+                    return true;
+            }
+            return false;
+        }
+    };
+    /// Those that have an area in plan.
+    void add_triangles(const TriangleView& sheet) {
+        const std::size_t vertices = sheet.vertices.size() / 3;
+        for (std::size_t t = 0; t < sheet.triangles.size() / 3; ++t) {
+            std::array<std::int32_t, 3> v{};
+            SheetTriangle triangle;
+            for (std::size_t i = 0; i < 3; ++i) {
+                v[i] = sheet.triangles[3 * t + i];
+                if (v[i] < 0 || static_cast<std::size_t>(v[i]) >= vertices) {
+                    throw InputError(
+                        "bad_index",
+                        "triangle " + std::to_string(t) + " refers to a vertex that does not exist",
+                        -1, {static_cast<std::int64_t>(t)});
+                }
+            }
+            const auto plan = [&](std::int32_t vertex) {
+                const double* row = &sheet.vertices[3 * index(vertex)];
+                return PlanPosition{row[0], row[1]};
+            };
+            const int way = exact::orient2d(plan(v[0]), plan(v[1]), plan(v[2]));
+            if (way == 0) continue;
+            if (way < 0) std::swap(v[1], v[2]);
+            for (std::size_t i = 0; i < 3; ++i)
+                triangle.corner[i] = plan(v[i]);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto &a = triangle.corner[i], &b = triangle.corner[(i + 1) % 3];
+                triangle.slack[i] = near_ * distance(a, b);
+            }
+            triangles_.push_back(triangle);
+            numbers_.push_back(v);
+        }
+        find_borders(vertices);
+    }
+    /// A border is an edge that is not of two triangles.
+    void find_borders(std::size_t vertices) {
+        struct SheetEdge {
+            std::int32_t low, high, triangle, slot;
+        };
+        std::vector<SheetEdge> edges;
+        edges.reserve(3 * numbers_.size());
+        for (std::size_t t = 0; t < numbers_.size(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto [low, high] = std::minmax(numbers_[t][i], numbers_[t][(i + 1) % 3]);
+                edges.push_back(
+                    {low, high, static_cast<std::int32_t>(t), static_cast<std::int32_t>(i)});
+            }
+        }
+        std::ranges::sort(edges, [](const SheetEdge& a, const SheetEdge& b) {
+            return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+        });
+        std::vector<std::uint8_t> is_border(vertices, 0);
+        for (const auto uses :
+             groups_of(edges, [](const SheetEdge& e) { return std::pair(e.low, e.high); })) {
+            if (uses.size() == 2) continue;
+            for (const SheetEdge& use : uses)
+                triangles_[index(use.triangle)].border_edges |=
+                    static_cast<std::uint8_t>(1U << static_cast<unsigned>(use.slot));
+            is_border[index(uses[0].low)] = is_border[index(uses[0].high)] = 1;
+        }
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (is_border[index(numbers_[t][i])] != 0)
+                    triangles_[t].border_corners |= static_cast<std::uint8_t>(1U << i);
+            }
+        }
+    }
+
+    double near_;
+    std::vector<SheetTriangle> triangles_;
+    std::vector<std::array<std::int32_t, 3>> numbers_;
+    spatial::PlanTiles tiles_;
+    Buckets<std::int32_t> triangles_at_;  ///< of each tile
+};
+
+/// Heights of a sheet at plan positions.
+class SheetHeights {
+public:
+    struct SheetHeight {
+        HeightState state;
+        double height;
+    };
+
+    /// @param plan  that of the sheet, which has to outlive this
+    SheetHeights(const SheetPlan& plan, const TriangleView& sheet) : plan_(&plan) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        heights_.reserve(plan.triangles().size());
+        for (const auto& corners : plan.triangles()) {
+            auto& own = heights_.emplace_back();
+            for (std::size_t i = 0; i < 3; ++i) {
+                own[i] = sheet.vertices[3 * index(corners[i]) + 2];
+                low = std::min(low, own[i]);
+                high = std::max(high, own[i]);
+            }
+        }
+        same_ = kSame * std::max(0.0, high - low);
+    }
+
+    SheetHeight at(const SheetPlan::SheetLocation& location) const {
+        return {location.state, location.state == HeightState::kHeight
+                                    ? height(location.triangle, location.areas)
+                                    : 0.0};
+    }
+    /// The height at a border, on the side of a triangle that is there; -1: no triangle.
+    SheetHeight beside(std::int32_t there, const PlanPosition& position) const {
+        if (there < 0) return {HeightState::kAbsent, 0};
+        const double guess = height(there, plan_->areas(there, position));
+        // Of the triangles around the position the first at about that height: all polygons on one
+        // side get the same.
+        std::vector<double> heights;
+        plan_->for_each_near(position, [&](std::int32_t t, const SheetPlan::Areas& areas) {
+            heights.push_back(height(t, areas));
+        });
+        double nearest = guess, apart = HUGE_VAL;
+        for (const double height : heights) {
+            if (std::abs(height - guess) >= apart) continue;
+            apart = std::abs(height - guess);
+            nearest = height;
+        }
+        const auto first = std::ranges::find_if(
+            heights, [&](double height) { return std::abs(height - nearest) <= same_; });
+        return {HeightState::kHeight, first == heights.end() ? guess : *first};
+    }
+
+private:
+    double height(std::int32_t triangle, const SheetPlan::Areas& areas) const {
+        const auto& own = heights_[index(triangle)];
+        double sum = 0, weighted = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double weight =
+                std::max(0.0, areas[(i + 1) % 3]);  // of the corner across that edge
+            sum += weight;
+            weighted += weight * own[i];
+        }
+        if (!(sum > 0)) return own[0];
+        const auto [low, high] = std::minmax({own[0], own[1], own[2]});
+        return std::clamp(weighted / sum, low, high);
+    }
+
+    const SheetPlan* plan_;
+    double same_ = 0;  ///< heights that differ by less are one: a step that nobody sees
+    std::vector<std::array<double, 3>> heights_;  ///< of the corners of each triangle
+};
 
 /// A corner of a polygon, by their numbers, and its vertex.
-struct Corner {
+struct PolygonCorner {
     std::uint32_t number;
     std::int32_t polygon, vertex;
 };
 
 /// A history at one plan position, as far as it was replayed.
-struct Column {
+struct HistoryColumn {
     bool has_layer = false;   ///< the last sheet has deposited a layer
     bool has_top = false;     ///< some sheet is there
     bool has_floor = false;   ///< some sheet protects what is below it
@@ -50,10 +311,10 @@ struct Column {
     double floor = 0;
 
     /// Lays a sheet on it.
-    void lay(const History& history, std::size_t sheet, const SheetHeights::Found& found) {
+    void lay(const History& history, std::size_t sheet, const SheetHeights::SheetHeight& found) {
         has_layer = false;
-        has_border |= found.state == State::kBorder;
-        if (found.state != State::kHeight) return;
+        has_border |= found.state == HeightState::kBorder;
+        if (found.state != HeightState::kHeight) return;
         const auto rule = meaning(history.rules.empty() ? Rule::kErosional : history.rules[sheet]);
         double level = std::max(found.height, history.base_elevation.value_or(found.height));
         if (!rule.cuts && has_top) level = std::max(level, top);
@@ -78,11 +339,11 @@ bool has_plan_of(const TriangleView& a, const TriangleView& b) {
     return true;
 }
 
-class Corners {
+class BeddingCorners {
 public:
-    Corners(const ComplexView& complex, std::span<const History> histories,
-            std::span<const Polygon> polygons, std::span<const std::int32_t> histories_of_corners,
-            const Execution& execution);
+    BeddingCorners(const ComplexView& complex, std::span<const History> histories,
+                   std::span<const Polygon> polygons,
+                   std::span<const std::int32_t> histories_of_corners, const Execution& execution);
     Bedding bedding();
 
 private:
@@ -111,22 +372,26 @@ private:
     Facing facing(const Polygon& polygon) const;
     PlanPosition beside(const PlanPosition& position, const Polygon& polygon) const;
 
-    double height_of(const Corner& corner) const { return complex_.vertex(corner.vertex)[2]; }
-    std::size_t position_of(const Corner& corner) const {
+    double height_of(const PolygonCorner& corner) const {
+        return complex_.vertex(corner.vertex)[2];
+    }
+    std::size_t position_of(const PolygonCorner& corner) const {
         return index(position_of_[index(corner.vertex)]);
     }
 
-    std::span<const Corner> corners_of(std::size_t history) const {
+    std::span<const PolygonCorner> corners_of(std::size_t history) const {
         const std::size_t first = first_layer_[history], last = first_layer_[history + 1];
         return {corners_.values.data() + corners_.offsets[first],
                 corners_.values.data() + corners_.offsets[last]};
     }
     void replay(std::size_t history, std::span<const std::size_t> used, Bedding& bedding) const;
-    void set(const Corner& corner, const Column& column, bool has_layer, Bedding& bedding) const;
-    void set_at_borders(std::size_t history, std::vector<Corner> some, Bedding& bedding) const;
-    std::vector<Column> columns_at(std::size_t history, const PlanPosition& position,
-                                   std::span<const SheetPlan::Place> places,
-                                   std::span<const std::int32_t> triangles) const;
+    void set(const PolygonCorner& corner, const HistoryColumn& column, bool has_layer,
+             Bedding& bedding) const;
+    void set_at_borders(std::size_t history, std::vector<PolygonCorner> some,
+                        Bedding& bedding) const;
+    std::vector<HistoryColumn> columns_at(std::size_t history, const PlanPosition& position,
+                                          std::span<const SheetPlan::SheetLocation> locations,
+                                          std::span<const std::int32_t> triangles) const;
 
     const ComplexView& complex_;
     std::span<const History> histories_;
@@ -143,12 +408,13 @@ private:
     std::vector<PlanPosition> positions_;
     std::vector<std::uint32_t> column_of_;  ///< of each position, in the history that is replayed
     std::vector<std::size_t> first_layer_;  ///< of each history, among the buckets of corners
-    Buckets<Corner> corners_;  ///< by history and layer; those in no layer before all layers
+    Buckets<PolygonCorner> corners_;  ///< by history and layer; those in no layer before all layers
 };
 
-Corners::Corners(const ComplexView& complex, std::span<const History> histories,
-                 std::span<const Polygon> polygons,
-                 std::span<const std::int32_t> histories_of_corners, const Execution& execution)
+BeddingCorners::BeddingCorners(const ComplexView& complex, std::span<const History> histories,
+                               std::span<const Polygon> polygons,
+                               std::span<const std::int32_t> histories_of_corners,
+                               const Execution& execution)
     : complex_(complex),
       histories_(histories),
       polygons_(polygons),
@@ -166,7 +432,7 @@ Corners::Corners(const ComplexView& complex, std::span<const History> histories,
     sort_corners();
 }
 
-void Corners::check() {
+void BeddingCorners::check() {
     const auto refuse = [](std::size_t polygon, const char* what) {
         throw InputError("bad_index", "polygon " + std::to_string(polygon) + " " + what, -1,
                          {static_cast<std::int64_t>(polygon)});
@@ -188,7 +454,7 @@ void Corners::check() {
 }
 
 /// Each corner's history is there, and has the layer of its polygon.
-void Corners::check_histories() const {
+void BeddingCorners::check_histories() const {
     if (histories_of_corners_.empty()) return;
     const auto refuse = [](std::size_t polygon) {
         throw InputError("bad_index",
@@ -207,7 +473,7 @@ void Corners::check_histories() const {
     }
 }
 
-void Corners::number_corners() {
+void BeddingCorners::number_corners() {
     std::size_t count = 0;
     begin_.reserve(polygons_.size() + 1);
     for (const Polygon& polygon : polygons_) {
@@ -218,7 +484,7 @@ void Corners::number_corners() {
     begin_.push_back(static_cast<std::uint32_t>(count));
 }
 
-void Corners::make_sheets() {
+void BeddingCorners::make_sheets() {
     std::map<std::pair<const void*, const void*>, std::size_t> known;
     std::vector<const TriangleView*> distinct;
     for (const History& history : histories_) {
@@ -249,7 +515,7 @@ void Corners::make_sheets() {
 }
 
 /// Vertices above one another share a plan position.
-void Corners::sort_positions() {
+void BeddingCorners::sort_positions() {
     std::vector<std::pair<PlanPosition, std::int32_t>> order(complex_.vertex_count());
     for (std::size_t v = 0; v < order.size(); ++v) {
         const auto vertex = static_cast<std::int32_t>(v);
@@ -263,7 +529,7 @@ void Corners::sort_positions() {
     }
 }
 
-void Corners::sort_corners() {
+void BeddingCorners::sort_corners() {
     std::size_t layers = 0;
     for (const History& history : histories_) {
         first_layer_.push_back(layers);
@@ -284,16 +550,16 @@ void Corners::sort_corners() {
         }
     };
     const std::size_t chunks = (polygons_.size() + kPolygons - 1) / kPolygons;
-    corners_ = bucketize_in_order<Corner>(layers, chunks, produce, execution_);
+    corners_ = bucketize_in_order<PolygonCorner>(layers, chunks, produce, execution_);
 }
 
-Bedding Corners::bedding() {
+Bedding BeddingCorners::bedding() {
     const std::size_t count = begin_.back();
     Bedding made{Array<float>(count), Array<float>(count), Array<float>(count)};
     column_of_.assign(positions_.size(), kNone);
     for (std::size_t history = 0; history < histories_.size(); ++history) {
         std::vector<std::size_t> used;  // positions
-        for (const Corner& corner : corners_of(history)) {
+        for (const PolygonCorner& corner : corners_of(history)) {
             const std::size_t position = position_of(corner);
             if (column_of_[position] != kNone) continue;
             column_of_[position] = static_cast<std::uint32_t>(used.size());
@@ -308,30 +574,30 @@ Bedding Corners::bedding() {
 
 /// Sheet by sheet over all positions, and then the corners of the layer beneath it: what is read at
 /// once stays in the caches, where columns of all sheets at each position would not.
-void Corners::replay(std::size_t history, std::span<const std::size_t> used,
-                     Bedding& bedding) const {
+void BeddingCorners::replay(std::size_t history, std::span<const std::size_t> used,
+                            Bedding& bedding) const {
     const auto& sheets = sheets_of_[history];
-    std::vector<Column> columns(used.size());
-    std::vector<std::vector<SheetPlan::Place>> places(plans_.size());
+    std::vector<HistoryColumn> columns(used.size());
+    std::vector<std::vector<SheetPlan::SheetLocation>> locations(plans_.size());
     std::vector<std::size_t> last(plans_.size());  // the last sheet with each plan
     for (std::size_t k = 0; k < sheets.size(); ++k)
         last[plan_of_[sheets[k]]] = k;
-    const auto for_corners = [&](std::span<const Corner> some, const auto& work) {
+    const auto for_corners = [&](std::span<const PolygonCorner> some, const auto& work) {
         parallel_ranges(some.size(), kCorners, execution_, [&](std::size_t begin, std::size_t end) {
-            for (const Corner& corner : some.subspan(begin, end - begin))
+            for (const PolygonCorner& corner : some.subspan(begin, end - begin))
                 work(corner, columns[column_of_[position_of(corner)]]);
         });
     };
     const auto set_layer = [&](std::size_t layer) {
         for_corners(corners_[first_layer_[history] + layer],
-                    [&](const Corner& corner, const Column& column) {
+                    [&](const PolygonCorner& corner, const HistoryColumn& column) {
                         set(corner, column, layer > 0 && column.has_layer, bedding);
                     });
     };
     set_layer(0);
     for (std::size_t k = 0; k < sheets.size(); ++k) {
         const SheetPlan& plan = *plans_[plan_of_[sheets[k]]];
-        auto& at = places[plan_of_[sheets[k]]];
+        auto& at = locations[plan_of_[sheets[k]]];
         const bool is_new = at.empty();
         at.resize(used.size());
         parallel_each(used.size(), execution_, [&](std::size_t n) {
@@ -341,11 +607,11 @@ void Corners::replay(std::size_t history, std::span<const std::size_t> used,
         if (last[plan_of_[sheets[k]]] == k) at = {};
         set_layer(k + 1);
     }
-    std::vector<Corner> at_borders;
-    for (const Corner& corner : corners_of(history)) {
+    std::vector<PolygonCorner> at_borders;
+    for (const PolygonCorner& corner : corners_of(history)) {
         if (columns[column_of_[position_of(corner)]].has_border) at_borders.push_back(corner);
     }
-    for_corners(corners_of(history), [&](const Corner& corner, const Column& column) {
+    for_corners(corners_of(history), [&](const PolygonCorner& corner, const HistoryColumn& column) {
         bedding.depth[corner.number] =
             static_cast<float>(std::max(0.0, column.top - height_of(corner)));
     });
@@ -353,34 +619,32 @@ void Corners::replay(std::size_t history, std::span<const std::size_t> used,
 }
 
 /// At the border of a sheet each polygon has the column of its own side.
-void Corners::set_at_borders(std::size_t history, std::vector<Corner> some,
-                             Bedding& bedding) const {
-    std::ranges::sort(some, std::less<>(), [&](const Corner& corner) {
+void BeddingCorners::set_at_borders(std::size_t history, std::vector<PolygonCorner> some,
+                                    Bedding& bedding) const {
+    std::ranges::sort(some, std::less<>(), [&](const PolygonCorner& corner) {
         return std::pair(position_of(corner), corner.number);
     });
-    std::vector<std::size_t> begins;  // of the corners of each position
-    for (std::size_t n = 0; n < some.size(); ++n) {
-        if (n == 0 || position_of(some[n]) != position_of(some[n - 1])) begins.push_back(n);
-    }
-    begins.push_back(some.size());
-    parallel_chunks(begins.size() - 1, execution_, [&](std::size_t n) {
-        const auto corners =
-            std::span<const Corner>(some).subspan(begins[n], begins[n + 1] - begins[n]);
+    std::vector<std::span<const PolygonCorner>> groups;  // those of each position
+    for (const auto corners :
+         groups_of(some, [&](const PolygonCorner& c) { return position_of(c); }))
+        groups.push_back(corners);
+    parallel_chunks(groups.size(), execution_, [&](std::size_t n) {
+        const std::span<const PolygonCorner> corners = groups[n];
         const PlanPosition& position = positions_[position_of(corners[0])];
-        std::vector<SheetPlan::Place> places;  // in each plan
+        std::vector<SheetPlan::SheetLocation> locations;  // in each plan
         for (const auto& plan : plans_)
-            places.push_back(plan->at(position));
-        std::map<std::vector<std::int32_t>, std::vector<Column>> sides;
-        for (const Corner& corner : corners) {
+            locations.push_back(plan->at(position));
+        std::map<std::vector<std::int32_t>, std::vector<HistoryColumn>> sides;
+        for (const PolygonCorner& corner : corners) {
             const Polygon& polygon = polygons_[index(corner.polygon)];
             const PlanPosition inside = beside(position, polygon);
             std::vector<std::int32_t> triangles;  // in each plan, at borders
             for (std::size_t plan = 0; plan < plans_.size(); ++plan) {
-                const bool is_border = places[plan].state == State::kBorder;
+                const bool is_border = locations[plan].state == HeightState::kBorder;
                 triangles.push_back(is_border ? plans_[plan]->holding(inside) : -1);
             }
             auto& columns = sides[triangles];
-            if (columns.empty()) columns = columns_at(history, position, places, triangles);
+            if (columns.empty()) columns = columns_at(history, position, locations, triangles);
             const auto layer = static_cast<std::size_t>(polygon.layer + 1);
             set(corner, columns[layer], layer > 0 && columns[layer].has_layer, bedding);
             bedding.depth[corner.number] =
@@ -391,24 +655,25 @@ void Corners::set_at_borders(std::size_t history, std::vector<Corner> some,
 
 /// A column before all sheets and after each. triangles: in each plan, the one on whose side
 /// heights are wanted at a border.
-std::vector<Column> Corners::columns_at(std::size_t history, const PlanPosition& position,
-                                        std::span<const SheetPlan::Place> places,
-                                        std::span<const std::int32_t> triangles) const {
+std::vector<HistoryColumn> BeddingCorners::columns_at(
+    std::size_t history, const PlanPosition& position,
+    std::span<const SheetPlan::SheetLocation> locations,
+    std::span<const std::int32_t> triangles) const {
     const auto& sheets = sheets_of_[history];
-    std::vector<Column> found(1);
+    std::vector<HistoryColumn> found(1);
     for (std::size_t k = 0; k < sheets.size(); ++k) {
-        const SheetPlan::Place& place = places[plan_of_[sheets[k]]];
+        const SheetPlan::SheetLocation& location = locations[plan_of_[sheets[k]]];
         const SheetHeights& heights = *sheets_[sheets[k]];
         found.push_back(found.back());
         found.back().lay(histories_[history], k,
-                         place.state == State::kBorder
+                         location.state == HeightState::kBorder
                              ? heights.beside(triangles[plan_of_[sheets[k]]], position)
-                             : heights.at(place));
+                             : heights.at(location));
     }
     return found;
 }
 
-Corners::Facing Corners::facing(const Polygon& polygon) const {
+BeddingCorners::Facing BeddingCorners::facing(const Polygon& polygon) const {
     const auto face = complex_.face(index(polygon.face));
     const auto origin = complex_.vertex(face[0]);
     Facing found{};
@@ -429,7 +694,7 @@ Corners::Facing Corners::facing(const Polygon& polygon) const {
 }
 
 /// A position in plan that lies in the polygon, or inside of an upright one, near its corner.
-PlanPosition Corners::beside(const PlanPosition& position, const Polygon& polygon) const {
+PlanPosition BeddingCorners::beside(const PlanPosition& position, const Polygon& polygon) const {
     const auto [normal, middle] = facing(polygon);
     PlanPosition found = moved(position, kInwards, minus({middle[0], middle[1]}, position));
     const double across = elementary::hypot(normal[0], normal[1]);
@@ -442,8 +707,8 @@ PlanPosition Corners::beside(const PlanPosition& position, const Polygon& polygo
 }
 
 /// Height and thickness of a corner. column: as far as the sheet over its layer.
-void Corners::set(const Corner& corner, const Column& column, bool has_layer,
-                  Bedding& bedding) const {
+void BeddingCorners::set(const PolygonCorner& corner, const HistoryColumn& column, bool has_layer,
+                         Bedding& bedding) const {
     const Polygon& polygon = polygons_[index(corner.polygon)];
     const double rounding = kNear * largest_height_, z = height_of(corner);
     const double thickness = has_layer ? std::max(0.0, column.top - column.base) : 0.0;
@@ -466,7 +731,7 @@ void Corners::set(const Corner& corner, const Column& column, bool has_layer,
 Bedding bedding_of(const ComplexView& complex, std::span<const History> histories,
                    std::span<const Polygon> polygons,
                    std::span<const std::int32_t> histories_of_corners, const Execution& execution) {
-    return Corners(complex, histories, polygons, histories_of_corners, execution).bedding();
+    return BeddingCorners(complex, histories, polygons, histories_of_corners, execution).bedding();
 }
 
 }  // namespace realmodel::bedding

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "arrangement/triangulate.hpp"
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/key_table.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::booleans {
 
@@ -130,13 +130,13 @@ bool ExactDivision::is_aside(const TriangleCorners& own, const TriangleCorners& 
 
 /// Of each point whether the pieces around it meet in corners and edges that they share only: most
 /// pieces that are near each other share a corner, and need no more tests.
-std::vector<std::uint8_t> ExactDivision::flat_stars(std::span<const Item> items) const {
+std::vector<std::uint8_t> ExactDivision::flat_stars(std::span<const CandidatePiece> items) const {
     const SpacePoints& points = pieces_.points;
     const auto sectors = bucketize_in_any_order<Sector>(
         points.size(), (items.size() + kFacetsAtOnce - 1) / kFacetsAtOnce,
         [&](std::size_t chunk, const auto& put) {
             const std::size_t begin = chunk * kFacetsAtOnce;
-            for (const Item& item :
+            for (const CandidatePiece& item :
                  items.subspan(begin, std::min(kFacetsAtOnce, items.size() - begin))) {
                 const TriangleCorners& c = item.corners;
                 for (std::size_t k = 0; k < 3; ++k)
@@ -161,10 +161,11 @@ void ExactDivision::find_candidates() {
     std::optional<BoxTree> own;
     if (!pieces_.are_whole() || count != pieces_.input_count()) {
         const auto box_of = [this](const PieceId& id) { return pieces_.box(pieces_[id].corners); };
-        own.emplace(mapped(chosen_, box_of), execution_);
+        own.emplace(transformed(chosen_, box_of), execution_);
     }
     const BoxTree& tree = own ? *own : pieces_.tree();
-    std::vector<Item> items(count);  // in the order of the tree, which has near ones together
+    std::vector<CandidatePiece> items(
+        count);  // in the order of the tree, which has near ones together
     parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place) {
             const TrianglePiece& piece = pieces_[chosen_[index(tree.number_at(place))]];
@@ -181,7 +182,7 @@ void ExactDivision::find_candidates() {
             std::size_t last = count;  // the pairs of a piece follow one another
             std::optional<exact::SideFilter> plane;
             tree.find_pairs(begin, end, [&](std::size_t place, std::size_t of_other) {
-                const Item &one = items[place], &other = items[of_other];
+                const CandidatePiece &one = items[place], &other = items[of_other];
                 const TriangleCorners &a = one.corners, &b = other.corners;
                 if (!(one.is_fresh || other.is_fresh)) return;
                 std::size_t shared = 0;
@@ -296,7 +297,7 @@ std::vector<TriangleCorners> ExactDivision::divided(const Region& region) const 
                              arrangement::PointTurns(pieces_.points, view, point_of));
     // corners, and two more for each hole, which a bridge joins with the outline
     assert(found.size() + 2 == positions.size() + 2 * (loops.size() - 1));
-    return mapped(found, [](const auto& t) -> TriangleCorners {
+    return transformed(found, [](const auto& t) -> TriangleCorners {
         return {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)};
     });
 }

@@ -9,7 +9,7 @@
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "booleans/triangle_pieces.hpp"
-#include "exact/sign_filters.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::booleans {
 
@@ -21,7 +21,7 @@ public:
     ExactDivision(TrianglePieces& pieces, std::vector<PieceId>&& chosen,
                   const Execution& execution);
 
-    using Meeting = arrangement::TriangleArrangement::Intersection;
+    using Meeting = arrangement::TriangleArrangement::TriangleIntersection;
     /// Where fresh pieces meet others out of order. Finds them; pieces without area are dropped.
     const std::vector<Meeting>& meetings() const { return meetings_; }
     const PieceId& piece(std::int32_t triangle) const {
@@ -41,13 +41,13 @@ public:
 
 private:
     /// A piece as its neighbors are found.
-    struct Item {
+    struct CandidatePiece {
         TriangleCorners corners;
         /// Along which axes it is certain to turn left (bits 0, 2, 4) or right (1, 3, 5).
         std::uint8_t turns;
         bool is_fresh;
     };
-    std::vector<std::uint8_t> flat_stars(std::span<const Item> items) const;
+    std::vector<std::uint8_t> flat_stars(std::span<const CandidatePiece> items) const;
     void find_candidates();
     bool is_aside(const TriangleCorners& own, const TriangleCorners& other,
                   const exact::SideFilter& plane_of_other) const;

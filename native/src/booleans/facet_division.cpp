@@ -10,7 +10,7 @@
 
 #include "arrangement/polygons.hpp"
 #include "base/parallel.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 #include "meshing/flat_mesh.hpp"
 
 namespace realmodel::booleans {

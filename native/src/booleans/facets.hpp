@@ -31,4 +31,33 @@ struct FacetMesh {
 /// Cancelled
 FacetMesh facets_of(const RefinedTriangles& parts, const Execution& execution);
 
+/// The edges along which both surfaces meet, and the loops that these make.
+struct IntersectionLoops {
+    std::vector<IntersectionLoop> loops;
+    std::vector<std::int32_t> of_edge;  ///< the loop of each edge of the mesh, -1 none
+};
+
+/// An edge of facets of both surfaces is an intersection edge, but within a part that they share:
+/// there all of its facets are of both.
+/// @param vertices  how many there are
+/// @throws Cancelled
+IntersectionLoops find_loops(const FacetMesh& mesh, std::size_t vertices,
+                             const Execution& execution);
+
+/// The cells of space (arrangement/space_cells.hpp) that the facets of two surfaces P and Q divide
+/// it into. Sources 0 and 1 are P and Q; the windings of a cell say how often each goes round it.
+struct FacetCells {
+    /// Of each facet the cells below it (where it is seen clockwise from) and above it.
+    std::vector<std::array<std::int32_t, 2>> of_facet;
+    /// Of each cell how often either surface goes round it. It says nothing where that is open.
+    std::vector<std::array<std::int32_t, 2>> winding;
+    static constexpr std::int32_t kOutside = 0;  ///< the cell without a bound
+
+    std::size_t size() const { return winding.size(); }
+};
+
+/// @throws InputError kind too_large; Cancelled
+FacetCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                    const Execution& execution);
+
 }  // namespace realmodel::booleans

@@ -6,13 +6,11 @@
 #include <cstring>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
-#include "booleans/facet_cells.hpp"
 #include "booleans/facets.hpp"
-#include "booleans/loops.hpp"
 #include "booleans/refinement.hpp"
 #include "exact/double_double_interval.hpp"
 
@@ -33,7 +31,7 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Execution& exec
                 net[source] += use.direction * facet.times[source];
         }
         for (std::size_t source = 0; source < 2; ++source) {
-            if (net[source] != 0) mark(is_open[source]);
+            if (net[source] != 0) atomic_set(is_open[source]);
         }
     };
     parallel_each(mesh.edges.size(), execution, look_at);

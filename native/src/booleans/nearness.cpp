@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "arrangement/polygons.hpp"
-#include "base/keep_single.hpp"
-#include "base/ulp.hpp"
+#include "base/algorithms.hpp"
+#include "base/floating_point.hpp"
 #include "booleans/triangle_pieces.hpp"
 
 namespace realmodel::booleans {
@@ -62,11 +62,14 @@ double Nearness::distance_at(double coordinate) const {
 
 double Nearness::distance_of(const FacetPair& pair) const {
     double largest = 0;
-    for (const TriangleCorners& corners : pair) {
-        for (const SpacePointId p : corners) {
-            for (const double x : points_.rounded(p))
-                largest = std::max(largest, std::abs(x));
-        }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto reach = [&](const TriangleCorners& corners) {
+            double farthest = 0;
+            for (const SpacePointId p : corners)
+                farthest = std::max(farthest, std::abs(points_.rounded(p)[axis]));
+            return farthest;
+        };
+        largest = std::max(largest, std::min(reach(pair[0]), reach(pair[1])));
     }
     return distance_at(largest);
 }

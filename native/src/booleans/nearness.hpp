@@ -17,17 +17,17 @@ FacetPair pair_of(TriangleCorners one, TriangleCorners other);
 /// What of two triangles is nearer than rounding can keep apart.
 struct NearParts {
     /// Two edges that pass each other, and where.
-    struct Crossing {
+    struct NearCrossing {
         Edge one, other;  ///< in order
         exact::SpacePosition at;
         double within;
-        auto operator<=>(const Crossing&) const = default;
+        auto operator<=>(const NearCrossing&) const = default;
     };
     std::vector<Edge> same;  ///< vertices that are to become one
     std::vector<std::pair<Edge, SpacePointId>> on_edges;
     std::vector<std::pair<TriangleCorners, SpacePointId>>
         over;  ///< vertices over the inside of triangles
-    std::vector<Crossing> crossings;
+    std::vector<NearCrossing> crossings;
 
     /// Takes over the parts of another one, which is empty then.
     void take(NearParts& other);
@@ -37,8 +37,9 @@ struct NearParts {
     }
 };
 
-/// What is near: within so many units in the last place of the largest coordinate of a pair. In
-/// doubles, as this decides how an exact result is rounded, and nothing else.
+/// What is near: within so many units in the last place of the largest coordinate that is in the
+/// boxes of both triangles of a pair: so far new vertices move, however large one of them is.
+/// Decided in doubles (docs/dev/exactness.md, the rule of Booleans).
 class Nearness {
 public:
     Nearness(const SpacePoints& points, double ulps) : points_(points), ulps_(ulps) {}

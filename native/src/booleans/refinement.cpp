@@ -8,14 +8,13 @@
 #include <optional>
 #include <utility>
 
-#include "base/keep_single.hpp"
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "booleans/exact_division.hpp"
 #include "booleans/snapping.hpp"
 #include "booleans/triangle_pieces.hpp"
-#include "exact/sign_filters.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/orientation.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::booleans {
 
@@ -71,16 +70,16 @@ private:
     RefinedTriangles result() const;
 
     /// What has been done so far.
-    enum class State : std::uint8_t {
-        kWhole,    ///< nothing
-        kSnapped,  ///< what is shallow was brought together
-        kDivided,  ///< the inputs were divided along one another
+    enum class RefinementStage : std::uint8_t {
+        kUntouched,  ///< nothing yet
+        kSnapped,    ///< what is shallow was brought together
+        kDivided,    ///< the inputs were divided along one another
     };
 
     TrianglePieces pieces_;
     Execution execution_;
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
-    State state_ = State::kWhole;
+    RefinementStage state_ = RefinementStage::kUntouched;
     double ulps_;
     std::size_t last_meetings_ = SIZE_MAX;  ///< that were brought together
     int exact_rounds_ = 0, snap_rounds_ = 0;
@@ -119,9 +118,10 @@ void Refiner::drop_flat() {
         std::vector<TriangleCorners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             flat.insert(flat.end(), found[i].begin(), found[i].end());
-            if (state_ == State::kWhole && !found[i].empty()) pieces_.replace(fresh_[i], {});
+            if (state_ == RefinementStage::kUntouched && !found[i].empty())
+                pieces_.replace(fresh_[i], {});
         }
-        if (state_ == State::kWhole || flat.empty()) return;
+        if (state_ == RefinementStage::kUntouched || flat.empty()) return;
         sort_unique(flat);
         Numbers changed = Snapping(pieces_, flat, execution_).apply();
         changed.insert(changed.end(), fresh_.begin(), fresh_.end());
@@ -134,7 +134,7 @@ void Refiner::drop_flat() {
 std::vector<PieceId> Refiner::pieces_near_fresh() const {
     std::vector<PieceId> found;
     Numbers inputs;
-    if (state_ == State::kWhole) {
+    if (state_ == RefinementStage::kUntouched) {
         inputs = fresh_;
     } else {
         inputs = found_in_ranges<std::int32_t>(
@@ -184,11 +184,11 @@ bool Refiner::round() {
             pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = false;
     }
     if (division.meetings().empty()) return false;
-    if (state_ == State::kWhole && snap_shallow(division, touched)) {
-        state_ = State::kSnapped;
-    } else if (state_ != State::kDivided) {
+    if (state_ == RefinementStage::kUntouched && snap_shallow(division, touched)) {
+        state_ = RefinementStage::kSnapped;
+    } else if (state_ != RefinementStage::kDivided) {
         divide_first(division);
-        state_ = State::kDivided;
+        state_ = RefinementStage::kDivided;
         most_pieces_ = kMostPieces * pieces_.count() + kFewPieces;
     } else {
         divide_or_snap(division, touched);

@@ -5,13 +5,12 @@
 #include <cassert>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/keep_single.hpp"
-#include "base/lists.hpp"
+#include "base/floating_point.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "base/ulp.hpp"
-#include "booleans/vertex_grid.hpp"
+#include "spatial/hash_grid.hpp"
 
 namespace realmodel::booleans {
 
@@ -39,11 +38,10 @@ void cancel_folds(std::vector<TrianglePiece>& pieces) {
     }
     std::sort(sorted.begin(), sorted.end());
     std::vector<std::uint8_t> goes(pieces.size(), 0);
-    for (auto begin = sorted.begin(), end = begin; begin != sorted.end(); begin = end) {
-        end = std::find_if(begin, sorted.end(),
-                           [&](const Folded& f) { return f.corners != begin->corners; });
-        const auto odd = std::find_if(begin, end, [](const Folded& f) { return f.is_odd; });
-        for (auto even = begin, back = odd; even != odd && back != end; ++even, ++back)
+    for (const auto folded : groups_of(sorted, &Folded::corners)) {
+        const auto odd = std::ranges::find_if(folded, &Folded::is_odd);
+        for (auto even = folded.begin(), back = odd; even != odd && back != folded.end();
+             ++even, ++back)
             goes[even->piece] = goes[back->piece] = 1;
     }
     std::size_t kept = 0;
@@ -55,8 +53,8 @@ void cancel_folds(std::vector<TrianglePiece>& pieces) {
 
 }  // namespace
 
-/// What gets new vertices hands them on to all that is near it, so that layers that lie upon one
-/// another are divided alike: from the pairs on, in waves.
+/// New vertices are also inserted into nearby pieces, breadth first from the pairs on, so that
+/// layers that lie upon one another are divided alike.
 Snapping::Snapping(TrianglePieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
                    const Execution& execution)
     : pieces_(pieces),
@@ -139,14 +137,14 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
 /// @return facets of near pairs that were not asked before what is around them
 std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pairs,
                                               const Waves& waves, NearParts& all) {
-    struct Found {
+    struct NearPairs {
         NearParts parts;
         std::vector<FacetNumbers> near;
         double moved = 0;
     };
-    std::vector<Found> found((pairs.size() + kPairs - 1) / kPairs);
+    std::vector<NearPairs> found((pairs.size() + kPairs - 1) / kPairs);
     const auto work = [&](std::size_t begin, std::size_t end) {
-        Found& own = found[begin / kPairs];
+        NearPairs& own = found[begin / kPairs];
         NearParts parts;
         for (std::size_t i = begin; i < end; ++i) {
             const FacetPair pair = pair_of(facets_[pairs[i][0]], facets_[pairs[i][1]]);
@@ -161,7 +159,7 @@ std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pair
     };
     parallel_ranges(pairs.size(), kPairs, execution_, work);
     std::vector<std::int32_t> next;
-    for (Found& own : found) {
+    for (NearPairs& own : found) {
         if (execution_.progress != nullptr) execution_.progress->check();
         all.take(own.parts);
         near_.insert(near_.end(), own.near.begin(), own.near.end());
@@ -211,7 +209,7 @@ void Snapping::place(NearParts&& found) {
         poll(execution_.progress, i);
         const auto [one, other] = near_[i];
         for (const auto& [own, near] : {std::pair(one, other), std::pair(other, one)}) {
-            Place& place = places_[index(own)];
+            NearFacet& place = places_[index(own)];
             if (place.near.empty()) {
                 const auto edges = edges_of(facets_[own]);
                 for (std::size_t k = 0; k < 3; ++k)
@@ -231,18 +229,31 @@ void Snapping::place(NearParts&& found) {
         give(edge, p);
     sort_unique(found.crossings);
     if (!found.crossings.empty()) {
-        VertexGrid grid(pieces_.points, wide_.distance_at(pieces_.largest_coordinate()));
-        for (std::size_t f = 0; f < facets_.size(); ++f) {
-            poll(execution_.progress, f);
-            for (const SpacePointId p : facets_[static_cast<std::int32_t>(f)])
-                grid.add(p);
+        std::vector<SpacePointId> vertices;
+        for (const TriangleCorners& facet : facets_.keys())
+            vertices.insert(vertices.end(), facet.begin(), facet.end());
+        sort_unique(vertices);
+        spatial::HashGrid<3> grid(2 * wide_.distance_at(pieces_.largest_coordinate()));
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            poll(execution_.progress, i);
+            grid.add(pieces_.points.rounded(vertices[i]));
         }
-        for (const NearParts::Crossing& crossing : found.crossings) {
+        for (const NearParts::NearCrossing& crossing : found.crossings) {
             if (execution_.progress != nullptr) execution_.progress->check();
-            SpacePointId p = grid.nearest(crossing.at, crossing.within);
+            // the nearest vertex, of equally near ones the first
+            std::pair<double, SpacePointId> nearest{crossing.within, kNone};
+            grid.any(crossing.at, crossing.within, [&](std::size_t i) {
+                const std::pair candidate(distance(grid.points()[i], crossing.at), vertices[i]);
+                if (candidate.first <= crossing.within &&
+                    (!nearest.second.has_value() || candidate < nearest))
+                    nearest = candidate;
+                return false;
+            });
+            SpacePointId p = nearest.second;
             if (!p.has_value()) {
                 p = pieces_.points.add(crossing.at);
-                grid.add(p);
+                vertices.push_back(p);
+                grid.add(crossing.at);
             }
             for (const Edge& edge : {crossing.one, crossing.other}) {
                 if (p != edge[0] && p != edge[1] && narrow_.is_between(p, edge)) give(edge, p);
@@ -259,19 +270,18 @@ void Snapping::place(NearParts&& found) {
 /// @return whether any is new
 bool Snapping::add_points(std::vector<OnEdge>&& found) {
     parallel_sort(found, std::less<>(), execution_);
-    for (Divided& edge : on_edges_)
+    for (DividedEdge& edge : on_edges_)
         edge.old = edge.points.size();
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     bool is_new = false;
-    for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {
-        Divided& edge = on_edges_[index(found[begin].first)];
+    std::size_t round = 0;
+    for (const auto group : groups_of(found, &OnEdge::first)) {
+        DividedEdge& edge = on_edges_[index(group[0].first)];
         std::vector<SpacePointId> known = edge.points;
         std::sort(known.begin(), known.end());
-        for (; end < found.size() && found[end].first == found[begin].first; ++end) {
-            poll(execution_.progress, end);
-            const SpacePointId p = found[end].second;
-            if ((end > begin && found[end - 1].second == p) ||
-                std::binary_search(known.begin(), known.end(), p))
-                continue;
+        for (const auto& [number, p] : group) {
+            poll(execution_.progress, round++);
+            if (std::binary_search(known.begin(), known.end(), p)) continue;
             edge.points.push_back(p);
             is_new = true;
         }
@@ -295,7 +305,7 @@ void Snapping::spread_points() {
 
 /// Gives a facet the new points on the edges of those near it.
 void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
-    Place& place = places_[index(facet)];
+    NearFacet& place = places_[index(facet)];
     const TriangleCorners& t = facets_[facet];
     spatial::Box box = pieces_.box(t);
     box.widen(wide_.distance_at(pieces_.largest_coordinate()));
@@ -303,7 +313,7 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
         const Nearness& own_nearness = nearness({facet, near});
         const double within = own_nearness.distance_of({t, facets_[near]});
         for (const std::int32_t e : places_[index(near)].edges) {
-            const Divided& edge = on_edges_[index(e)];
+            const DividedEdge& edge = on_edges_[index(e)];
             for (std::size_t i = edge.old; i < edge.points.size(); ++i) {
                 const SpacePointId p = edge.points[i];
                 if (!box.contains(pieces_.points.rounded(p)) || has(t, p)) continue;
@@ -363,7 +373,7 @@ std::span<const SpacePointId> Snapping::points_on(const Edge& edge) const {
     return on_edges_[index(number)].points;
 }
 
-const Snapping::Place* Snapping::place_of(const TriangleCorners& in_order) const {
+const Snapping::NearFacet* Snapping::place_of(const TriangleCorners& in_order) const {
     const std::int32_t number = places_.empty() ? -1 : facets_.find(in_order);
     return number < 0 ? nullptr : &places_[index(number)];
 }
@@ -372,7 +382,7 @@ bool Snapping::is_divided(const TriangleCorners& in_order) const {
     for (const Edge& edge : edges_of(in_order)) {
         if (!points_on(edge).empty()) return true;
     }
-    const Place* place = place_of(in_order);
+    const NearFacet* place = place_of(in_order);
     return place != nullptr && !place->over.empty();
 }
 
@@ -387,7 +397,7 @@ std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) 
         if (to < from) std::reverse(own.begin(), own.end());
         append(all, own);
     }
-    if (const Place* place = place_of(in_order)) {
+    if (const NearFacet* place = place_of(in_order)) {
         facet.within = place->over;
         append(all, facet.within);
         sort_unique(all);

@@ -5,14 +5,21 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "base/key_numbers.hpp"
+#include "base/key_table.hpp"
+#include "base/vectors.hpp"
 #include "booleans/nearness.hpp"
 #include "booleans/triangle_pieces.hpp"
 
 namespace realmodel::booleans {
+
+using exact::SpacePointId;
+using exact::SpacePoints;
+
+inline double distance(const exact::SpacePosition& p, const exact::SpacePosition& q) {
+    return length(minus(p, q));
+}
 
 /// Brings together what is closer than rounding can keep apart, where pieces meet out of order:
 /// vertices become one, edges and triangles get the vertices that are near them, and edges that
@@ -49,14 +56,14 @@ private:
         SpacePointId from, to;
     };
     /// A facet that is near others.
-    struct Place {
+    struct NearFacet {
         std::array<std::int32_t, 3> edges;
         std::vector<std::int32_t> near;  ///< facets whose edges it is to get, in order
         std::vector<SpacePointId> over;  ///< vertices that it is to get within, in order
         std::vector<SpacePointId> seen;  ///< vertices on edges of those facets, in order
     };
     /// Vertices that an edge is to get.
-    struct Divided {
+    struct DividedEdge {
         std::vector<SpacePointId> points;  ///< in the order along the edge in the end
         std::size_t old = 0;               ///< so many were there before the last pass
     };
@@ -85,7 +92,7 @@ private:
     bool add_points(std::vector<OnEdge>&& found);
     void order_points();
     std::span<const SpacePointId> points_on(const Edge& edge) const;
-    const Place* place_of(const TriangleCorners& in_order) const;
+    const NearFacet* place_of(const TriangleCorners& in_order) const;
     bool is_divided(const TriangleCorners& in_order) const;
     std::vector<TriangleCorners> divided(const TriangleCorners& in_order) const;
     std::vector<std::int32_t> inputs_to_change();
@@ -97,8 +104,8 @@ private:
     std::size_t first_ = 0;               ///< so many
     KeyNumbers<Edge> edges_;              ///< of facets that are near others, and divided ones
     std::vector<FacetNumbers> near_;      ///< facets that are near one another
-    std::vector<Place> places_;           ///< of facets
-    std::vector<Divided> on_edges_;       ///< of edges
+    std::vector<NearFacet> places_;       ///< of facets
+    std::vector<DividedEdge> on_edges_;   ///< of edges
     std::vector<Merge> merged_;           ///< what becomes another vertex, in order
     double moved_ = 0;                    ///< how far at most
 };

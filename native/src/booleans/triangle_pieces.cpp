@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::booleans {
@@ -101,11 +101,11 @@ void TrianglePieces::replace(std::int32_t input, std::vector<TrianglePiece>&& pi
         list = static_cast<std::int32_t>(lists_.size());
         lists_.emplace_back();
     }
-    List& own = lists_[index(list)];
+    PieceList& own = lists_[index(list)];
     own.pieces = std::move(pieces);
     own.tree.reset();
     if (own.pieces.size() < kMany) return;
-    auto boxes = mapped(own.pieces, [this](const auto& piece) { return box(piece.corners); });
+    auto boxes = transformed(own.pieces, [this](const auto& piece) { return box(piece.corners); });
     own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
 }
 

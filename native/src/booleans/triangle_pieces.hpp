@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/keep_single.hpp"
+#include "base/algorithms.hpp"
 #include "booleans/facet_division.hpp"
 #include "realmodel/booleans/intersect.hpp"
 #include "spatial/box_tree.hpp"
@@ -91,7 +91,7 @@ public:
     double largest_coordinate() const { return largest_; }
 
 private:
-    struct List {
+    struct PieceList {
         std::vector<TrianglePiece> pieces;
         std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
     };
@@ -103,7 +103,7 @@ private:
     std::vector<TrianglePiece> whole_;
     std::size_t count_ = 0;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
-    std::vector<List> lists_;
+    std::vector<PieceList> lists_;
     std::unique_ptr<spatial::BoxTree> tree_;
     double reach_ = 0;  ///< how far pieces may be outside of the boxes in the tree
     double largest_ = 0;

@@ -1,46 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/cutter_surface.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 #include "arrangement/edge_fan.hpp"
-#include "base/lists.hpp"
-#include "cutting/edge_intersections.hpp"
+#include "base/algorithms.hpp"
+#include "base/key_table.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
 
-std::vector<Position> positions_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    return mapped(polygon, [&](NodeId v) { return model.vertex(v); });
-}
-
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    const std::vector<Position> positions = positions_of(model, polygon);
-    const View view(polygon_normal(positions));
-    Loop loop;
-    loop.reserve(polygon.size());
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        loop.push_back({polygon[i], view(positions[i])});
-    return {std::move(loop), view.rounding(positions)};
-}
-
-void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons) {
-    const auto [loop, rounding] = loop_of(model, model.face(face));
-    divide_convex(std::span(&loop, 1), rounding, {}, polygons);
-}
-
-void triangulate_face(const ComplexView& model, std::size_t face,
-                      std::vector<std::array<std::int32_t, 3>>& triangles) {
-    const auto corners = model.face(face);
-    triangles.clear();
-    if (corners.size() == 3) {
-        triangles.push_back({corners[0], corners[1], corners[2]});
-        return;
-    }
-    const auto [loop, rounding] = loop_of(model, model.face(face));
-    std::vector<std::array<LoopCorner, 3>> found;
-    triangulate(std::span(&loop, 1), rounding, found);
-    for (const auto& t : found)
-        triangles.push_back({t[0].node, t[1].node, t[2].node});
-}
+using arrangement::EdgeUses;
+using spatial::Box;
+using spatial::BoxTree;
 
 std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
     const auto& triangles = surface.triangles;
@@ -95,6 +70,328 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
     if (surface.triangles.empty())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
     return surface;
+}
+
+// A surface as a user gives it, made ready to cut: repeated triangles, borders that run along one
+// another, orientation, a seam beyond the border.
+
+namespace {
+
+using Triangle = std::array<std::int32_t, 3>;
+using Edge = std::array<NodeId, 2>;
+
+/// Triangles of a surface, and the number that each had in the input.
+class SurfaceInput {
+public:
+    explicit SurfaceInput(const TriangleView& given);
+    CutterSurface ready(bool with_seam) &&;
+
+private:
+    Position at(NodeId v) const { return surface_.vertices[index(v)]; }
+    /// A corner of a border that lies on a border edge, at a share of its length.
+    struct OnEdge {
+        Edge edge;
+        double share;
+        NodeId node;
+        auto operator<=>(const OnEdge&) const = default;
+    };
+
+    EdgeUses edges_of(const std::vector<Triangle>& triangles) const;
+    bool has_repeated() const;
+    bool are_closed(const std::vector<Triangle>& triangles) const;
+    bool drop_repeated();
+    void divide_borders();
+    void divide_triangle(std::size_t t, std::span<const OnEdge> on_edges);
+    bool runs(std::int32_t t, NodeId a, NodeId b) const;
+    void reverse(std::int32_t t);
+    bool orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
+                         const EdgeUses& edges);
+    void orient_upward();
+    void extend_border();
+
+    CutterSurface surface_;
+    std::vector<std::int64_t> original_;
+};
+
+SurfaceInput::SurfaceInput(const TriangleView& given) {
+    const std::int32_t count =
+        checked_number(given.vertices.size() / 3, "vertices of the surface that is to cut");
+    checked_number(given.triangles.size(), "corners of the surface that is to cut");
+    KeyTable same;
+    std::vector<NodeId> first;
+    for (std::int32_t v = 0; v < count; ++v) {
+        Position p;
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = given.vertices[3 * index(v) + k] + 0.0;  // both zeros alike
+            if (!std::isfinite(p[k]))
+                throw InputError("not_finite", "a vertex of the surface is not finite", -1, {v});
+        }
+        surface_.vertices.push_back(p);
+        const auto found =
+            same.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(p)), v,
+                             [&](NodeId other) { return at(other) == p; });
+        first.push_back(found.number);
+    }
+    for (std::size_t t = 0; t + 2 < given.triangles.size(); t += 3) {
+        Triangle corners{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t v = given.triangles[t + i];
+            if (v < 0 || v >= count)
+                throw InputError("bad_index", "a triangle of the surface names no vertex", -1,
+                                 {static_cast<std::int64_t>(t / 3)});
+            corners[i] = first[index(v)];
+        }
+        if (exact::in_one_line(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
+        surface_.triangles.push_back(corners);
+        original_.push_back(static_cast<std::int64_t>(t / 3));
+    }
+    if (surface_.triangles.empty())
+        throw InputError("no_triangles",
+                         "the surface that is to cut has no triangles with an area");
+}
+
+EdgeUses SurfaceInput::edges_of(const std::vector<Triangle>& triangles) const {
+    return arrangement::edges_of(triangles.size(), surface_.vertices.size(),
+                                 [&](std::size_t t) -> const Triangle& { return triangles[t]; },
+                                 {1});
+}
+
+/// Whether some triangles have the same corners.
+bool SurfaceInput::has_repeated() const {
+    const auto key_of = [this](std::int32_t t) {
+        Triangle corners = surface_.triangles[index(t)];
+        std::ranges::sort(corners);
+        return KeyTable::Key{corners[0], corners[1], corners[2], 0};
+    };
+    KeyTable known;
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        if (!known.insert(key_of(t), key_of).is_new) return true;
+    }
+    return false;
+}
+
+/// Whether some triangles have each edge an even number of times.
+bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
+    const EdgeUses edges = edges_of(triangles);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() % 2 != 0) return false;
+    }
+    return !triangles.empty();
+}
+
+/// Where leaving out pairs of equal triangles leaves a closed surface: does that, and true. Else
+/// leaves one of each.
+bool SurfaceInput::drop_repeated() {
+    if (!has_repeated()) return are_closed(surface_.triangles);
+    std::vector<std::pair<Triangle, std::size_t>> sorted;
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+        sorted.push_back({surface_.triangles[t], t});
+        std::ranges::sort(sorted.back().first);
+    }
+    std::ranges::sort(sorted);
+    std::vector<Triangle> odd;           // those that are there an odd number of times
+    std::vector<std::size_t> all, kept;  // the first of each, and of these
+    for (const auto equal : groups_of(sorted, &std::pair<Triangle, std::size_t>::first)) {
+        all.push_back(equal[0].second);
+        if (equal.size() % 2 == 0) continue;
+        odd.push_back(equal[0].first);
+        kept.push_back(equal[0].second);
+    }
+    const bool closed = are_closed(odd);
+    if (!closed) kept = std::move(all);
+    std::ranges::sort(kept);
+    std::vector<Triangle> triangles;
+    std::vector<std::int64_t> original;
+    for (const std::size_t t : kept) {
+        triangles.push_back(surface_.triangles[t]);
+        original.push_back(original_[t]);
+    }
+    surface_.triangles = std::move(triangles);
+    original_ = std::move(original);
+    return closed;
+}
+
+/// Divides border edges at the corners of other borders that lie on them, or do but for rounding.
+void SurfaceInput::divide_borders() {
+    std::vector<Edge> edges;
+    std::vector<Box> boxes;
+    std::vector<NodeId> corners;
+    const EdgeUses uses = edges_of(surface_.triangles);
+    for (std::size_t e = 0; e < uses.size(); ++e) {
+        if (uses[e].size() != 1) continue;
+        edges.push_back(uses.ends(e));
+        corners.insert(corners.end(), edges.back().begin(), edges.back().end());
+        boxes.push_back(spatial::bounding_box(edges.back(), [this](NodeId v) { return at(v); }));
+    }
+    sort_unique(corners);
+    const BoxTree tree(boxes);
+    std::vector<OnEdge> found;
+    for (const NodeId v : corners) {
+        const Position p = at(v);
+        const double tolerance = rounding_of(std::span(&p, 1));
+        Box box{p, p};
+        box.widen(tolerance);
+        tree.find(box, [&](std::int32_t e) {
+            const Edge& edge = edges[index(e)];
+            if (v == edge[0] || v == edge[1]) return;
+            const Position a = at(edge[0]), line = minus(at(edge[1]), a), off = minus(p, a);
+            const double share = dot(off, line) / dot(line, line);
+            if (!(share > 0 && share < 1)) return;
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (std::abs(off[k] - share * line[k]) > tolerance) return;
+            }
+            found.push_back({edge, share, v});
+        });
+    }
+    if (found.empty()) return;
+    std::ranges::sort(found);
+    const std::size_t count = surface_.triangles.size();
+    for (std::size_t t = 0; t < count; ++t)
+        divide_triangle(t, found);
+}
+
+void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edges) {
+    const Triangle corners = surface_.triangles[t];
+    const std::array positions{at(corners[0]), at(corners[1]), at(corners[2])};
+    const View view(polygon_normal(positions));
+    Loop loop;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const NodeId a = corners[i], b = corners[(i + 1) % 3];
+        loop.push_back({a, view(at(a))});
+        const std::size_t begin = loop.size();
+        const auto edge = unordered(a, b);
+        for (const OnEdge& on : std::ranges::equal_range(on_edges, edge, {}, &OnEdge::edge))
+            loop.push_back({on.node, view(at(on.node))});
+        if (a > b) std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
+    }
+    if (loop.size() == 3) return;
+    std::vector<std::array<LoopCorner, 3>> triangles;
+    triangulate(std::span(&loop, 1), view.rounding(positions), triangles);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const auto& own = triangles[i];
+        const Triangle part{own[0].node, own[1].node, own[2].node};
+        if (i == 0) {
+            surface_.triangles[t] = part;
+        } else {
+            surface_.triangles.push_back(part);
+            original_.push_back(original_[t]);
+        }
+    }
+}
+
+/// Whether a triangle's outline runs from a to b.
+bool SurfaceInput::runs(std::int32_t t, NodeId a, NodeId b) const {
+    const Triangle& c = surface_.triangles[index(t)];
+    return (c[0] == a && c[1] == b) || (c[1] == a && c[2] == b) || (c[2] == a && c[0] == b);
+}
+
+void SurfaceInput::reverse(std::int32_t t) {
+    std::swap(surface_.triangles[index(t)][1], surface_.triangles[index(t)][2]);
+}
+
+/// Gives all triangles that are connected with the first of a part its orientation, and adds them.
+/// @return whether the part is closed
+bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
+                                   const EdgeUses& edges) {
+    bool closed = true;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        const Triangle corners = surface_.triangles[index(part[i])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const NodeId a = corners[k], b = corners[(k + 1) % 3];
+            const auto uses = edges.between(unordered(a, b));
+            closed = closed && uses.size() == 2;
+            for (const arrangement::EdgeUse& use : uses) {
+                const std::int32_t other = use.item;
+                if (other == part[i]) continue;
+                if (done[index(other)]) {
+                    if (!runs(other, a, b)) continue;
+                    throw InputError("one_sided", "the surface has no two sides", -1,
+                                     {original_[index(part[i])], original_[index(other)]}, at(a));
+                }
+                if (runs(other, a, b)) reverse(other);
+                done[index(other)] = true;
+                part.push_back(other);
+            }
+        }
+    }
+    return closed;
+}
+
+/// Orients each connected part of an open surface: upward on the whole, outward if closed.
+void SurfaceInput::orient_upward() {
+    const EdgeUses edges = edges_of(surface_.triangles);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() < 3) continue;
+        const auto row = [&](std::size_t i) { return original_[index(edges[e][i].item)]; };
+        throw InputError("branching", "more than two triangles of the surface share an edge", -1,
+                         {row(0), row(1), row(2)}, at(edges.ends(e)[0]));
+    }
+    std::vector<bool> done(surface_.triangles.size(), false);
+    for (std::int32_t start = 0; index(start) < done.size(); ++start) {
+        if (done[index(start)]) continue;
+        std::vector<std::int32_t> part{start};
+        done[index(start)] = true;
+        const bool closed = orient_as_first(part, done, edges);
+        double upward = 0, volume = 0;
+        const Position origin = at(surface_.triangles[index(start)][0]);
+        for (const std::int32_t t : part) {
+            const Triangle& c = surface_.triangles[index(t)];
+            const std::array corners{at(c[0]), at(c[1]), at(c[2])};
+            const Position normal = polygon_normal(corners);
+            upward += normal[2];
+            volume += dot(normal, minus(corners[0], origin));
+        }
+        if ((closed ? volume : upward) >= 0) continue;
+        for (const std::int32_t t : part)
+            reverse(t);
+    }
+}
+
+/// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
+/// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
+void SurfaceInput::extend_border() {
+    const std::vector<CutterBorderEdge> border = border_of(surface_);
+    const double width = 256 * rounding_of(surface_.vertices);
+    std::vector<Position> outward(surface_.vertices.size(), Position{0, 0, 0});
+    for (const CutterBorderEdge& edge : border) {
+        const Position away = away_from(surface_, edge);
+        for (const NodeId v : {edge.from, edge.to})
+            outward[index(v)] = plus(outward[index(v)], away);
+    }
+    std::vector<NodeId> beyond(outward.size(), -1);
+    for (std::size_t v = 0; v < outward.size(); ++v) {
+        const double size = length(outward[v]);
+        if (size < 0.1) continue;  // away from the border, or it runs back: it is a slit there
+        Position p = surface_.vertices[v];
+        for (std::size_t k = 0; k < 3; ++k)
+            p[k] += width * outward[v][k] / size;
+        beyond[v] = static_cast<NodeId>(surface_.vertices.size());
+        surface_.vertices.push_back(p);
+    }
+    for (const auto& [a, b, c] : border) {
+        const NodeId at_a = beyond[index(a)], at_b = beyond[index(b)];
+        if (at_a >= 0) surface_.triangles.push_back({b, a, at_a});
+        if (at_b >= 0) surface_.triangles.push_back({b, at_a < 0 ? a : at_a, at_b});
+    }
+}
+
+CutterSurface SurfaceInput::ready(bool with_seam) && {
+    surface_.is_closed = drop_repeated();
+    if (!surface_.is_closed) {
+        divide_borders();
+        surface_.is_closed = drop_repeated();
+    }
+    if (!surface_.is_closed) {
+        orient_upward();
+        if (with_seam) extend_border();
+    }
+    return std::move(surface_);
+}
+
+}  // namespace
+
+CutterSurface oriented_surface(const TriangleView& given, bool with_seam) {
+    return SurfaceInput(given).ready(with_seam);
 }
 
 }  // namespace realmodel::cutting

@@ -2,13 +2,9 @@
 #pragma once
 
 #include <array>
-#include <span>
-#include <utility>
 #include <vector>
 
-#include "cutting/polygons.hpp"
-#include "realmodel/cutting/cut.hpp"
-#include "spatial/box_tree.hpp"
+#include "cutting/pieces.hpp"
 
 namespace realmodel::cutting {
 
@@ -33,9 +29,6 @@ std::vector<CutterBorderEdge> border_of(const CutterSurface& surface);
 /// Away from an edge, in the plane of its triangle, as long as 1.
 Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge);
 
-/// Whether three points lie in one line, exactly.
-bool in_one_line(const Position& a, const Position& b, const Position& c);
-
 /// A surface as a user gives it: checked, triangles that are there twice left out of an open one,
 /// its parts oriented upward on the whole. Where a border runs along another the edges are divided
 /// so that they are shared; other borders are extended by a seam, wider than rounding, where asked.
@@ -46,23 +39,5 @@ CutterSurface oriented_surface(const TriangleView& surface, bool with_seam = tru
 /// The boundary of a block.
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
-
-/// Around a polygon of the model's vertices.
-inline spatial::Box box_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    return spatial::bounding_box(polygon, [&](NodeId v) { return model.vertex(v); });
-}
-
-std::vector<Position> positions_of(const ComplexView& model, std::span<const NodeId> polygon);
-
-/// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
-/// its corners.
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon);
-
-/// A face divided into triangles, always the same ones for the same face: numbers of its corners.
-void triangulate_face(const ComplexView& model, std::size_t face,
-                      std::vector<std::array<std::int32_t, 3>>& triangles);
-
-/// A face in convex polygons, which are added.
-void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons);
 
 }  // namespace realmodel::cutting

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "arrangement/edge_fan.hpp"
-#include "arrangement/ray_boxes.hpp"
-#include "base/lists.hpp"
-#include "exact/sign_filters.hpp"
-#include "exact/space_predicates.hpp"
+#include "arrangement/space_cells.hpp"
+#include "base/algorithms.hpp"
+#include "exact/orientation.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::cutting {
 
@@ -70,7 +69,7 @@ bool plane_meets(const std::array<Position, 3>& triangle, const Box& box) {
 }
 
 std::vector<Box> boxes_of(const CutterSurface& surface) {
-    return mapped(surface.triangles, [&](const auto& t) {
+    return transformed(surface.triangles, [&](const auto& t) {
         return spatial::bounding_box(t, [&](NodeId v) { return surface.vertices[index(v)]; });
     });
 }
@@ -109,14 +108,14 @@ bool NearestSide::is_on_border(std::int32_t triangle, const Position& q) const {
 }
 
 std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
-    struct Near {
+    struct NearTriangle {
         double distance;
         std::int32_t triangle;
         Position at;
     };
     // mostly one is nearest, which needs no memory and is compared with none
-    std::optional<Near> first;
-    std::vector<Near> others;
+    std::optional<NearTriangle> first;
+    std::vector<NearTriangle> others;
     double least = HUGE_VAL;
     tree_.approach(
         p, [&least] { return least * (1 + kAlike); },
@@ -135,7 +134,7 @@ std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     if (!first) return kAbove;
     std::int32_t best = -1;
     double best_square = 0;
-    const auto compare = [&](const Near& one) {
+    const auto compare = [&](const NearTriangle& one) {
         if (one.distance > least * (1 + kAlike)) return;
         if (at_border != nullptr && is_on_border(one.triangle, one.at)) *at_border = true;
         double square = 0;

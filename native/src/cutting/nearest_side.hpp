@@ -21,7 +21,8 @@ public:
     /// The same of all positions in a ball, where that needs no look at each and no border edge is
     /// nearest to any.
     std::optional<std::int8_t> of_ball(const Position& center, double radius) const;
-    /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
+    /// Of a closed surface: below if the point is inside, so that a ray from it crosses the surface
+    /// an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
     /// The same of one of some points, which get the surface's: by a ray along an axis.
     /// @param from_below  a triangle that the point is on is crossed, too

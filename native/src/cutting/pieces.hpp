@@ -9,29 +9,75 @@
 // half     what of a model is on one side (Cut::below, Cut::above)
 // node     a vertex of the model, or a new point; new ones have the numbers after the vertices
 // region   of a triangle of the model or of the cutter: what is connected and no other triangle
-//          passes through (SurfaceOverlay). A face's region is level where it lies on the cutter
-// winding  of cells at a point: how often the boundary of each goes round it, once within it
-//          (CutterWinding). Of a loop: which way it goes from its least node, 1 or -1 (winding_of)
+//          passes through (SurfaceOverlay). A face's region may coincide with one of the cutter's
+// winding  winding numbers of cells at a point: how often the boundary of each goes round it, once
+//          within it (CutterWinding). Of a loop: which way it goes from its least node (winding_of)
 // fan      the regions around an edge, in order; a blade of it: those in one half-plane; a sector:
 //          what is between a blade and the next
 // patch    regions of one face that no edge of the cutter lies between; cap: a region of the
-//          cutter as one of the cells around it sees it; slot: either of them, as one cell sees it
+//          cutter as one of the cells around it sees it; half-face: either of them, as seen from
+//          one cell
 // part     what is connected of a cell on one side (HalfCell): a cell of a half
 // piece    a polygon between two parts, or around one (CutPiece): of a patch, a whole face or a cap
 // shell    what is connected of the boundary of a part; around a hollow its volume is negative
-// slit     an edge that a cell has the same cap on both sides of (CellCutter)
-// near     of cells: they may meet the cutter; the others are far, and are copied (NearPart), as
-//          are faces of near cells that are far themselves (FarFaces)
+// slit     an edge in a cap that the cap's outline passes there and back (CellCutter)
+// near     cells that may meet the cutter; the others are far and are copied (NearPart), as are
+//          far faces of near cells (FarFaces)
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "cutting/polygons.hpp"
+#include "arrangement/triangulate.hpp"
+#include "realmodel/cutting/cut.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using arrangement::CornerTurns;
+using arrangement::divide_convex;
+using arrangement::Loop;
+using arrangement::LoopCorner;
+using arrangement::NodeId;
+using arrangement::PlanePosition;
+using arrangement::Polygons;
+using arrangement::Position;
+using arrangement::rounding_of;
+using arrangement::triangulate;
+using arrangement::triangulate_beside;
+using arrangement::View;
+
+/// Sides of a cutter: above it or outside of it, on it, below it or inside.
+inline constexpr std::int8_t kAbove = 1, kOn = 0, kBelow = -1;
+
+// The faces of a model as polygons.
+
+/// Checks that arrays which may come from anywhere name only what is there.
+/// @throws InputError kind bad_model
+void check_model(const ComplexView& model);
+
+/// Around a polygon of the model's vertices.
+inline spatial::Box box_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    return spatial::bounding_box(polygon, [&](NodeId v) { return model.vertex(v); });
+}
+
+std::vector<Position> positions_of(const ComplexView& model, std::span<const NodeId> polygon);
+
+/// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
+/// its corners.
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon);
+
+/// A face divided into triangles, always the same ones for the same face: numbers of its corners.
+void triangulate_face(const ComplexView& model, std::size_t face,
+                      std::vector<std::array<std::int32_t, 3>>& triangles);
+
+/// A face in convex polygons, which are added.
+void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons);
+
+// What a cutter makes of them.
 
 /// Where a polygon of a cut model comes from, and what is on either side of it. It turns
 /// counter-clockwise seen from outside of the first of its two cells. A cap has one cell twice:
@@ -40,12 +86,12 @@ struct CutPiece {
     std::int32_t face;                  ///< the model's face; a cap: below 0 (PartSides::cap_face)
     std::array<std::int32_t, 2> cells;  ///< the model's cells, -1 outside
     std::array<std::int8_t, 2> sides;   ///< of either cell's part; kOn: no cell there
-    bool is_level;                      ///< whether it lies on the cutter
+    bool is_on_cutter;                  ///< whether it lies on the cutter
     /// The cells of the halves (HalfCell), -1 none, once they are known.
     std::array<std::int32_t, 2> parts{-1, -1};
 
     /// Whether it belongs to the section: between the halves, or where one of them ends.
-    bool is_in_section() const { return is_level && sides[0] != sides[1]; }
+    bool is_in_section() const { return is_on_cutter && sides[0] != sides[1]; }
 };
 
 /// Faces of a model cut up by a cutter, and the caps: what halves are put together from.

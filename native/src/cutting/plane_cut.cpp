@@ -4,21 +4,21 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
-#include "cutting/cell_cutter.hpp"
-#include "cutting/cutter_surface.hpp"
-#include "cutting/face_splitter.hpp"
-#include "cutting/halves.hpp"
-#include "cutting/model_check.hpp"
+#include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
+#include "cutting/pieces.hpp"
+#include "cutting/plane_division.hpp"
 #include "cutting/rounding/part_rounding.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
+#include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -59,7 +59,10 @@ bool crosses_itself(std::span<const Position> corners) {
 class PlaneCutter {
 public:
     PlaneCutter(const ComplexView& model, const Plane& plane, const Execution& execution)
-        : model_(model), plane_(checked_plane(plane)), execution_(execution) {
+        : model_(model),
+          plane_(checked_plane(plane)),
+          plane_point_(plane.point),
+          execution_(execution) {
         sides_ = vertex_sides(model, plane_, execution);
     }
 
@@ -85,7 +88,12 @@ public:
 
 private:
     void divide() {
+        // each round but the last takes a vertex to lie on the plane, or a cell to be on the other
+        // side of a face in it, once and for all
+        const std::size_t bound = sides_.size() + 2 * model_.face_count();
+        std::size_t rounds = 0;
         do {
+            if (rounds++ > bound) throw InternalError("parts of a plane cut settle", plane_point_);
             divide_faces(true);
             report(0.4, "closing the parts");
             cut_cells(true);
@@ -113,6 +121,7 @@ private:
 
     const ComplexView& model_;
     exact::OrientedPlane plane_;
+    Position plane_point_;
     Execution execution_;
     std::vector<std::int8_t> sides_;
     std::vector<std::uint8_t> face_sides_, cell_sides_;
@@ -151,7 +160,8 @@ void PlaneCutter::mark_sides() {
 }
 
 void PlaneCutter::find_cuts() {
-    for (;;) {
+    // each round but the last takes a vertex to lie on the plane
+    for (std::size_t round = 0; round <= sides_.size(); ++round) {
         mark_sides();
         std::vector<std::array<NodeId, 2>> edges;
         for (std::size_t f = 0; f < face_sides_.size(); ++f) {
@@ -184,6 +194,7 @@ void PlaneCutter::find_cuts() {
         }
         if (!moved) return;
     }
+    throw InternalError("cut edges of a plane settle", plane_point_);
 }
 
 /// The side of the part of a cell that a face in the plane bounds: the cell's, or where it has
@@ -206,9 +217,9 @@ CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
     CutPiece piece{
         static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
     if (side != kOn) return piece;
-    const auto corners = mapped(polygon, [this](NodeId node) { return position(node); });
+    const auto corners = transformed(polygon, [this](NodeId node) { return position(node); });
     const double along = dot(polygon_normal(corners), plane_.normal());
-    piece.is_level = true;
+    piece.is_on_cutter = true;
     for (std::size_t k = 0; k < 2; ++k)
         piece.sides[k] = level_side(face, k, along > 0 ? 1 : -1);
     return piece;
@@ -431,6 +442,98 @@ Cut cut_by_plane(const ComplexView& model, const Plane& plane, const Execution& 
 Section section_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution) {
     check_model(model);
     return PlaneCutter(model, plane, execution).section();
+}
+
+// A vertical section between two points: the section of the whole plane, cut off at both ends.
+
+namespace {
+
+/// The part of a section above a plane. Convex polygons stay convex and in one piece (I. E.
+/// Sutherland and G. W. Hodgman 1974); neighbors are cut in the same points.
+class SectionClip {
+public:
+    SectionClip(const Section& section, const exact::OrientedPlane& plane)
+        : section_(section), plane_(plane), number_(section.vertices.size(), -1) {}
+
+    Section above() {
+        for (const Position& p : section_.vertices)
+            sides_.push_back(plane_.side(p));
+        std::vector<NodeId> polygon;
+        for (std::size_t k = 0; k < section_.cells.size(); ++k) {
+            const auto begin = static_cast<std::size_t>(section_.offsets[k]);
+            const auto end = static_cast<std::size_t>(section_.offsets[k + 1]);
+            polygon.clear();
+            bool any = false;
+            for (std::size_t i = begin; i < end; ++i) {
+                const NodeId a = section_.polygon_vertices[i];
+                const NodeId b = section_.polygon_vertices[i + 1 < end ? i + 1 : begin];
+                any = any || side(a) == kAbove;
+                if (side(a) != kBelow) polygon.push_back(kept(a));
+                if (side(a) * side(b) < 0) polygon.push_back(intersection(a, b));
+            }
+            if (!any || polygon.size() < 3) continue;
+            result_.polygon_vertices.insert(result_.polygon_vertices.end(), polygon.begin(),
+                                            polygon.end());
+            result_.offsets.push_back(static_cast<std::int64_t>(result_.polygon_vertices.size()));
+            result_.cells.push_back(section_.cells[k]);
+        }
+        drop_unused();
+        return std::move(result_);
+    }
+
+private:
+    std::int8_t side(NodeId v) const { return sides_[index(v)]; }
+
+    NodeId add(const Position& p) {
+        result_.vertices.push_back(p);
+        return static_cast<NodeId>(result_.vertices.size()) - 1;
+    }
+    NodeId kept(NodeId v) {
+        NodeId& number = number_[index(v)];
+        if (number < 0) number = add(section_.vertices[index(v)]);
+        return number;
+    }
+    NodeId intersection(NodeId a, NodeId b) {
+        const auto [found, is_new] =
+            intersections_.try_emplace(std::pair(std::min(a, b), std::max(a, b)), -1);
+        if (is_new) {
+            found->second = add(plane_.intersection(section_.vertices[index(found->first.first)],
+                                                    section_.vertices[index(found->first.second)]));
+        }
+        return found->second;
+    }
+    /// Nodes of polygons that merely touch the plane.
+    void drop_unused() {
+        std::vector<NodeId> renumbered(result_.vertices.size(), -1);
+        Array<Position> used;
+        for (NodeId& v : result_.polygon_vertices) {
+            NodeId& number = renumbered[index(v)];
+            if (number < 0) {
+                number = static_cast<NodeId>(used.size());
+                used.push_back(result_.vertices[index(v)]);
+            }
+            v = number;
+        }
+        result_.vertices = std::move(used);
+    }
+
+    const Section& section_;
+    const exact::OrientedPlane& plane_;
+    std::vector<std::int8_t> sides_;
+    std::vector<NodeId> number_;
+    std::map<std::pair<NodeId, NodeId>, NodeId> intersections_;
+    Section result_;
+};
+
+}  // namespace
+
+Section fence_panel(const ComplexView& model, const std::array<double, 2>& start,
+                    const std::array<double, 2>& end, const Execution& execution) {
+    const double dx = end[0] - start[0], dy = end[1] - start[1];
+    const Position first{start[0], start[1], 0}, last{end[0], end[1], 0};
+    const Section whole = section_by_plane(model, {first, {dy, -dx, 0}}, execution);
+    const Section begun = SectionClip(whole, checked_plane({first, {dx, dy, 0}})).above();
+    return SectionClip(begun, checked_plane({last, {-dx, -dy, 0}})).above();
 }
 
 }  // namespace realmodel::cutting

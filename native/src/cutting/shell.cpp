@@ -7,8 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/vectors.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/space_points.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -16,11 +17,11 @@ namespace realmodel::cutting {
 namespace {
 
 /// One connected boundary of a part of a cell. Around a hollow it has a negative volume.
-struct Shell {
+struct PartShell {
     double sixfold_volume = 0;
     spatial::Box box;
 };
-using Shells = std::map<std::int32_t, Shell>;
+using Shells = std::map<std::int32_t, PartShell>;
 
 /// How often a shell goes round a corner of a hollow.
 struct Question {
@@ -82,7 +83,7 @@ void join_hollows(const std::function<void(const VisitShellPolygon&)>& each_poly
     std::optional<Position> origin;  // near them
     each_polygon([&](std::int32_t of, std::span<const Position> corners, int sign) {
         if (!origin) origin = corners[0];
-        Shell& shell = shells[of];
+        PartShell& shell = shells[of];
         for (std::size_t i = 0; i < corners.size(); ++i) {
             shell.box.include(corners[i]);
             if (i > 1) {
@@ -91,7 +92,7 @@ void join_hollows(const std::function<void(const VisitShellPolygon&)>& each_poly
             }
         }
     });
-    const auto is_around = [](const Shell& shell, const Shell& hollow) {
+    const auto is_around = [](const PartShell& shell, const PartShell& hollow) {
         return shell.sixfold_volume > -hollow.sixfold_volume;
     };
     // where the boxes of several contain a hollow, some of its corners are asked for: one of them
@@ -126,21 +127,17 @@ void join_hollows(const std::function<void(const VisitShellPolygon&)>& each_poly
     }
     for (const auto& shell : shells) {
         const std::int32_t inner = shell.first;
-        const Shell& hollow = shell.second;
+        const PartShell& hollow = shell.second;
         if (hollow.sixfold_volume > 0) continue;
         // what contains the first of its corners that touches none
         std::vector<std::int32_t> containing;
-        auto question = std::ranges::lower_bound(questions, inner, {}, &Question::hollow);
-        while (question != questions.end() && question->hollow == inner && containing.empty()) {
-            const auto end = std::find_if(question, questions.end(), [&](const Question& q) {
-                return q.hollow != inner || q.number != question->number;
-            });
-            if (std::none_of(question, end, [](const Question& q) { return q.is_on; })) {
-                for (; question != end; ++question) {
-                    if (question->turns != 0) containing.push_back(question->around);
-                }
+        const auto own = std::ranges::equal_range(questions, inner, {}, &Question::hollow);
+        for (const auto of_corner : groups_of(own, &Question::number)) {
+            if (std::ranges::any_of(of_corner, &Question::is_on)) continue;
+            for (const Question& question : of_corner) {
+                if (question.turns != 0) containing.push_back(question.around);
             }
-            question = end;
+            if (!containing.empty()) break;
         }
         const Shells::value_type* around = nullptr;
         const auto rank = [&](const Shells::value_type& of) {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/disjoint_sets.hpp"
-#include "cutting/polygons.hpp"
+#include "cutting/pieces.hpp"
 
 namespace realmodel::cutting {
 

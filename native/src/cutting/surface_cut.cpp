@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "base/parallel.hpp"
-#include "cutting/halves.hpp"
-#include "cutting/model_check.hpp"
+#include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
+#include "cutting/pieces.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"

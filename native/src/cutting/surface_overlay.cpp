@@ -2,15 +2,11 @@
 // The exact overlay of a model's faces with the triangles of a surface.
 #include "cutting/surface_overlay.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
+#include "base/floating_point.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "base/ulp.hpp"
-#include "cutting/plane_outline.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
 
@@ -61,10 +57,10 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 }  // namespace
 
 /// Where on an edge of the surface a vertex may be but for its rounding.
-std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_on_edge(const Position& p,
-                                                                          const Position& tolerance,
-                                                                          const Position& a,
-                                                                          const Position& b) {
+std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::edge_near(const Position& p,
+                                                                        const Position& tolerance,
+                                                                        const Position& a,
+                                                                        const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
     double from = 0, to = 1, shortest = HUGE_VAL;
@@ -84,11 +80,11 @@ std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_on_edge(const 
     }
     const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
     if (from > to || !(share > 0 && share < 1)) return std::nullopt;
-    return SurfacePlace{2, axis, {a, b}};
+    return SurfaceFeature{2, axis, {a, b}};
 }
 
 /// The same within a triangle of the surface.
-std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
+std::optional<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::triangle_near(
     const Position& p, const Position& tolerance, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
     const Position normal = polygon_normal(corners);
@@ -106,12 +102,12 @@ std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
         if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
             return std::nullopt;
     }
-    return SurfacePlace{3, axis, corners};
+    return SurfaceFeature{3, axis, corners};
 }
 
 /// Where on the surface a vertex may be but for its rounding: at a corner, or on edges, then in
 /// triangles.
-std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(NodeId vertex) const {
+std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId vertex) const {
     std::vector<std::int32_t> near;
     const Position p = model_.vertex(vertex);
     tree_->find(Box{p, p}, [&](std::int32_t t) {
@@ -124,25 +120,26 @@ std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(Node
             if (is_within(p, corner(t, i), tolerance, 1)) return {{1, 0, {corner(t, i)}}};
         }
     }
-    std::vector<SurfacePlace> places;
+    std::vector<SurfaceFeature> features;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (const auto found = place_on_edge(p, tolerance, corner(t, i), corner(t, i + 1)))
-                places.push_back(*found);
+            if (const auto found = edge_near(p, tolerance, corner(t, i), corner(t, i + 1)))
+                features.push_back(*found);
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto found = place_in_triangle(p, tolerance, surface_.corners(index(t))))
-            places.push_back(*found);
+        if (const auto found = triangle_near(p, tolerance, surface_.corners(index(t))))
+            features.push_back(*found);
     }
-    return places;
+    return features;
 }
 
-/// The first of the places of a vertex that is indeed as near; none where it is elsewhere.
-std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p,
-                                                             std::span<const SurfacePlace> places) {
-    for (const SurfacePlace& place : places) {
-        const auto& [count, axis, corners] = place;
+/// The point on the first of some features that is indeed as near to a vertex; none where all are
+/// farther.
+std::optional<SpacePointId> SurfaceOverlay::point_on_surface(
+    const Position& p, std::span<const SurfaceFeature> features) {
+    for (const SurfaceFeature& feature : features) {
+        const auto& [count, axis, corners] = feature;
         if (count == 1) return points_.add(corners[0]);
         std::array<SpacePointId, 4> of{points_.add(p)};
         for (std::size_t i = 0; i < count; ++i)
@@ -172,19 +169,19 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     };
     for (const NodeId v : vertices)
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
-    std::vector<std::vector<SurfacePlace>> places(vertices.size());
+    std::vector<std::vector<SurfaceFeature>> features(vertices.size());
     parallel_ranges(
         vertices.size(), 1 << 10, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                places[i] = places_on_surface(vertices[i]);
+                features[i] = features_near(vertices[i]);
         },
         0.02);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (places[i].empty()) continue;
+        if (features[i].empty()) continue;
         poll(execution_.progress, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
-        const auto found = point_on_surface(model_.vertex(vertices[i]), places[i]);
+        const auto found = point_on_surface(model_.vertex(vertices[i]), features[i]);
         if (!found || *found == point || is_taken(*found) != 0) continue;
         is_taken(point) = 0;
         is_taken(*found) = 1;
@@ -213,8 +210,9 @@ void SurfaceOverlay::overlay_all() {
     std::vector<std::uint8_t> is_beyond(count, 0);
     for (std::size_t t = index(first_cutter_); t < count; ++t)
         is_beyond[t] = box_of(static_cast<std::int32_t>(t)).meets(model_box_) ? 0 : 1;
-    using Intersection = TriangleArrangement::Intersection;
-    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Intersection>& found) {
+    using TriangleIntersection = TriangleArrangement::TriangleIntersection;
+    const auto find = [&](std::size_t begin, std::size_t end,
+                          std::vector<TriangleIntersection>& found) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             const PlaneOutline outline(positions_of(t), margin_);
@@ -228,7 +226,7 @@ void SurfaceOverlay::overlay_all() {
         }
     };
     constexpr std::size_t kChunk = 1 << 8;
-    const auto met = found_in_ranges<Intersection>(count, kChunk, execution_, find);
+    const auto met = found_in_ranges<TriangleIntersection>(count, kChunk, execution_, find);
     begin_phase(execution_.progress, 0.15, 0.3, "dividing faces and surface");
     points_.reserve_intersections(met.size());  // each is an end of two segments
     for (std::size_t i = 0; i < met.size(); ++i) {
@@ -315,7 +313,7 @@ void SurfaceOverlay::add_halves(const CrossedFace& own, std::span<const SpacePoi
     }
 }
 
-/// Numbers the new nodes in the order of their places: whatever else there is elsewhere, what is
+/// Numbers the new nodes in the order of their positions: whatever else there is elsewhere, what is
 /// decided by numbers is decided alike.
 void SurfaceOverlay::sort_new_nodes() {
     const auto first = static_cast<NodeId>(model_.vertex_count());
@@ -393,8 +391,8 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
 
 std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
     if (!is_of_face(region)) return arrangement_.view_of(triangle(region));
-    const View view(
-        polygon_normal(mapped(loops_[region][0], [this](NodeId node) { return position(node); })));
+    const View view(polygon_normal(
+        transformed(loops_[region][0], [this](NodeId node) { return position(node); })));
     return {view.axis(), view.sign()};
 }
 
@@ -405,7 +403,7 @@ SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    const auto own = mapped(outline, [this](NodeId node) { return exact(node); });
+    const auto own = transformed(outline, [this](NodeId node) { return exact(node); });
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < own.size(); ++i) {
         const int x = exact::compare(points_, k, own[i], own[lowest]);

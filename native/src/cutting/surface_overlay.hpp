@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -8,9 +11,9 @@
 
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
+#include "base/counting_sort.hpp"
 #include "cutting/cutter_surface.hpp"
-#include "cutting/far_faces.hpp"
-#include "cutting/undivided_triangles.hpp"
+#include "cutting/near_part.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -18,11 +21,92 @@ namespace realmodel::cutting {
 using arrangement::Loops;
 using exact::SpacePointId;
 
+/// Planes along the edges of a triangle, at right angles to it.
+class PlaneOutline {
+public:
+    /// @param margin  what its corners and others may be off by
+    PlaneOutline(const std::array<Position, 3>& triangle, double margin)
+        : corners_(triangle), margin_(4 * margin) {
+        const Position normal = polygon_normal(triangle);
+        for (std::size_t i = 0; i < 3; ++i)
+            outward_[i] = cross(minus(triangle[(i + 1) % 3], triangle[i]), normal);
+    }
+    /// Whether other corners surely are beyond one of these planes.
+    bool is_surely_beside(std::span<const Position> others) const {
+        constexpr double kRounding = 0x1p-40;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Position& out = outward_[i];
+            const double size = std::abs(out[0]) + std::abs(out[1]) + std::abs(out[2]);
+            // rounding may have turned the plane itself, so that its own corners are beyond it
+            double reach = -HUGE_VAL, least = HUGE_VAL, farthest = 0;
+            for (const Position& corner : corners_) {
+                const Position own = minus(corner, corners_[i]);
+                reach = std::max(reach, dot(out, own));
+                farthest = std::max(farthest, length(own));
+            }
+            for (const Position& other : others) {
+                const Position beyond = minus(other, corners_[i]);
+                least = std::min(least, dot(out, beyond));
+                farthest = std::max(farthest, length(beyond));
+            }
+            if (least > reach + size * (margin_ + kRounding * farthest)) return true;
+        }
+        return false;
+    }
+
+private:
+    std::array<Position, 3> corners_, outward_{};
+    double margin_;
+};
+
+/// Triangles of a surface that no face of a model comes near, and that meet other triangles only at
+/// corners and edges that they share: nothing divides them. Those that are connected by edges make
+/// a component, on each side of which the same is everywhere. Each component has an edge at a
+/// triangle that is none of them, which stands for all of it.
+class UndividedTriangles {
+public:
+    UndividedTriangles() = default;
+    /// @param tree   of boxes around the triangles
+    /// @param meets   of triangles: 1 where a face may be near
+    /// @param groups  of triangles: those of a component are of one
+    UndividedTriangles(const CutterSurface& surface, const spatial::BoxTree& tree,
+                       std::vector<std::uint8_t> meets, std::span<const std::int32_t> groups,
+                       const Execution& execution);
+
+    bool has(std::int32_t triangle) const { return component(triangle) >= 0; }
+    /// The component of a triangle, -1 none.
+    std::int32_t component(std::int32_t triangle) const {
+        return component_.empty() ? -1 : component_[index(triangle)];
+    }
+    /// Those of a component, in order.
+    std::span<const std::int32_t> triangles(std::size_t component) const {
+        return triangles_[component];
+    }
+    std::size_t components() const { return triangles_.size(); }
+
+    /// An edge between a triangle of a component and one that is none, as the former runs.
+    struct Border {
+        std::int32_t triangle, neighbor;
+        std::array<std::int32_t, 2> edge;
+    };
+    std::span<const Border> borders(std::size_t component) const { return borders_[component]; }
+
+private:
+    std::vector<std::int32_t> component_;  ///< of triangles, -1 none
+    Buckets<std::int32_t> triangles_;      ///< of components
+    Buckets<Border> borders_;              ///< likewise
+};
+
+/// Whether two triangles, by vertices of a surface, surely have nothing in common beside corners
+/// and the edge that they share. What doubles do not tell is not sure.
+bool are_surely_apart(const CutterSurface& surface, const std::array<std::int32_t, 3>& one,
+                      const std::array<std::int32_t, 3>& other);
+
 /// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
 /// the model's vertices, then the points where they meet.
 ///
 /// Vertices of the model that are on the surface but for their own rounding are taken to lie on it:
-/// with that the model's cells may come to overlap by as much, which whoever uses this must bear.
+/// the model's cells may then overlap by as much, and callers must accept that.
 class SurfaceOverlay {
 public:
     /// @param least_rounding  what coordinates may be off by at least, where the model is a piece
@@ -157,7 +241,7 @@ private:
 
     /// A corner of the surface, the line of an edge or the plane of a triangle, by as many corners.
     /// A vertex near it is moved along `axis` into the plane; on the line it keeps that coordinate.
-    struct SurfacePlace {
+    struct SurfaceFeature {
         std::size_t count, axis;
         std::array<Position, 3> corners;
     };
@@ -199,14 +283,13 @@ private:
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
-    static std::optional<SurfacePlace> place_on_edge(const Position& p, const Position& tolerance,
-                                                     const Position& a, const Position& b);
-    static std::optional<SurfacePlace> place_in_triangle(const Position& p,
-                                                         const Position& tolerance,
-                                                         const std::array<Position, 3>& corners);
-    std::vector<SurfacePlace> places_on_surface(NodeId vertex) const;
+    static std::optional<SurfaceFeature> edge_near(const Position& p, const Position& tolerance,
+                                                   const Position& a, const Position& b);
+    static std::optional<SurfaceFeature> triangle_near(const Position& p, const Position& tolerance,
+                                                       const std::array<Position, 3>& corners);
+    std::vector<SurfaceFeature> features_near(NodeId vertex) const;
     std::optional<SpacePointId> point_on_surface(const Position& p,
-                                                 std::span<const SurfacePlace> places);
+                                                 std::span<const SurfaceFeature> features);
     void add_triangles();
     void overlay_all();
     void name_nodes();

@@ -6,12 +6,11 @@
 #include <numeric>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/key_table.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
-#include "cutting/plane_outline.hpp"
 #include "cutting/surface_overlay.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
 
@@ -277,7 +276,7 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
     if (half + 1 < loop.size()) strip.push_back(loop.back());
     triangulate(std::span(&strip, 1), rounding, triangles);
     parts.add(face, triangles);
-    const std::vector<NodeId> nodes = mapped(loop, &LoopCorner::node);
+    const std::vector<NodeId> nodes = transformed(loop, &LoopCorner::node);
     for (const auto& side : {std::span(nodes).first(half), std::span(nodes).subspan(half)}) {
         if (side.size() > 2) divide(face, side, parts);
     }
@@ -320,7 +319,7 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
         std::vector<std::array<NodeId, 3>> corners;
         triangulate_face(far_.model(), index(left_out), corners);
         return {{model_.cell(first, side), model_.cell(first, 1 - side)},
-                mapped(corners, [this](const auto& t) {
+                transformed(corners, [this](const auto& t) {
                     const auto point = [&](NodeId v) {
                         return points_.add(far_.model().vertex(v));
                     };
@@ -344,7 +343,8 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
         parts.add_beside(own, model_.face(face));
     }
     triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
-    return {{model_.cell(face, 0), model_.cell(face, 1)}, mapped(parts.triangles, [this](auto& t) {
+    return {{model_.cell(face, 0), model_.cell(face, 1)},
+            transformed(parts.triangles, [this](auto& t) {
                 return std::array{exact(t[0]), exact(t[1]), exact(t[2])};
             })};
 }

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cassert>
 #include <set>
-#include <vector>
 
-#include "arrangement/joined_polygons.hpp"
+#include "arrangement/polygons.hpp"
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "cutting/shell.hpp"
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
 
@@ -26,10 +26,10 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     make_patches(progress);
     begin_phase(progress, 0.68, 0.75, "joining what bounds a part");
     make_caps();
-    joined_.emplace(slots_.size());
+    joined_.emplace(half_faces_.size());
     join_parts(progress);
     attach_hollows(progress);
-    join_across();
+    join_unseparated();
     number_parts();
     begin_phase(progress, 0.77, 0.85, "dividing faces into polygons");
     write_patches(progress);
@@ -37,14 +37,14 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     find_touches(progress);
 }
 
-std::int32_t SurfaceParts::add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign) {
+std::int32_t SurfaceParts::add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign) {
     if (cell < 0) return -1;
     if (half == kOn) {
         loses_[index(cell)] = 1;
         return -1;
     }
-    const std::int32_t number = checked_number(slots_.size(), "faces of parts of cells");
-    slots_.push_back({cell, half, sign});
+    const std::int32_t number = checked_number(half_faces_.size(), "faces of parts of cells");
+    half_faces_.push_back({cell, half, sign});
     return number;
 }
 
@@ -56,7 +56,7 @@ void SurfaceParts::leave_out(std::size_t face) {
     }
 }
 
-/// Adds a patch with a slot for each of its face's cells; nothing where it is left out.
+/// Adds a patch with a half-face for each of its face's cells; nothing where it is left out.
 void SurfaceParts::add_patch(Patch patch) {
     const auto face = index(patch.face);
     if (patch.half == kOn) {
@@ -64,7 +64,8 @@ void SurfaceParts::add_patch(Patch patch) {
         return;
     }
     for (std::size_t k = 0; k < 2; ++k)
-        patch.slots[k] = add_slot(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1);
+        patch.half_faces[k] =
+            add_half_face(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1);
     patches_.push_back(patch);
 }
 
@@ -91,12 +92,13 @@ public:
         outlines_.clear();
         edges_.clear();
         std::int32_t count = 0;
-        joined_.each_outline([&](std::span<const arrangement::JoinedPolygons::HalfEdge> outline) {
-            std::int32_t& own = patch_of_[index(together.find(outline[0].polygon))];
-            if (own < 0) own = count++;
-            outlines_.push_back({own, edges_.size(), outline.size()});
-            edges_.insert(edges_.end(), outline.begin(), outline.end());
-        });
+        joined_.each_outline(
+            [&](std::span<const arrangement::JoinedPolygons::PolygonHalfEdge> outline) {
+                std::int32_t& own = patch_of_[index(together.find(outline[0].polygon))];
+                if (own < 0) own = count++;
+                outlines_.push_back({own, edges_.size(), outline.size()});
+                edges_.insert(edges_.end(), outline.begin(), outline.end());
+            });
         std::ranges::stable_sort(outlines_, {}, &Outline::patch);
         regions_.clear();
         for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -133,7 +135,7 @@ private:
     arrangement::JoinedPolygons joined_;
     std::vector<std::int32_t> patch_of_;
     std::vector<Outline> outlines_;
-    std::vector<arrangement::JoinedPolygons::HalfEdge> edges_;
+    std::vector<arrangement::JoinedPolygons::PolygonHalfEdge> edges_;
     std::vector<std::pair<std::int32_t, std::int32_t>> regions_;  ///< the patch and each of its
 };
 
@@ -142,7 +144,7 @@ void SurfaceParts::make_patches(Progress* progress) {
     const ComplexView& model = overlay_.model();
     const auto of_face = bucketize<std::int32_t>(model.face_count(), [this](const auto& put) {
         for (std::size_t r = 0; r < overlay_.size(); ++r) {
-            if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
+            if (!overlay_.of_cutter(r) && winding_.coincident(r) < 0)
                 put(overlay_.face_of(r), static_cast<std::int32_t>(r));
         }
     });
@@ -165,8 +167,8 @@ void SurfaceParts::make_patches(Progress* progress) {
             continue;
         }
         const std::int32_t first = overlay_.first_same(f);
-        const auto place = std::ranges::lower_bound(active, first) - active.begin();
-        const DividedFaces& own = divided_[static_cast<std::size_t>(place) / kChunk];
+        const auto position = std::ranges::lower_bound(active, first) - active.begin();
+        const DividedFaces& own = divided_[static_cast<std::size_t>(position) / kChunk];
         const auto [begin, end] = std::equal_range(own.face.begin(), own.face.end(), first);
         for (auto patch = begin; patch != end; ++patch) {
             const auto number = static_cast<std::size_t>(patch - own.face.begin());
@@ -176,19 +178,19 @@ void SurfaceParts::make_patches(Progress* progress) {
     }
 }
 
-/// Calls visit(use) for all edges of the slots of cells that reach the surface.
+/// Calls visit(use) for all edges of the half-faces of cells that reach the surface.
 template <class Visit>
 void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
-    for (const std::int32_t slot : patch.slots) {
-        if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) continue;
-        const Slot& own = slots_[index(slot)];
+    for (const std::int32_t half_face : patch.half_faces) {
+        if (half_face < 0 || !sides_.reaches(half_faces_[index(half_face)].cell)) continue;
+        const HalfFace& own = half_faces_[index(half_face)];
         if (patch.divided == nullptr) {
             const auto face = index(patch.face);
             const FarFaces& far = overlay_.far();
             each_edge(std::array{overlay_.model().face(face)},
                       static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
                           if (far.group(face) < 0 || !far.is_beyond(use.key()))
-                              visit(SlotUse{own.cell, own.half, use, slot});
+                              visit(HalfFaceUse{own.cell, own.half, use, half_face});
                       });
             continue;
         }
@@ -198,24 +200,24 @@ void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
             static_cast<std::size_t>(loops[0].data() - patch.divided->loops.nodes.data());
         each_edge(loops, 0, [&](EdgeUse use) {
             use.item = patch.divided->beside[first + edge++];
-            visit(SlotUse{own.cell, own.half, use, slot});
+            visit(HalfFaceUse{own.cell, own.half, use, half_face});
         });
     }
 }
 
 template <class Visit>
 void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
-    for (const auto& of_side : caps.slots) {
-        for (const std::int32_t slot : of_side) {
-            const Slot& own = slots_[index(slot)];
+    for (const auto& of_side : caps.half_faces) {
+        for (const std::int32_t half_face : of_side) {
+            const HalfFace& own = half_faces_[index(half_face)];
             if (!sides_.reaches(own.cell)) continue;
             if (caps.component >= 0) {
                 for (const UndividedBorder& border : winding_.borders(index(caps.component)))
-                    visit(SlotUse{own.cell, own.half, border.use, slot});
+                    visit(HalfFaceUse{own.cell, own.half, border.use, half_face});
                 continue;
             }
             each_edge(overlay_.loops(index(caps.region)), caps.region, [&](const EdgeUse& use) {
-                visit(SlotUse{own.cell, own.half, use, slot});
+                visit(HalfFaceUse{own.cell, own.half, use, half_face});
             });
         }
     }
@@ -224,10 +226,10 @@ void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
 void SurfaceParts::collect_uses(Progress* progress) {
     constexpr std::size_t kChunk = 1 << 10;
     const std::size_t count = patches_.size() + caps_.size();
-    uses_ = sorted_in_buckets<SlotUse>(
+    uses_ = sorted_in_buckets<HalfFaceUse>(
         overlay_.node_count(), (count + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
-            const auto visit = [&put](const SlotUse& use) { put(index(use.use.edge[0]), use); };
+            const auto visit = [&put](const HalfFaceUse& use) { put(index(use.use.edge[0]), use); };
             for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
                 if (i < patches_.size()) {
                     each_use(patches_[i], visit);
@@ -252,7 +254,7 @@ void SurfaceParts::make_caps() {
         if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
         add_undivided_until(overlay_.cutter_triangle(r));
         add_caps(static_cast<std::int32_t>(r), -1);
-        cap_places_.push_back({caps_.size() - 1, -1});
+        cap_facets_.push_back({caps_.size() - 1, -1});
     }
     add_undivided_until(static_cast<std::int32_t>(overlay_.surface().triangles.size()));
 }
@@ -268,7 +270,7 @@ void SurfaceParts::add_caps_of_undivided(std::int32_t triangle,
         caps = static_cast<std::int32_t>(caps_.size());
         add_caps(region, component);
     }
-    cap_places_.push_back({index(caps), triangle});
+    cap_facets_.push_back({index(caps), triangle});
 }
 
 void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
@@ -277,8 +279,9 @@ void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
         for (const auto& [cell, times] : winding_.around(index(region), k)) {
             const std::int8_t half = sides_.of_cap(index(region), k, cell);
             for (int i = 0; i < std::abs(times); ++i) {
-                const std::int32_t slot = add_slot(cell, half, (times > 0) == (k == 0) ? 1 : -1);
-                if (slot >= 0) caps.slots[k].push_back(slot);
+                const std::int32_t half_face =
+                    add_half_face(cell, half, (times > 0) == (k == 0) ? 1 : -1);
+                if (half_face >= 0) caps.half_faces[k].push_back(half_face);
             }
         }
     }
@@ -298,15 +301,15 @@ void SurfaceParts::visit_loops(const Caps& caps, const Visit& visit) const {
 
 /// Pairs what a region of the surface lies between.
 void SurfaceParts::pair_caps(Caps& caps) {
-    const auto sign = [this](std::int32_t slot) { return slots_[index(slot)].sign; };
+    const auto sign = [this](std::int32_t half_face) { return half_faces_[index(half_face)].sign; };
     std::array<std::vector<std::int32_t>, 2> alone;
     for (std::size_t k = 0; k < 2; ++k) {
         std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
-        for (const std::int32_t slot : caps.slots[k])
-            (sign(slot) > 0 ? ahead : back).push_back(slot);
+        for (const std::int32_t half_face : caps.half_faces[k])
+            (sign(half_face) > 0 ? ahead : back).push_back(half_face);
         const std::size_t count = std::min(ahead.size(), back.size());
         for (std::size_t i = 0; i < count; ++i)
-            caps.beside.push_back({ahead[i], back[i]});
+            caps.pairs_on_one_side.push_back({ahead[i], back[i]});
         auto& rest = ahead.size() > count ? ahead : back;
         alone[k].assign(rest.begin() + static_cast<std::ptrdiff_t>(count), rest.end());
     }
@@ -314,27 +317,27 @@ void SurfaceParts::pair_caps(Caps& caps) {
         const std::int32_t low = i < alone[0].size() ? alone[0][i] : -1;
         const std::int32_t high = i < alone[1].size() ? alone[1][i] : -1;
         if (low >= 0 && high >= 0 && sign(low) > 0 && sign(high) < 0) {
-            caps.across.push_back({low, high});
+            caps.pairs_through.push_back({low, high});
             continue;
         }
-        for (const std::int32_t slot : {low, high}) {
-            if (slot >= 0) caps.across.push_back({slot, -1});
+        for (const std::int32_t half_face : {low, high}) {
+            if (half_face >= 0) caps.pairs_through.push_back({half_face, -1});
         }
     }
 }
 
 /// Parts that the surface does not separate become one.
-void SurfaceParts::join_across() {
+void SurfaceParts::join_unseparated() {
     for (Caps& caps : caps_) {
-        std::erase_if(caps.across, [&](const std::array<std::int32_t, 2>& pair) {
+        std::erase_if(caps.pairs_through, [&](const std::array<std::int32_t, 2>& pair) {
             const bool separates = caps.component < 0
                                        ? sides_.separates(index(caps.region))
                                        : sides_.separates_undivided(index(caps.component));
             if (pair[1] < 0 || separates) return false;
             joined_->join(pair[0], pair[1]);
-            has_joined_across_ = true;
-            for (const std::int32_t slot : pair)
-                loses_[index(slots_[index(slot)].cell)] = 1;
+            has_joined_cells_ = true;
+            for (const std::int32_t half_face : pair)
+                loses_[index(half_faces_[index(half_face)].cell)] = 1;
             return true;
         });
     }
@@ -345,14 +348,14 @@ void SurfaceParts::join_parts(Progress* progress) {
     const std::size_t cells = overlay_.model().cell_block.size();
     std::vector<std::uint8_t> halves(cells, 0);
     const auto bit = [](std::int8_t half) { return static_cast<std::uint8_t>(half > 0 ? 2 : 1); };
-    for (const Slot& slot : slots_)
-        halves[index(slot.cell)] |= bit(slot.half);
+    for (const HalfFace& half_face : half_faces_)
+        halves[index(half_face.cell)] |= bit(half_face.half);
     const auto is_divided = [&](std::size_t cell) {
         return halves[cell] == 3 || loses_[cell] != 0;
     };
     std::vector<std::int32_t> first(cells, -1);
-    for (std::size_t s = 0; s < slots_.size(); ++s) {
-        const auto cell = index(slots_[s].cell);
+    for (std::size_t s = 0; s < half_faces_.size(); ++s) {
+        const auto cell = index(half_faces_[s].cell);
         if (is_divided(cell)) continue;
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         joined_->join(first[cell], static_cast<std::int32_t>(s));
@@ -365,23 +368,20 @@ void SurfaceParts::join_parts(Progress* progress) {
         const Patch*& leader = first_of_group[index(group)];
         if (leader == nullptr) leader = &patch;
         for (std::size_t k = 0; k < 2; ++k) {
-            if (patch.slots[k] >= 0) joined_->join(leader->slots[k], patch.slots[k]);
+            if (patch.half_faces[k] >= 0) joined_->join(leader->half_faces[k], patch.half_faces[k]);
         }
     }
     collect_uses(progress);
     const auto each_edge_of_cells = [&](std::size_t node, const auto& visit) {
-        const auto uses = uses_[node];
-        for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-            while (end < uses.size() && uses[end].is_beside(uses[begin]))
-                ++end;
-            if (is_divided(index(uses[begin].cell))) visit(uses.subspan(begin, end - begin));
+        for (const auto uses : groups_of(uses_[node], &HalfFaceUse::key)) {
+            if (is_divided(index(uses[0].cell))) visit(uses);
         }
     };
     std::vector<std::uint8_t> has_many(uses_.size());  // which take points that are added
     parallel_each(uses_.size(), {overlay_.threads(), progress}, [&](std::size_t node) {
-        each_edge_of_cells(node, [&](std::span<const SlotUse> uses) {
+        each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
             if (uses.size() == 2) {
-                joined_->join(uses[0].slot, uses[1].slot);
+                joined_->join(uses[0].half_face, uses[1].half_face);
             } else {
                 has_many[node] = 1;
             }
@@ -390,29 +390,29 @@ void SurfaceParts::join_parts(Progress* progress) {
     for (std::size_t node = 0; node < uses_.size(); ++node) {
         poll(progress, node);
         if (has_many[node] == 0) continue;
-        each_edge_of_cells(node, [&](std::span<const SlotUse> uses) {
+        each_edge_of_cells(node, [&](std::span<const HalfFaceUse> uses) {
             if (uses.size() != 2) join_round_edge(uses);
         });
     }
 }
 
-/// Of several slots of one cell around an edge those belong together that bound one sector of it:
-/// each that the cell begins at, going round, with the one where it ends.
-void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
+/// Of several half-faces of one cell around an edge those belong together that bound one sector of
+/// it: each that the cell begins at, going round, with the one where it ends.
+void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
     std::vector<arrangement::HalfPlane> scratch;
     EdgeFan fan;
-    overlay_.find_fan(mapped(uses, &SlotUse::use), scratch, fan);
-    struct Step {
-        std::int32_t slot;
+    overlay_.find_fan(transformed(uses, &HalfFaceUse::use), scratch, fan);
+    struct SectorBound {
+        std::int32_t half_face;
         int change;  ///< 1 the cell begins, -1 it ends
     };
-    std::vector<Step> steps;
+    std::vector<SectorBound> steps;
     for (std::size_t b = 0; b < fan.blades(); ++b) {
         for (const int change : {-1, 1}) {
             for (const std::size_t i : fan.blade(b)) {
-                const std::size_t own = slots_[index(uses[i].slot)].sign > 0 ? 0 : 1;
+                const std::size_t own = half_faces_[index(uses[i].half_face)].sign > 0 ? 0 : 1;
                 if ((uses[i].use.ahead() == own) == (change > 0))
-                    steps.push_back({uses[i].slot, change});
+                    steps.push_back({uses[i].half_face, change});
             }
         }
     }
@@ -430,13 +430,13 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
                          {uses[0].cell});
     std::vector<std::int32_t> begun;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        const Step& step = steps[(start + i) % steps.size()];
+        const SectorBound& step = steps[(start + i) % steps.size()];
         if (step.change > 0) {
-            begun.push_back(step.slot);
+            begun.push_back(step.half_face);
             continue;
         }
         assert(!begun.empty());
-        joined_->join(begun.back(), step.slot);
+        joined_->join(begun.back(), step.half_face);
         begun.pop_back();
     }
     assert(begun.empty());
@@ -444,27 +444,28 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 
 /// Joins the walls of hollows that the surface cuts out of cells with the parts around them.
 void SurfaceParts::attach_hollows(Progress* progress) {
-    // the slots of each cell that reaches the surface, and what has them
-    struct Item {
-        std::int32_t slot, patch, caps;  // one of the latter, the other -1
+    // the half-faces of each cell that reaches the surface, and what has them
+    struct OwnedHalfFace {
+        std::int32_t half_face, patch, caps;  // one of the latter, the other -1
     };
-    const auto items = bucketize<Item>(overlay_.model().cell_count(), [this](const auto& put) {
-        const auto add = [&](std::int32_t slot, std::int32_t patch, std::int32_t caps) {
-            if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
-            put(index(slots_[index(slot)].cell), Item{slot, patch, caps});
+    const auto items = bucketize<OwnedHalfFace>(overlay_.model().cell_count(), [this](const auto&
+                                                                                          put) {
+        const auto add = [&](std::int32_t half_face, std::int32_t patch, std::int32_t caps) {
+            if (half_face < 0 || !sides_.reaches(half_faces_[index(half_face)].cell)) return;
+            put(index(half_faces_[index(half_face)].cell), OwnedHalfFace{half_face, patch, caps});
         };
         for (std::size_t p = 0; p < patches_.size(); ++p) {
-            for (const std::int32_t slot : patches_[p].slots)
-                add(slot, static_cast<std::int32_t>(p), -1);
+            for (const std::int32_t half_face : patches_[p].half_faces)
+                add(half_face, static_cast<std::int32_t>(p), -1);
         }
         for (std::size_t c = 0; c < caps_.size(); ++c) {
-            for (const auto& own : caps_[c].slots) {
-                for (const std::int32_t slot : own)
-                    add(slot, -1, static_cast<std::int32_t>(c));
+            for (const auto& own : caps_[c].half_faces) {
+                for (const std::int32_t half_face : own)
+                    add(half_face, -1, static_cast<std::int32_t>(c));
             }
         }
     });
-    const auto visit_item = [&](const Item& item, const auto& visit) {
+    const auto visit_item = [&](const OwnedHalfFace& item, const auto& visit) {
         if (item.patch < 0) {
             visit_loops(caps_[index(item.caps)], visit);
         } else if (const Patch& patch = patches_[index(item.patch)]; patch.divided == nullptr) {
@@ -473,27 +474,27 @@ void SurfaceParts::attach_hollows(Progress* progress) {
             visit(patch.loops());
         }
     };
-    const auto attach = [&](std::span<const Item> of_cell, std::int8_t half) {
-        const auto is_of_half = [&](const Item& item) {
-            return slots_[index(item.slot)].half == half;
+    const auto attach = [&](std::span<const OwnedHalfFace> of_cell, std::int8_t half) {
+        const auto is_of_half = [&](const OwnedHalfFace& item) {
+            return half_faces_[index(item.half_face)].half == half;
         };
         std::set<std::int32_t> shells;
-        for (const Item& item : of_cell) {
-            if (is_of_half(item)) shells.insert(joined_->find(item.slot));
+        for (const OwnedHalfFace& item : of_cell) {
+            if (is_of_half(item)) shells.insert(joined_->find(item.half_face));
         }
         if (shells.size() < 2) return;
         std::vector<Position> corners;
         const auto each_polygon = [&](const VisitShellPolygon& visit) {
-            const auto visit_loop = [&](const auto& loop, const Item& item, int sign,
+            const auto visit_loop = [&](const auto& loop, const OwnedHalfFace& item, int sign,
                                         const auto& at) {
                 corners.clear();
                 for (const NodeId node : loop)
                     corners.push_back(at(node));
-                visit(joined_->find(item.slot), corners, sign);
+                visit(joined_->find(item.half_face), corners, sign);
             };
-            for (const Item& item : of_cell) {
+            for (const OwnedHalfFace& item : of_cell) {
                 if (!is_of_half(item)) continue;
-                const int sign = slots_[index(item.slot)].sign;
+                const int sign = half_faces_[index(item.half_face)].sign;
                 visit_item(item, [&](const auto& loops) {
                     for (const auto& loop : loops)
                         visit_loop(loop, item, sign,

@@ -27,7 +27,7 @@ public:
 
 private:
     /// What bounds a part: a patch of a face, a whole face, or a cap, as its cell sees it.
-    struct Slot {
+    struct HalfFace {
         std::int32_t cell;
         std::int8_t half;
         std::int8_t
@@ -54,44 +54,42 @@ private:
         std::int8_t half;
         const DividedFaces* divided = nullptr;  ///< nullptr: the whole face
         std::size_t number = 0;                 ///< in `divided`
-        std::array<std::int32_t, 2> slots{-1, -1};
+        std::array<std::int32_t, 2> half_faces{-1, -1};
 
         Loops<NodeId> loops() const { return divided->loops[number]; }
         std::span<const std::int32_t> regions() const { return divided->regions_of(number); }
     };
-    /// The slots of one region of the surface, or of a component of undivided triangles: what is
-    /// below it, then what is above.
+    /// The half-faces of one region of the surface, or of a component of undivided triangles: what
+    /// is below it, then what is above.
     struct Caps {
         std::int32_t region;     ///< of a component that at its first border
         std::int32_t component;  ///< -1: the region alone
-        std::array<std::vector<std::int32_t>, 2> slots;
-        /// Slots with the region between them, -1 nothing wanted: of cells that lie one below and
-        /// one above it, and pairs of cells that overlap on one side, of which one
-        /// is there as often too much as the other too little.
-        std::vector<std::array<std::int32_t, 2>> across, beside;
+        std::array<std::vector<std::int32_t>, 2> half_faces;
+        /// Half-faces with the region between them, -1 nothing wanted: of cells that lie one below
+        /// and one above it, and pairs of cells that overlap on one side, of which one is there as
+        /// often too much as the other too little.
+        std::vector<std::array<std::int32_t, 2>> pairs_through, pairs_on_one_side;
     };
-    /// What is one polygon, or several, between the slots of caps: their region, or one of the
+    /// What is one polygon, or several, between the half-faces of caps: their region, or one of the
     /// undivided triangles.
-    struct CapPlace {
+    struct CapFacet {
         std::size_t caps;
         std::int32_t triangle;  ///< -1: the region
     };
-    /// A slot at one of its edges.
-    struct SlotUse {
+    /// A half-face at one of its edges.
+    struct HalfFaceUse {
         std::int32_t cell;
         std::int8_t half;
         EdgeUse use;
-        std::int32_t slot;
-        bool operator<(const SlotUse& other) const {
-            if (use.key() != other.use.key()) return use.key() < other.use.key();
-            if (half_of_cell() != other.half_of_cell())
-                return half_of_cell() < other.half_of_cell();
+        std::int32_t half_face;
+        bool operator<(const HalfFaceUse& other) const {
+            if (key() != other.key()) return key() < other.key();
             if (use < other.use) return true;
-            return !(other.use < use) && slot < other.slot;
+            return !(other.use < use) && half_face < other.half_face;
         }
-        std::uint64_t half_of_cell() const { return packed_pair(cell, half + 1); }
-        bool is_beside(const SlotUse& other) const {
-            return half_of_cell() == other.half_of_cell() && use.key() == other.use.key();
+        /// The edge, and the half of a cell.
+        std::pair<std::uint64_t, std::uint64_t> key() const {
+            return {use.key(), packed_pair(cell, half + 1)};
         }
     };
 
@@ -101,10 +99,10 @@ private:
     void add_caps_of_undivided(std::int32_t triangle, std::vector<std::int32_t>& caps_of);
     template <class Visit>
     void visit_loops(const Caps& caps, const Visit& visit) const;
-    void divide(const CapPlace& place, Polygons& polygons);
+    void divide(const CapFacet& facet, Polygons& polygons);
     void leave_out(std::size_t face);
     void add_patch(Patch patch);
-    std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
+    std::int32_t add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign);
     template <class Visit>
     void each_use(const Patch& patch, const Visit& visit) const;
     template <class Visit>
@@ -112,30 +110,30 @@ private:
     void collect_uses(Progress* progress);
     void pair_caps(Caps& caps);
     void join_parts(Progress* progress);
-    void join_across();
-    void join_round_edge(std::span<const SlotUse> uses);
+    void join_unseparated();
+    void join_round_edge(std::span<const HalfFaceUse> uses);
     void attach_hollows(Progress* progress);
     void number_parts();
     void write_patches(Progress* progress);
     void write_caps(Progress* progress);
     void divide(const Patch& patch, Polygons& polygons);
     void write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
-               std::int32_t face, std::array<std::int32_t, 2> slots, bool level);
+               std::int32_t face, std::array<std::int32_t, 2> half_faces, bool on_cutter);
     void find_touches(Progress* progress);
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
     const PartSides& sides_;
-    std::vector<Slot> slots_;
+    std::vector<HalfFace> half_faces_;
     std::vector<DividedFaces> divided_;  ///< of chunks of active faces
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
-    std::vector<CapPlace> cap_places_;  ///< in the order of the surface's triangles
+    std::vector<CapFacet> cap_facets_;  ///< in the order of the surface's triangles
     /// By the lesser nodes of edges, in order: those of one edge, cell and half side by side.
-    Buckets<SlotUse> uses_;
-    std::optional<DisjointSets> joined_;  ///< slots of the same part
-    std::vector<std::int32_t> part_;      ///< of slots
-    bool has_joined_across_ = false;      ///< some parts are of several cells
+    Buckets<HalfFaceUse> uses_;
+    std::optional<DisjointSets> joined_;  ///< half-faces of the same part
+    std::vector<std::int32_t> part_;      ///< of half-faces
+    bool has_joined_cells_ = false;       ///< some parts are of several cells
     std::vector<std::uint8_t> loses_;     ///< of the model's cells: a part of it is left out
 };
 

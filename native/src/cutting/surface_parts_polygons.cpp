@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/surface_parts.hpp"
@@ -86,36 +86,37 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<N
 /// Parts in the order of the model's cells, those of one cell in that of what bounds them.
 void SurfaceParts::number_parts() {
     std::vector<std::int32_t> roots;
-    for (std::size_t s = 0; s < slots_.size(); ++s) {
+    for (std::size_t s = 0; s < half_faces_.size(); ++s) {
         if (joined_->find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
             roots.push_back(static_cast<std::int32_t>(s));
     }
     std::stable_sort(roots.begin(), roots.end(), [this](std::int32_t a, std::int32_t b) {
-        return slots_[index(a)].cell < slots_[index(b)].cell;
+        return half_faces_[index(a)].cell < half_faces_[index(b)].cell;
     });
-    part_.assign(slots_.size(), -1);
+    part_.assign(half_faces_.size(), -1);
     for (const std::int32_t root : roots) {
         part_[index(root)] = static_cast<std::int32_t>(half_cells.size());
-        const Slot& own = slots_[index(root)];
+        const HalfFace& own = half_faces_[index(root)];
         half_cells.push_back({own.cell, own.half, loses_[index(own.cell)] != 0});
     }
-    for (std::size_t s = 0; s < slots_.size(); ++s) {
+    for (std::size_t s = 0; s < half_faces_.size(); ++s) {
         part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
-        assert(half_cells[index(part_[s])].side == slots_[s].half);
+        assert(half_cells[index(part_[s])].side == half_faces_[s].half);
     }
 }
 
-/// Adds some of the polygons between two slots: they turn counter-clockwise, the other
+/// Adds some of the polygons between two half-faces: they turn counter-clockwise, the other
 /// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
 void SurfaceParts::write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
-                         std::int32_t face, std::array<std::int32_t, 2> slots, bool level) {
-    CutPiece origin{face, {-1, -1}, {kOn, kOn}, level};
+                         std::int32_t face, std::array<std::int32_t, 2> half_faces,
+                         bool on_cutter) {
+    CutPiece origin{face, {-1, -1}, {kOn, kOn}, on_cutter};
     for (std::size_t k = 0; k < 2; ++k) {
-        if (slots[k] < 0) continue;
-        const Slot& slot = slots_[index(slots[k])];
-        origin.cells[k] = slot.cell;
-        origin.sides[k] = slot.half;
-        origin.parts[k] = part_[index(slots[k])];
+        if (half_faces[k] < 0) continue;
+        const HalfFace& half_face = half_faces_[index(half_faces[k])];
+        origin.cells[k] = half_face.cell;
+        origin.sides[k] = half_face.half;
+        origin.parts[k] = part_[index(half_faces[k])];
     }
     assert(origin.parts[0] >= 0 || origin.parts[1] >= 0);
     if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
@@ -159,22 +160,22 @@ void SurfaceParts::write_patches(Progress* progress) {
         {overlay_.threads(), progress});
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
-            write(polygons, {first, end}, false, patches_[i].face, patches_[i].slots, false);
+            write(polygons, {first, end}, false, patches_[i].face, patches_[i].half_faces, false);
         });
     }
 }
 
 /// A region of the surface, or an undivided triangle, in polygons, which are added.
-void SurfaceParts::divide(const CapPlace& place, Polygons& polygons) {
-    if (place.triangle >= 0) {
-        auto nodes = overlay_.undivided_nodes(place.triangle);
+void SurfaceParts::divide(const CapFacet& facet, Polygons& polygons) {
+    if (facet.triangle >= 0) {
+        auto nodes = overlay_.undivided_nodes(facet.triangle);
         std::rotate(nodes.begin(), std::ranges::min_element(nodes), nodes.end());  // as above
         polygons.add(nodes);
         return;
     }
-    const std::size_t region = index(caps_[place.caps].region);
-    const auto corners = mapped(overlay_.corners(region),
-                                [this](SpacePointId p) { return overlay_.points().rounded(p); });
+    const std::size_t region = index(caps_[facet.caps].region);
+    const auto corners = transformed(
+        overlay_.corners(region), [this](SpacePointId p) { return overlay_.points().rounded(p); });
     divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false, polygons);
 }
 
@@ -184,57 +185,57 @@ void SurfaceParts::write_caps(Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (overlay_.of_cutter(r) || winding_.level(r) < 0) continue;
+        if (overlay_.of_cutter(r) || winding_.coincident(r) < 0) continue;
         for (const std::int32_t face : overlay_.faces_of(r)) {
-            if (model.cell(index(face), 1) < 0) outer_face[index(winding_.level(r))] = face;
+            if (model.cell(index(face), 1) < 0) outer_face[index(winding_.coincident(r))] = face;
         }
     }
     const DividedInChunks in_polygons(
-        cap_places_.size(),
-        [this](std::size_t i, Polygons& polygons) { divide(cap_places_[i], polygons); },
+        cap_facets_.size(),
+        [this](std::size_t i, Polygons& polygons) { divide(cap_facets_[i], polygons); },
         {overlay_.threads(), progress});
     Polygons polygons;
-    for (std::size_t i = 0; i < cap_places_.size(); ++i) {
-        const Caps& caps = caps_[cap_places_[i].caps];
+    for (std::size_t i = 0; i < cap_facets_.size(); ++i) {
+        const Caps& caps = caps_[cap_facets_[i].caps];
         polygons.clear();
         in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
             polygons.add(all, first, end);
         });
         // no two polygons of a half may be the same; between two parts of a half there is one
         std::array<bool, 2> written{false, false};
-        const auto add = [&](bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
-                             bool level) {
-            const auto half_of = [this](std::int32_t slot) -> std::size_t {
-                return slots_[index(slot)].half == kAbove ? 1 : 0;
+        const auto add = [&](bool reversed, std::int32_t face,
+                             std::array<std::int32_t, 2> half_faces, bool on_cutter) {
+            const auto half_of = [this](std::int32_t half_face) -> std::size_t {
+                return half_faces_[index(half_face)].half == kAbove ? 1 : 0;
             };
             bool again = false;
-            for (const std::int32_t slot : slots)
-                again = again || (slot >= 0 && written[half_of(slot)]);
-            for (const std::int32_t slot : slots) {
-                if (slot >= 0) written[half_of(slot)] = true;
+            for (const std::int32_t half_face : half_faces)
+                again = again || (half_face >= 0 && written[half_of(half_face)]);
+            for (const std::int32_t half_face : half_faces) {
+                if (half_face >= 0) written[half_of(half_face)] = true;
             }
             if (again) {
                 const Polygons divided = from_middle(overlay_, polygons);
-                write(divided, {0, divided.size()}, reversed, face, slots, level);
+                write(divided, {0, divided.size()}, reversed, face, half_faces, on_cutter);
             } else {
-                write(polygons, {0, polygons.size()}, reversed, face, slots, level);
+                write(polygons, {0, polygons.size()}, reversed, face, half_faces, on_cutter);
             }
         };
         const std::int32_t outer = outer_face[index(caps.region)];
-        const auto cap = [&](const std::array<std::int32_t, 2>& slots) {
-            const auto cell = [&](std::int32_t slot) {
-                return slot < 0 ? -1 : slots_[index(slot)].cell;
+        const auto cap = [&](const std::array<std::int32_t, 2>& half_faces) {
+            const auto cell = [&](std::int32_t half_face) {
+                return half_face < 0 ? -1 : half_faces_[index(half_face)].cell;
             };
-            return sides_.cap_face(index(caps.region), cell(slots[0]), cell(slots[1]));
+            return sides_.cap_face(index(caps.region), cell(half_faces[0]), cell(half_faces[1]));
         };
-        for (const auto& pair : caps.across) {
-            const bool reversed = pair[1] < 0 && slots_[index(pair[0])].sign < 0;
+        for (const auto& pair : caps.pairs_through) {
+            const bool reversed = pair[1] < 0 && half_faces_[index(pair[0])].sign < 0;
             const bool is_outer =
                 pair[1] < 0 && outer >= 0 &&
-                sides_.ends_at_outer_face(index(caps.region), slots_[index(pair[0])].cell);
+                sides_.ends_at_outer_face(index(caps.region), half_faces_[index(pair[0])].cell);
             add(reversed, is_outer ? outer : cap(pair), pair, true);
         }
-        for (const auto& pair : caps.beside)
+        for (const auto& pair : caps.pairs_on_one_side)
             add(false, cap(pair), pair, false);
     }
 }
@@ -242,14 +243,10 @@ void SurfaceParts::write_caps(Progress* progress) {
 void SurfaceParts::find_touches(Progress* progress) {
     // part and ends; of parts within one cell, two uses of an edge side by side are not too many
     std::vector<std::array<std::int32_t, 3>> edges;
-    const auto& uses = uses_.values;
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        const SlotUse& first = uses[begin];
-        while (end < uses.size() && uses[end].is_beside(first))
-            ++end;
-        if (!has_joined_across_ && end - begin <= 2) continue;
-        for (std::size_t i = begin; i < end; ++i)
-            edges.push_back({part_[index(uses[i].slot)], first.use.edge[0], first.use.edge[1]});
+    for (const auto uses : groups_of(uses_.values, &HalfFaceUse::key)) {
+        if (!has_joined_cells_ && uses.size() <= 2) continue;
+        for (const auto& [cell, half, use, half_face] : uses)
+            edges.push_back({part_[index(half_face)], use.edge[0], use.edge[1]});
     }
     parallel_sort(edges, std::less<>(), {overlay_.threads(), progress});
     for (std::size_t i = 2; i < edges.size(); ++i) {

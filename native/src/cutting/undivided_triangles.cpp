@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/undivided_triangles.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,7 +7,8 @@
 #include "arrangement/edge_fan.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
-#include "exact/sign_filters.hpp"
+#include "cutting/surface_overlay.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
 

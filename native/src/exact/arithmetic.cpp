@@ -32,6 +32,7 @@ void* taken(std::size_t size) {
 // A finite double as mantissa * 2^exponent with an odd mantissa; 0 for zero, whose exponent is left
 // as it is.
 std::int64_t odd_mantissa(double value, int& exponent) {
+    assert(std::isfinite(value));
     const auto bits = std::bit_cast<std::uint64_t>(value);
     constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
     const int biased = static_cast<int>(bits >> 52) & 0x7ff;
@@ -53,20 +54,23 @@ int finest_exponent(double value, int exponent) {
 mpz_class whole_number(double value, int exponent) {
     int own = exponent;
     mpz_class result = whole_number_of(Int128{odd_mantissa(value, own)});
+    assert(own >= exponent);
     if (own > exponent) result <<= static_cast<unsigned>(own - exponent);
     return result;
 }
 
 mpz_class whole_difference(double p, double q, int exponent) {
-    constexpr int kMost = 126 - 53;  // so that neither has more than 126 bits
+    constexpr int kMaxShift = 126 - 53;  // so that neither has more than 126 bits
     int of_p = exponent, of_q = exponent;
     const Int128 from = odd_mantissa(p, of_p), to = odd_mantissa(q, of_q);
-    if (std::max(of_p, of_q) - exponent > kMost)
+    assert(std::min(of_p, of_q) >= exponent);
+    if (std::max(of_p, of_q) - exponent > kMaxShift)
         return whole_number(p, exponent) - whole_number(q, exponent);
     return whole_number_of((from << (of_p - exponent)) - (to << (of_q - exponent)));
 }
 
 double nearest_double(mpz_class num, mpz_class den, int exponent) {
+    assert(sgn(den) != 0);
     if (sgn(num) == 0) return 0.0;
     const bool negative = (sgn(num) < 0) != (sgn(den) < 0);
     num = abs(num);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "exact/error_bounds.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::exact {
 

@@ -20,7 +20,7 @@ template <class Integer>
 class HomogeneousPoints {
 public:
     using Intersection = SpacePoints::Intersection;
-    struct Point {
+    struct HomogeneousPoint {
         std::array<Integer, 3> at;
         Integer weight;
         bool is_whole = true;  ///< the weight is 1
@@ -34,19 +34,19 @@ public:
 
     /// Whether all points are given in a way that these whole numbers allow for.
     bool are_known() const { return are_known_; }
-    Point point(SpacePointId p) const {
+    HomogeneousPoint point(SpacePointId p) const {
         if (const auto* construction = points_.construction(p)) return point(construction->of);
         if constexpr (std::is_same_v<Integer, mpz_class>) {
             if (const auto* fractions = points_.fractions(p)) return point(*fractions);
         }
         return {minus(points_.rounded(p), origin_), Integer(1)};
     }
-    Point point(const Intersection& of) const {
+    HomogeneousPoint point(const Intersection& of) const {
         const auto [p, q, a, b, c] = of.of;
         const bool of_doubles = std::ranges::all_of(
             of.of, [this](SpacePointId corner) { return points_.is_double(corner); });
         if (!of_doubles) {
-            const Point o = point(a);
+            const HomogeneousPoint o = point(a);
             const auto u = minus(point(b), o), v = minus(point(c), o);
             return divided(point(p), point(q), o, cross(u, v));
         }
@@ -55,7 +55,7 @@ public:
         };
         const auto start = from(p, a), line = from(q, p), normal = cross(from(b, a), from(c, a));
         const Integer ratio = dot(normal, start);
-        Point point;
+        HomogeneousPoint point;
         point.is_whole = false;
         point.weight = dot(normal, line);
         const auto first = minus(points_.rounded(p), origin_);
@@ -64,10 +64,10 @@ public:
         return point;
     }
     /// Where the lines through p and q and through a and b cross, in the view along `axis`.
-    Point crossing(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
-                   SpacePointId b) const {
+    HomogeneousPoint crossing(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
+                              SpacePointId b) const {
         const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-        const Point o = point(a);
+        const HomogeneousPoint o = point(a);
         const auto along = minus(point(b), o);
         std::array<Integer, 3> normal;
         normal[axis] = 0;
@@ -76,7 +76,7 @@ public:
         return divided(point(p), point(q), o, normal);
     }
     /// A point relative to no origin, in units of 1.
-    Point absolute(Point p) const {
+    HomogeneousPoint absolute(HomogeneousPoint p) const {
         const bool is_finer = unit_ < 0;
         const auto size = static_cast<unsigned>(std::abs(unit_));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -88,7 +88,7 @@ public:
         return p;
     }
     /// The difference of two points, times both weights.
-    static std::array<Integer, 3> minus(const Point& p, const Point& other) {
+    static std::array<Integer, 3> minus(const HomogeneousPoint& p, const HomogeneousPoint& other) {
         std::array<Integer, 3> result;
         for (std::size_t k = 0; k < 3; ++k)
             result[k] = p.is_whole && other.is_whole
@@ -96,13 +96,14 @@ public:
                             : Integer(times(p.at[k], other) - times(other.at[k], p));
         return result;
     }
-    static Integer times(const Integer& number, const Point& point) {
+    static Integer times(const Integer& number, const HomogeneousPoint& point) {
         return point.is_whole ? number : Integer(number * point.weight);
     }
     /// The point that is best taken as the origin of the others: one whose weight is 1, if any.
-    static std::size_t simplest(std::span<const Point> points) {
-        const auto found = std::find_if(points.begin(), points.end(),
-                                        [](const Point& point) { return point.is_whole; });
+    static std::size_t simplest(std::span<const HomogeneousPoint> points) {
+        const auto found =
+            std::find_if(points.begin(), points.end(),
+                         [](const HomogeneousPoint& point) { return point.is_whole; });
         return found == points.end() ? 0 : static_cast<std::size_t>(found - points.begin());
     }
     /// Whether an intersection of points given by doubles is exactly at these doubles; nothing
@@ -110,7 +111,7 @@ public:
     std::optional<bool> is_at(const Intersection& of, const SpacePosition& doubles) {
         for (const double x : doubles)
             unit_ = finest_exponent(x, unit_);
-        const Point found = point(of);
+        const HomogeneousPoint found = point(of);
         const auto at = minus(doubles, origin_);
         bool is_equal = true;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -132,18 +133,19 @@ private:
         return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
     }
     /// Where the line through p and q passes through the plane through o with this normal.
-    static Point divided(const Point& p, const Point& q, const Point& o, const Vector& normal) {
+    static HomogeneousPoint divided(const HomogeneousPoint& p, const HomogeneousPoint& q,
+                                    const HomogeneousPoint& o, const Vector& normal) {
         const auto line = minus(q, p);
         const Integer from = dot(normal, minus(p, o)), change = times(dot(normal, line), o);
-        Point point;
+        HomogeneousPoint point;
         point.is_whole = false;
         for (std::size_t k = 0; k < 3; ++k)
             point.at[k] = p.at[k] * change - from * line[k];
         point.weight = times(change, p);
         return point;
     }
-    Point point(const SpacePoints::Fractions& p) const {
-        Point point;
+    HomogeneousPoint point(const SpacePoints::Fractions& p) const {
+        HomogeneousPoint point;
         point.is_whole = false;
         point.weight = p.weight;
         for (std::size_t k = 0; k < 3; ++k) {

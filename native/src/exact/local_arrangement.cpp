@@ -5,9 +5,49 @@
 #include <optional>
 
 #include "exact/arithmetic.hpp"
-#include "exact/formulas.hpp"
 
 namespace realmodel::exact {
+
+void LocalIds::reserve_ids(PlanArrangement& receiver) {
+    receiver_ = &receiver;
+    appended_ = receiver.append(lines_.marked().size(), points_.marked().size());
+}
+
+/// A local point whose lines are known by their shared ids.
+Point LocalIds::with_shared_lines(PointId id) {
+    Point point = points_[id];
+    point.first = shared_line(point.first);
+    point.second = shared_line(point.second);
+    return point;
+}
+
+void LocalIds::write_marked() {
+    assert(receiver_ != nullptr);
+    lines_.make_shared_ids();
+    points_.make_shared_ids();
+    LineId line = appended_.line;
+    for (const LineId local : lines_.marked()) {
+        receiver_->set_line(line, lines_[local]);
+        lines_.shared(local) = line;
+        ++line;
+    }
+    PointId point = appended_.point;
+    for (const PointId local : points_.marked()) {
+        receiver_->set_point(point, with_shared_lines(local));
+        points_.shared(local) = point;
+        ++point;
+    }
+}
+
+LineId LocalIds::add_line_by_name(LineId id) {
+    assert(receiver_ != nullptr);
+    return lines_.shared(id) = receiver_->add_line(lines_[id]);
+}
+
+PointId LocalIds::add_point_by_name(PointId id) {
+    assert(receiver_ != nullptr);
+    return points_.shared(id) = receiver_->add_point(with_shared_lines(id));
+}
 
 namespace {
 
@@ -195,8 +235,8 @@ std::array<int, 2> LocalArrangement::direction_signs(LineId id) {
         return {sign_of(q.x - p.x), sign_of(q.y - p.y)};
     }
     const VertexId origin = anchor(shared_, l);
-    const auto c =
-        line_coefficients<DoubleDoubleInterval>(BallArithmetic{shared_}, shared_, l, origin);
+    const auto c = line_coefficients<DoubleDoubleInterval>(DoubleDoubleArithmetic{shared_}, shared_,
+                                                           l, origin);
     const auto a = c.a.sign(), b = c.b.sign();
     if (a && b) return {*b, -*a};
     ++exact_;
@@ -208,6 +248,7 @@ std::array<int, 2> LocalArrangement::direction_signs(LineId id) {
 }
 
 int LocalArrangement::compare(int axis, PointId a, PointId b) {
+    assert(axis == 0 || axis == 1);
     const auto rounded_one = [&](PointId id) { return axis == 0 ? point(id).x : point(id).y; };
     if (rounded_one(a) != rounded_one(b)) return rounded_one(a) < rounded_one(b) ? 1 : -1;
     if (a == b || (is_vertex(a) && is_vertex(b))) return 0;
@@ -225,6 +266,7 @@ int LocalArrangement::compare(int axis, PointId a, PointId b) {
 }
 
 DirectedLine LocalArrangement::trace(PlaneId upper, PlaneId lower) {
+    assert(upper != lower);
     const LineId id = find_or_add_trace(std::min(upper, lower), std::max(upper, lower));
     return DirectedLine(id, upper > lower);
 }
@@ -246,6 +288,7 @@ PointId LocalArrangement::crossing(LineId a, LineId b) {
 }
 
 PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
+    assert(a != b);
     NamedPoint p({a, b}, shared_.piercing(line(a), line(b)));
     return points_.find_or_add(p, [&](Point& at) { locate(at); });
 }

@@ -5,9 +5,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 #include "exact/arithmetic.hpp"
-#include "exact/sign_filters.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::exact {
 

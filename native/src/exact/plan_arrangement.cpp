@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/algorithms.hpp"
 #include "exact/arithmetic.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -34,15 +35,12 @@ void PlanArrangement::expect_lines(std::size_t count) {
 }
 
 void PlanArrangement::make_room(std::size_t lines, std::size_t points) {
-    const auto make = [](auto& array, std::size_t more) {
-        if (array.capacity() - array.size() < more)
-            array.reserve(std::max(array.size() + more, 2 * array.capacity()));
-    };
-    make(lines_, lines);
-    make(points_, points);
+    reserve_more(lines_, lines);
+    reserve_more(points_, points);
 }
 
 VertexId PlanArrangement::add_vertex(double x, double y) {
+    assert(vertex_count_ == 0 && std::isfinite(x) && std::isfinite(y));
     const auto found = vertex_table_.insert(position_key(x, y), [&](std::int32_t number) {
         const Point& vertex = points_[static_cast<std::size_t>(number)];
         return position_key(vertex.x, vertex.y);
@@ -58,6 +56,7 @@ VertexId PlanArrangement::add_vertex(double x, double y) {
 }
 
 SpaceId PlanArrangement::add_space_vertex(VertexId plan, double z) {
+    assert(vertex_count_ == 0 && std::isfinite(z));
     const auto found = space_table_.insert(height_key(plan, z), [&](std::int32_t number) {
         const SpaceVertex& vertex = space_[static_cast<std::size_t>(number)];
         return height_key(vertex.plan, vertex.z);
@@ -114,12 +113,14 @@ PlaneFilter PlanArrangement::filter_of(const std::array<SpaceId, 3>& corner) con
 }
 
 void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner) {
+    assert(corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0]);
     planes_[index(plane)] = {corner,
                              {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
     plane_filters_[index(plane)] = filter_of(corner);
 }
 
 void PlanArrangement::freeze_vertices() {
+    assert(vertex_count_ == 0);
     vertex_count_ = points_.size();
     vertex_table_ = {};  // no more of them will be asked for
     space_table_ = {};
@@ -183,6 +184,7 @@ LineId PlanArrangement::find_or_add_line(const Line& wanted, LineId next) {
 }
 
 DirectedLine PlanArrangement::add_edge(VertexId from, VertexId to) {
+    assert(from != to);
     const bool reversed = from > to;
     const LineId id = add_line(reversed ? Line(to, from) : Line(from, to));
     return DirectedLine(id, reversed);

@@ -5,7 +5,9 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,11 +15,54 @@
 
 #include "base/index.hpp"
 #include "base/key_table.hpp"
-#include "exact/error_bounds.hpp"
-#include "exact/owned_names.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/array.hpp"
 
 namespace realmodel::exact {
+
+/// Finds numbered things again, each among the few that have the same owner: an edge among those of
+/// its lower vertex, a crossing among those of the younger of its lines. Neighbors are numbered
+/// together, so what is asked for next mostly lies beside what was asked for last, where a hash
+/// table would go to another page of memory; and it takes a third of one. Owners may have any
+/// number of things: from `kMaxListed` on they have to be kept elsewhere, as lists are read from
+/// end to end.
+class OwnedNames {
+public:
+    /// Instead of a number: this owner's things are kept elsewhere from now on.
+    static constexpr std::int32_t kElsewhere = -2;
+
+    /// The number of the owner's thing of which `is_it` holds; or `next`, which is greater than all
+    /// numbers before, where there is none: then that is its number.
+    template <class IsIt>
+    std::int32_t find_or_add(std::int32_t owner, std::int32_t next, const IsIt& is_it) {
+        const auto o = static_cast<std::size_t>(owner);
+        if (o >= last_.size()) last_.resize(o + 1, kNone);
+        int count = 0;
+        for (std::int32_t number = last_[o]; number != kNone; ++count) {
+            if (is_it(number)) return number;
+            number = before_[static_cast<std::size_t>(number)];
+        }
+        if (count == kMaxListed) return kElsewhere;
+        assert(next >= 0 && static_cast<std::size_t>(next) >= before_.size());
+        before_.resize(static_cast<std::size_t>(next) + 1);
+        before_.back() = last_[o];
+        last_[o] = next;
+        return next;
+    }
+
+    /// What will be read first, to be fetched some time before, as memory takes its time.
+    const void* slot_of(std::int32_t owner) const {
+        const auto o = static_cast<std::size_t>(owner);
+        return o < last_.size() ? &last_[o] : nullptr;
+    }
+
+private:
+    static constexpr std::int32_t kNone = -1;
+    static constexpr int kMaxListed = 8;
+
+    Array<std::int32_t> last_;    ///< of each owner
+    Array<std::int32_t> before_;  ///< of each thing, the owner's last one before it
+};
 
 /// Index of a plan vertex: an input position (x, y), the same for all surfaces that use it.
 using VertexId = Id<struct VertexKind>;
@@ -79,7 +124,9 @@ public:
     Line() = default;
     /// Through two plan vertices, in ascending order; positive to the left of the way from the
     /// first to the second.
-    Line(VertexId first, VertexId second) : is_edge_(1), of_{first.number(), second.number()} {}
+    Line(VertexId first, VertexId second) : is_edge_(1), of_{first.number(), second.number()} {
+        assert(first < second);
+    }
     /// The trace of two planes, in ascending order: where they are equally high; positive where the
     /// first is higher.
     Line(PlaneId first, PlaneId second) : is_edge_(0), of_{first.number(), second.number()} {}

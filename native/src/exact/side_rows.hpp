@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +24,7 @@ inline constexpr std::size_t kRowLength = 12;
 
 /// The bits of so many first members of a row.
 inline std::uint32_t all_of_row(std::size_t size) {
+    assert(size <= kRowLength);
     return (1U << size) - 1U;
 }
 
@@ -32,7 +34,9 @@ inline std::uint32_t all_of_row(std::size_t size) {
 class Sides {
 public:
     Sides() = default;
-    Sides(std::uint32_t left, std::uint32_t right) : bits_(left | right << 16) {}
+    Sides(std::uint32_t left, std::uint32_t right) : bits_(left | right << 16) {
+        assert((left & right) == 0 && (left | right) <= 0xffffU);
+    }
 
     std::uint32_t left() const { return bits_ & 0xffffU; }
     std::uint32_t right() const { return bits_ >> 16; }
@@ -60,6 +64,7 @@ struct PointRow {
         within = true;
     }
     void add(const LocalArrangement& scope, PointId id) {
+        assert(size < kRowLength);
         const Point& p = scope.point(id);
         within = within && scope.shared().reach().has(p.x, p.y);
         point[size] = id;
@@ -113,6 +118,7 @@ struct LineRow {
 
     void clear() { size = 0; }
     void add(const LocalArrangement& scope, const DirectedEdge& edge) {
+        assert(size < kRowLength);
         const LineRowFilter f = line_row_filter(scope, edge);
         line[size] = edge.line;
         a[size] = f.a;

@@ -2,50 +2,33 @@
 #include "exact/space_points.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
+#include <span>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
 #include "exact/arithmetic.hpp"
-#include "exact/error_bounds.hpp"
 #include "exact/homogeneous_points.hpp"
-#include "exact/space_predicates.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::exact {
-
-namespace {
-
-std::uint32_t hash_of(const SpacePosition& p) {
-    std::array<std::uint64_t, 3> words;
-    for (std::size_t k = 0; k < 3; ++k)
-        words[k] = std::bit_cast<std::uint64_t>(p[k] + 0.0);  // both zeros alike
-    return KeyTable::hash(words);
-}
-
-template <class Value>
-void reserve_more(std::vector<Value>& values, std::size_t more) {
-    if (values.capacity() - values.size() < more)
-        values.reserve(std::max(values.size() + more, 2 * values.capacity()));
-}
-
-}  // namespace
 
 /// The number of a point: a new one where none is the same. Only new points keep their source.
 SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
     const SpacePointId number(checked_number(rounded_.size(), "points where surfaces meet"));
     rounded_.push_back(rounded);
     source_.push_back(source);
-    const auto found =
-        by_doubles_.find_or_add(hash_of(rounded), number.number(), [&](std::int32_t candidate) {
+    const auto found = by_doubles_.find_or_add(
+        KeyNumbers<SpacePosition>::hash(rounded), number.number(), [&](std::int32_t candidate) {
             const SpacePointId other(candidate);
             return rounded_[index(other)] == rounded && compare(*this, number, other) == 0;
         });
     if (found.is_new) return number;
     rounded_.pop_back();
     source_.pop_back();
-    if (source.kind == Source::Kind::kConstruction) constructions_.pop_back();
-    if (source.kind == Source::Kind::kFractions) fractions_.pop_back();
+    if (source.kind == Source::Form::kConstruction) constructions_.pop_back();
+    if (source.kind == Source::Form::kFractions) fractions_.pop_back();
     return SpacePointId(found.number);
 }
 
@@ -94,7 +77,7 @@ SpacePointId SpacePoints::add(Reduced&& p) {
     if (p.are_doubles) return enter(p.rounded, {});
     fractions_.push_back(std::move(p.fractions));
     return enter(p.rounded,
-                 {Source::Kind::kFractions, static_cast<std::int32_t>(fractions_.size()) - 1});
+                 {Source::Form::kFractions, static_cast<std::int32_t>(fractions_.size()) - 1});
 }
 
 RationalPoint SpacePoints::exact(SpacePointId p) const {
@@ -113,7 +96,7 @@ RationalPoint SpacePoints::exact(SpacePointId p) const {
 std::array<SpacePoints::Line, 2> SpacePoints::lines(SpacePointId p) const {
     if (const Fractions* own = fractions(p)) return own->lines;
     const Line none{kNone, kNone};
-    const Construction* own = construction(p);
+    const ConstructedPoint* own = construction(p);
     return {own == nullptr ? none : Line{own->of.of[0], own->of.of[1]}, none};
 }
 
@@ -143,11 +126,8 @@ SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePoin
     std::array<SpacePointId, 3> plane{a, b, c};
     std::sort(plane.begin(), plane.end());
     const Intersection of{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
-    std::array<std::uint64_t, 5> words;
-    std::transform(of.of.begin(), of.of.end(), words.begin(),
-                   [](SpacePointId id) { return static_cast<std::uint64_t>(id.number()); });
     const auto found = by_intersection_.find_or_add(
-        KeyTable::hash(words), static_cast<std::int32_t>(intersections_.size()),
+        KeyNumbers<decltype(of.of)>::hash(of.of), static_cast<std::int32_t>(intersections_.size()),
         [&](std::int32_t i) { return intersections_[index(i)].first == of; });
     if (found.is_new) intersections_.push_back({of, construct(of)});
     return intersections_[index(found.number)].second;
@@ -172,7 +152,7 @@ SpacePointId SpacePoints::construct(const Intersection& of) {
         if (are_doubles) return enter(rounded, {});
     }
     constructions_.push_back({of, at});
-    return enter(rounded, {Source::Kind::kConstruction,
+    return enter(rounded, {Source::Form::kConstruction,
                            static_cast<std::int32_t>(constructions_.size()) - 1});
 }
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exact/space_predicates.hpp"
-
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 
 #include "exact/homogeneous_points.hpp"
+#include "exact/orientation.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::exact {
 
 namespace {
 
-using Construction = SpacePoints::Construction;
+using ConstructedPoint = SpacePoints::ConstructedPoint;
 
 /// The difference of two coordinates: without error where both are doubles.
 DoubleDoubleInterval difference(const DoubleDoubleInterval& to, const DoubleDoubleInterval& from) {
@@ -53,14 +54,14 @@ bool lie_on_one_line_by_construction(const SpacePoints& points,
 bool lie_on_one_plane_by_construction(const SpacePoints& points,
                                       const std::array<SpacePointId, 4>& of) {
     for (const SpacePointId candidate : of) {
-        const Construction* own = points.construction(candidate);
+        const ConstructedPoint* own = points.construction(candidate);
         if (own == nullptr) continue;
         const auto corners = std::span(own->of.of).subspan<2>();
         const auto is_corner = [&](SpacePointId p) {
             return std::find(corners.begin(), corners.end(), p) != corners.end();
         };
         const bool all = std::all_of(of.begin(), of.end(), [&](SpacePointId p) {
-            const Construction* other = points.construction(p);
+            const ConstructedPoint* other = points.construction(p);
             if (other == nullptr) return is_corner(p);
             return other->of.is_on_plane_of(own->of) ||
                    (is_corner(other->of.of[0]) && is_corner(other->of.of[1]));
@@ -93,7 +94,7 @@ bool is_upright_over(const SpacePoints& points, SpacePointId p, SpacePointId q,
 /// Whether points surely lie in one upright plane, that of a line on which one was constructed:
 /// walls of models with the same plan do.
 template <std::size_t kCount>
-bool lie_in_one_upright_plane(const SpacePoints& points, const Construction& own,
+bool lie_in_one_upright_plane(const SpacePoints& points, const ConstructedPoint& own,
                               const std::array<SpacePointId, kCount>& of) {
     const SpacePointId p = own.of.of[0], q = own.of.of[1];
     if (!points.is_double(p) || !points.is_double(q)) return false;
@@ -102,8 +103,8 @@ bool lie_in_one_upright_plane(const SpacePoints& points, const Construction& own
 }
 
 /// Whether a point surely lies in the plane that one was constructed on.
-bool is_on_plane_of(const SpacePoints& points, const Construction& own, SpacePointId point) {
-    if (const Construction* other = points.construction(point))
+bool is_on_plane_of(const SpacePoints& points, const ConstructedPoint& own, SpacePointId point) {
+    if (const ConstructedPoint* other = points.construction(point))
         return other->of.is_on_plane_of(own.of);
     return std::ranges::any_of(points.lines(point), [&](const SpacePoints::Line& line) {
         return line[0] != kNone && is_on_plane_of(points, own, line[0]) &&
@@ -114,7 +115,7 @@ bool is_on_plane_of(const SpacePoints& points, const Construction& own, SpacePoi
 /// Whether points surely lie on one line: in the plane that one was constructed on, and in the
 /// upright one of the line that it was constructed on. That line passes through the former plane,
 /// so that the two differ.
-bool lie_on_one_upright_line(const SpacePoints& points, const Construction& own,
+bool lie_on_one_upright_line(const SpacePoints& points, const ConstructedPoint& own,
                              const std::array<SpacePointId, 3>& of) {
     return std::ranges::all_of(of,
                                [&](SpacePointId p) { return is_on_plane_of(points, own, p); }) &&
@@ -123,11 +124,11 @@ bool lie_on_one_upright_line(const SpacePoints& points, const Construction& own,
 
 /// How one of some points was constructed: where a line that is not upright passes through a plane,
 /// if there is such a one; nullptr where none was constructed so.
-const Construction* construction_of_one(const SpacePoints& points,
-                                        std::span<const SpacePointId> of) {
-    const Construction* found = nullptr;
+const ConstructedPoint* construction_of_one(const SpacePoints& points,
+                                            std::span<const SpacePointId> of) {
+    const ConstructedPoint* found = nullptr;
     for (const SpacePointId p : of) {
-        const Construction* own = points.construction(p);
+        const ConstructedPoint* own = points.construction(p);
         if (own == nullptr) continue;
         const SpacePosition &from = points.rounded(own->of.of[0]),
                             &to = points.rounded(own->of.of[1]);
@@ -139,7 +140,7 @@ const Construction* construction_of_one(const SpacePoints& points,
 
 /// A coordinate to twice the precision of doubles.
 DoubleDoubleInterval interval(const SpacePoints& points, SpacePointId p, std::size_t axis) {
-    if (const Construction* own = points.construction(p)) return own->at[axis];
+    if (const ConstructedPoint* own = points.construction(p)) return own->at[axis];
     if (const SpacePoints::Fractions* own = points.fractions(p)) return own->interval[axis];
     return points.rounded(p)[axis];
 }
@@ -248,7 +249,7 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
                                           points.rounded(d), inexactness(points, of)))
         return *sign;
     if (lie_on_one_plane_by_construction(points, of)) return 0;
-    const Construction* own = construction_of_one(points, of);
+    const ConstructedPoint* own = construction_of_one(points, of);
     if (own != nullptr && lie_in_one_upright_plane(points, *own, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
@@ -268,6 +269,7 @@ int SidesOfPlane::operator()(SpacePointId d) const {
 
 int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,
              SpacePointId c) {
+    assert(axis < 3);
     if (a == b || a == c || b == c) return 0;
     const auto seen = [&](SpacePointId p) {
         return std::array{points.rounded(p)[(axis + 1) % 3], points.rounded(p)[(axis + 2) % 3]};
@@ -276,13 +278,14 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
     if (const auto sign = orient2d_filter(seen(a), seen(b), seen(c), inexactness(points, of)))
         return *sign;
     if (lie_on_one_line_by_construction(points, of)) return 0;
-    const Construction* own = construction_of_one(points, of);
+    const ConstructedPoint* own = construction_of_one(points, of);
     if (own != nullptr && lie_on_one_upright_line(points, *own, of)) return 0;
     if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });
 }
 
 int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b) {
+    assert(axis < 3);
     return compare(points, axis, axis + 1, a, b);
 }
 

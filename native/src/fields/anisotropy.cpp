@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/anisotropy.hpp"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "fields/likely_field.hpp"
 #include "fields/spline.hpp"
 #include "realmodel/base/elementary.hpp"
 
@@ -44,7 +43,7 @@ constexpr double kFirstError = 1e-6;  // of values, in units of the kernel, wher
 constexpr double kFirstSlopeError = 1e-3;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-struct Candidate {
+struct AnisotropyCandidate {
     Likely what;
     double likelihood = kNever;
 };
@@ -59,7 +58,7 @@ public:
     bool has_errors() const { return error_ > 0; }
 
     /// The best of some; the first of equal ones.
-    Candidate best(std::span<const Likely> of) const {
+    AnisotropyCandidate best(std::span<const Likely> of) const {
         std::vector<double> found(of.size(), kNever);
         parallel_chunks(of.size(), execution_, [&](std::size_t n) {
             const Spline spline(known_, of[n].smoothness(), {1, nullptr});
@@ -69,7 +68,7 @@ public:
         return {of[at], found[at]};
     }
     /// The best of some with the anisotropies in the place of theirs.
-    Candidate best(std::span<const AxisRatios> of, const Likely& rest) const {
+    AnisotropyCandidate best(std::span<const AxisRatios> of, const Likely& rest) const {
         std::vector<Likely> all(of.size(), rest);
         for (std::size_t n = 0; n < of.size(); ++n)
             all[n].anisotropy = of[n];
@@ -77,7 +76,7 @@ public:
     }
 
     /// `other` where it is better by `worth`.
-    static void improve(Candidate& best, const Candidate& other, double worth) {
+    static void improve(AnisotropyCandidate& best, const AnisotropyCandidate& other, double worth) {
         if (other.likelihood > best.likelihood + worth) best = other;
     }
 
@@ -133,7 +132,7 @@ std::vector<Vec3> main_directions() {
     return out;
 }
 
-void search_first(const Search& search, std::span<const Vec3> normals, Candidate& best) {
+void search_first(const Search& search, std::span<const Vec3> normals, AnisotropyCandidate& best) {
     const Likely rest = best.what;
     std::vector<AxisRatios> tried;
     if (normals.size() >= 3) {
@@ -153,7 +152,7 @@ void search_first(const Search& search, std::span<const Vec3> normals, Candidate
     Search::improve(best, search.best(tried, rest), kWorth);
 }
 
-void search_second(const Search& search, Candidate& best) {
+void search_second(const Search& search, AnisotropyCandidate& best) {
     const Likely rest = best.what;
     std::vector<AxisRatios> tried;
     const AxisRatios first = best.what.anisotropy;
@@ -161,7 +160,7 @@ void search_second(const Search& search, Candidate& best) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
     }
-    Candidate found = search.best(tried, rest);
+    AnisotropyCandidate found = search.best(tried, rest);
     double step = 12, factor = 0.6;
     for (int round = 0; round < 8; ++round) {
         const AxisRatios at = found.what.anisotropy;
@@ -218,7 +217,7 @@ AxisRatios sorted(const AxisRatios& of) {
 }
 
 /// The best near one: smaller and smaller steps as long as they pay.
-Candidate climbed(const Search& search, Candidate found) {
+AnisotropyCandidate climbed(const Search& search, AnisotropyCandidate found) {
     double step = 20, factor = 0.5;
     while (step > 2) {
         const double before = found.likelihood;
@@ -233,7 +232,7 @@ Candidate climbed(const Search& search, Candidate found) {
 
 /// Any directions: rocks that are folded twice have no fold axis in common, but beds may have been
 /// moved along one direction.
-void search_any(const Search& search, Candidate& best) {
+void search_any(const Search& search, AnisotropyCandidate& best) {
     std::vector<AxisRatios> tried;
     for (const double second : {1.0, 0.3}) {
         for (const Vec3& direction : main_directions()) {
@@ -241,13 +240,13 @@ void search_any(const Search& search, Candidate& best) {
             tried.back().ratios[1] = second;
         }
     }
-    const Candidate other = climbed(search, search.best(tried, best.what));
+    const AnisotropyCandidate other = climbed(search, search.best(tried, best.what));
     Search::improve(best, other, 2 * kWorth);
     Search::improve(best, climbed(search, best), 2 * kWorth);
 }
 
 /// Other errors with the anisotropy of the best.
-void search_errors(const Search& search, Candidate& best) {
+void search_errors(const Search& search, AnisotropyCandidate& best) {
     std::vector<Likely> tried;
     std::vector<double> values{0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5};
     if (search.has_errors()) values.insert(values.end(), {1e-4, 1e-3, 1e-2});
@@ -261,7 +260,7 @@ void search_errors(const Search& search, Candidate& best) {
 }
 
 /// Other scales of further coordinates: the larger, the less one side says of the other.
-void search_lift(const Search& search, Candidate& best) {
+void search_lift(const Search& search, AnisotropyCandidate& best) {
     std::vector<Likely> tried(kLifts, best.what);
     double lift = kLeastLift;
     for (Likely& each : tried) {
@@ -286,14 +285,14 @@ std::vector<Likely> thrown(const Likely& of, std::size_t fault, const Vec3& norm
 }
 
 /// Throws of faults, in their planes. They are seen only if the two sides hardly differ otherwise.
-void search_throws(const Search& search, std::span<const Vec3> normals, Candidate& best) {
+void search_throws(const Search& search, std::span<const Vec3> normals, AnisotropyCandidate& best) {
     Likely start = best.what;
     const bool is_first = start.throws.empty();
     if (is_first) {
         start.throws.assign(normals.size(), Vec3{});
         start.lift = kLeastLift;
     }
-    Candidate found = search.best(std::array{start});
+    AnisotropyCandidate found = search.best(std::array{start});
     const auto look = [&](std::span<const double> steps, int directions) {
         for (std::size_t fault = 0; fault < normals.size(); ++fault) {
             std::vector<Likely> tried;
@@ -327,7 +326,7 @@ Map3 map_of(const AxisRatios& anisotropy) {
 Likely most_likely(std::span<const Functional> known, std::span<const Vec3> normals,
                    std::span<const Vec3> faults, double error, const Execution& execution) {
     const Search search(known, error, execution);
-    const auto climb = [&](Candidate best) {
+    const auto climb = [&](AnisotropyCandidate best) {
         search_first(search, normals, best);
         search_second(search, best);
         if (!faults.empty()) {
@@ -342,10 +341,10 @@ Likely most_likely(std::span<const Functional> known, std::span<const Vec3> norm
     };
     Likely plain;
     if (search.has_errors()) plain.errors.value = kFirstError;
-    const Candidate start = search.best(std::array{plain});
-    Candidate rough = start;
+    const AnisotropyCandidate start = search.best(std::array{plain});
+    AnisotropyCandidate rough = start;
     search_errors(search, rough);
-    Candidate best = climb(start);
+    AnisotropyCandidate best = climb(start);
     if (rough.likelihood > start.likelihood) Search::improve(best, climb(rough), kWorth);
     return best.what;
 }
@@ -353,7 +352,7 @@ Likely most_likely(std::span<const Functional> known, std::span<const Vec3> norm
 Likely most_likely_anywhere(std::span<const Functional> known, const Likely& likely, double error,
                             const Execution& execution) {
     const Search search(known, error, execution);
-    Candidate best = search.best(std::array{likely});
+    AnisotropyCandidate best = search.best(std::array{likely});
     search_any(search, best);
     search_errors(search, best);
     return best.what;
@@ -377,7 +376,7 @@ Likely most_likely_smooth(std::span<const Functional> known, const Likely& likel
             }
         }
     }
-    Candidate best = search.best(std::array{likely});
+    AnisotropyCandidate best = search.best(std::array{likely});
     Search::improve(best, climbed(search, search.best(starts)), 2 * kWorth);
     return best.what;
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/cross_validation.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,10 +6,11 @@
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "fields/active_inequalities.hpp"
 #include "fields/frame_function.hpp"
-#include "fields/neighbors.hpp"
+#include "fields/known_data.hpp"
+#include "fields/likely_field.hpp"
 #include "fields/spline.hpp"
+#include "fields/spline_constraints.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::fields {
@@ -121,8 +120,8 @@ std::vector<Inequality> CrossValidation::inequalities_without(int part, int orde
         is_given[dips_[k]] = dip_parts_[k] == part ? 0 : 1;
     std::vector<Inequality> out;
     for (Inequality& each : known_.inequalities()) {
-        if (each.kind == Inequality::Kind::kBound) continue;  // it may contradict other data
-        if (each.kind == Inequality::Kind::kPolarity &&
+        if (each.kind == Inequality::Origin::kBound) continue;  // it may contradict other data
+        if (each.kind == Inequality::Origin::kPolarity &&
             is_given[static_cast<std::size_t>(each.item)] == 0)
             continue;
         each.functional = known_.for_order(order, each.functional);

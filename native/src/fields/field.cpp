@@ -11,37 +11,33 @@
 #include <utility>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
-#include "fields/active_inequalities.hpp"
-#include "fields/anisotropy.hpp"
-#include "fields/even_steepness.hpp"
 #include "fields/frame_function.hpp"
 #include "fields/known_data.hpp"
-#include "fields/lattice_bounds.hpp"
 #include "fields/lattice_values.hpp"
 #include "fields/likely_field.hpp"
-#include "fields/neighbors.hpp"
-#include "fields/random_function.hpp"
 #include "fields/spline.hpp"
+#include "fields/spline_constraints.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
 
 namespace {
 
-using Kind = Inequality::Kind;
+using Origin = Inequality::Origin;
 
-constexpr double kMet = 1e-9;  // in the frame: what is left by rounding
+constexpr double kTolerance = 1e-9;  // in the frame: what is left by rounding
 constexpr std::size_t kFirstCenters = 600;
 constexpr int kMostRounds = 40;
 // What leaving out each of the suspected must save, in variances of what is left. Exact data save
 // up to 120, wrong ones millions.
-constexpr double kPays = 400;
+constexpr double kMinVarianceGain = 400;
 // What a bound contradicts: so many data at most, and those that count this much of the first one.
 constexpr std::size_t kMostContradicted = 4;
-constexpr double kCounts = 0.25;
+constexpr double kMinShare = 0.25;
 // Edges of the lattice over which a drawn function is averaged that has no derivatives.
-constexpr double kRough = 4;
+constexpr double kAveragingCells = 4;
 
 /// The field while more of the data get into it.
 class Solution {
@@ -143,7 +139,7 @@ private:
             numbers.steps.size() * numbers.dimensions % numbers.directions.size() != 0 ||
             numbers.slope_errors.size() != 2 * known_.data().dips.size() + even_.size())
             throw InputError("option", "a function is drawn of numbers for each line and slope");
-        const double rough = kRough * 2 * known_.half_spacing();
+        const double rough = kAveragingCells * 2 * known_.half_spacing();
         const double most = *std::ranges::max_element(kind.anisotropy.ratios);
         const double reach = std::max(most, 1.0) + 2 * rough + farthest_lift();
         drawn_.emplace(likely_.smoothness(), kind.scale, reach, rough, numbers);
@@ -199,7 +195,7 @@ private:
     void meet() {
         for (int round = 0; round < kMostRounds; ++round) {
             const bool more_contacts = add_centers();
-            const bool more_bounds = active_.activate(*spline_, kMet);
+            const bool more_bounds = active_.activate(*spline_, kTolerance);
             const bool fewer =
                 !more_bounds && !more_contacts && active_.release(*spline_, first_active_);
             if (!more_contacts && !more_bounds && !fewer) break;
@@ -232,9 +228,11 @@ private:
         for (const Functional& functional : known_.fixed(gaps_))
             all.push_back(known_.for_order(likely_.order, functional));
         first_contact_ = all.size();
+        contacts_of_rows_.clear();
         for (std::size_t n = 0; n < is_center_.size(); ++n) {
-            if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
-                all.push_back(known_.on_surface(n));
+            if (is_center_[n] == 0 || n == known_.reference(known_.surface_of(n))) continue;
+            contacts_of_rows_.push_back(n);
+            all.push_back(known_.on_surface(n));
         }
         const std::size_t first_even = all.size();
         if (!even_.empty()) {
@@ -311,7 +309,7 @@ private:
     std::vector<std::size_t> by_turns(const std::vector<double>& missed) const {
         const double error = std::sqrt(std::max(0.0, likely_.errors.value * spline_->scale()));
         const double tolerance =
-            std::max({options_.tolerance / known_.frame().unit, 1e3 * kMet, 2 * error});
+            std::max({options_.tolerance / known_.frame().unit, 1e3 * kTolerance, 2 * error});
         std::vector<std::vector<std::size_t>> on(known_.data().surfaces);
         for (std::size_t n = 0; n < missed.size(); ++n) {
             if (is_center_[n] == 0 && missed[n] > tolerance) on[known_.surface_of(n)].push_back(n);
@@ -323,10 +321,7 @@ private:
                 ranked.emplace_back(rank, numbers[rank]);
         }
         std::sort(ranked.begin(), ranked.end());
-        std::vector<std::size_t> out;
-        for (const auto& [rank, n] : ranked)
-            out.push_back(n);
-        return out;
+        return transformed(ranked, &std::pair<std::size_t, std::size_t>::second);
     }
 
     /// Takes out inequalities that contradict other data, if there are any: those that the field
@@ -335,12 +330,13 @@ private:
     bool leave_out() {
         const std::vector<std::size_t> suspects = active_.suspected(*spline_, first_active_);
         if (suspects.empty()) return false;
-        const std::vector<ActiveInequalities::State> before = active_.states();
+        const std::vector<ActiveInequalities::InequalityState> before = active_.states();
         const double energy = spline_->energy();
         active_.leave_out(suspects);
         fit();
         meet();
-        const double least = kPays * static_cast<double>(suspects.size()) * spline_->scale();
+        const double least =
+            kMinVarianceGain * static_cast<double>(suspects.size()) * spline_->scale();
         if (energy - spline_->energy() > least) return true;
         active_.set_states(before);
         fit();
@@ -350,11 +346,10 @@ private:
     void refuse_contradictions() const {
         if (likely_.errors.value > 0) return;
         std::size_t row = first_contact_;
-        for (std::size_t n = 0; n < is_center_.size(); ++n) {
-            if (is_center_[n] == 0 || n == known_.reference(known_.surface_of(n))) continue;
+        for (const std::size_t n : contacts_of_rows_) {
             if (!spline_->left_out(row++)) continue;
             const double missed = std::abs(spline_->of(known_.on_surface(n)));
-            if (missed <= 1e3 * kMet) continue;
+            if (missed <= 1e3 * kTolerance) continue;
             throw InputError(
                 "contradicting", "contact " + std::to_string(n) + " contradicts others near it",
                 known_.surface_of(n), {static_cast<std::int64_t>(n)}, known_.data().contacts[n]);
@@ -366,7 +361,7 @@ private:
     void refuse_polarities() {
         std::vector<std::int64_t> against;
         for (const Inequality& inequality : active_.all()) {
-            if (inequality.kind == Kind::kPolarity && spline_->of(inequality.functional) < 0)
+            if (inequality.kind == Origin::kPolarity && spline_->of(inequality.functional) < 0)
                 against.push_back(inequality.item);
         }
         const FieldData& data = known_.data();
@@ -389,8 +384,8 @@ private:
     void report_missed(Field& out) const {
         for (const Inequality& inequality : active_.all()) {
             const double lack = inequality.least - spline_->of(inequality.functional);
-            if (lack <= 1e3 * kMet || inequality.kind == Kind::kOrder) continue;
-            const bool is_dip = inequality.kind == Kind::kPolarity;
+            if (lack <= 1e3 * kTolerance || inequality.kind == Origin::kOrder) continue;
+            const bool is_dip = inequality.kind == Origin::kPolarity;
             auto& missed = is_dip ? out.dips_missed : out.bounds_missed;
             if (!missed.empty() && missed.back() == inequality.item) continue;
             missed.push_back(inequality.item);
@@ -407,18 +402,16 @@ private:
             counts[{Datum::Kind::kDip, static_cast<std::int64_t>(row / 2)}] +=
                 std::abs(weights[row]);
         std::size_t row = first_contact_;
-        for (std::size_t n = 0; n < is_center_.size(); ++n) {
-            if (is_center_[n] != 0 && n != known_.reference(known_.surface_of(n)))
-                counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
-                    std::abs(weights[row++]);
-        }
+        for (const std::size_t n : contacts_of_rows_)
+            counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
+                std::abs(weights[row++]);
         row = first_active_;  // after those of beds
-        const auto is_bound = [](const Inequality& each) { return each.kind == Kind::kBound; };
+        const auto is_bound = [](const Inequality& each) { return each.kind == Origin::kBound; };
         for (std::size_t n = 0; n < active_.all().size(); ++n) {
             if (!active_.states()[n].active) continue;
             const Inequality& other = active_.all()[n];
             const double count = std::abs(weights[row++]);
-            if (other.kind == Kind::kPolarity) counts[{Datum::Kind::kDip, other.item}] += count;
+            if (other.kind == Origin::kPolarity) counts[{Datum::Kind::kDip, other.item}] += count;
             // one on the same side says the same
             if (is_bound(other) &&
                 other.functional.values[0].weight * of_bound.values[0].weight < 0)
@@ -430,7 +423,7 @@ private:
         std::ranges::stable_sort(sorted, std::greater{}, &std::pair<double, Datum>::first);
         std::vector<Datum> out;
         for (const auto& [count, datum] : sorted) {
-            if (out.size() == kMostContradicted || count < kCounts * sorted[0].first) break;
+            if (out.size() == kMostContradicted || count < kMinShare * sorted[0].first) break;
             out.push_back(datum);
         }
         return out;
@@ -446,7 +439,8 @@ private:
     EvenSteepness beds_;
     std::vector<Vec3> even_;  // of its places
     double even_error_ = 0, scale_ = 0;
-    std::size_t first_contact_ = 0, first_active_ = 0;
+    std::size_t first_contact_ = 0, first_active_ = 0;  // rows
+    std::vector<std::size_t> contacts_of_rows_;         // from the first on
     double misfit_ = 0;
     std::optional<Spline> spline_;
     std::optional<RandomFunction> drawn_;  // what is drawn: the field is this and the spline

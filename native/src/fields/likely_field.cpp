@@ -8,11 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
-#include "fields/cross_validation.hpp"
 #include "fields/frame_function.hpp"
-#include "fields/neighbors.hpp"
+#include "fields/known_data.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/fields/critical_points.hpp"
 
@@ -96,7 +95,7 @@ std::vector<std::int64_t> turning_points(const Lattice& lattice, std::span<const
             }
         }
     });
-    return joined(found);
+    return concatenated(found);
 }
 
 /// How many connected parts nodes are. Where the field hardly changes along an axis they
@@ -149,7 +148,10 @@ bool is_plain(const Likely& likely) {
 class LikelySearch {
 public:
     LikelySearch(const KnownData& known, const Execution& execution)
-        : known_(known), execution_(execution), sample_(spread_pairs(known, kSampledPairs)) {}
+        : known_(known),
+          execution_(execution),
+          coarse_(coarsened(known.lattice(), kMostCounted)),
+          sample_(spread_pairs(known, kSampledPairs)) {}
 
     LikelyField found() {
         refuse_wrong_order();
@@ -175,10 +177,15 @@ public:
     }
 
 private:
+    /// A field on a coarse lattice.
+    struct CoarseField {
+        std::vector<double> levels, values;
+    };
+
     LikelyField result() const {
         LikelyField out{likely_, gaps_, {}};
         if (!is_plain(likely_) && plain_cost_ < cost_ + kClearly)
-            out.plain_shares = shares_of(plain_);
+            out.plain_shares = shares_of(plain_field_ ? *plain_field_ : coarse_field(plain_));
         return out;
     }
 
@@ -317,10 +324,13 @@ private:
         const auto plain = std::ranges::find_if(ranked, [&](auto n) { return is_plain(kinds[n]); });
         if (plain != ranked.end()) plain_ = kinds[*plain];
         plain_cost_ = plain != ranked.end() ? costs[*plain] : HUGE_VAL;
+        plain_field_.reset();
         cost_ = HUGE_VAL;
         for (const std::size_t n : ranked) {
             if (!(costs[n] < cost_)) break;
-            const std::size_t points = critical_points_of(kinds[n], costs[n]);
+            CoarseField field = coarse_field(kinds[n]);
+            const std::size_t points = critical_points_of(kinds[n], costs[n], field.values);
+            if (plain != ranked.end() && n == *plain) plain_field_ = std::move(field);
             const double cost = costs[n] + kPerCriticalPoint * static_cast<double>(points);
             if (!(cost < cost_)) continue;
             cost_ = cost;
@@ -328,26 +338,27 @@ private:
         }
     }
 
-    /// Rough surfaces make critical points where contacts are close to one another.
-    Spline through_contacts(const Likely& likely) const {
-        return {with(thinned(known_, kFewContacts), gaps_, likely.order), likely.smoothness(),
-                execution_};
+    /// Through some contacts: rough surfaces make critical points where these are close to one
+    /// another.
+    CoarseField coarse_field(const Likely& likely) const {
+        const Spline spline(with(thinned(known_, kFewContacts), gaps_, likely.order),
+                            likely.smoothness(), execution_);
+        const FrameFunction f(known_, spline);
+        return {f.levels(), f.at_nodes(coarse_, 0, execution_)};
     }
 
-    /// @param cost  of what it predicts
-    std::size_t critical_points_of(const Likely& likely, double cost) const {
-        const Spline spline = through_contacts(likely);
-        const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
-        const std::vector<double> values =
-            FrameFunction(known_, spline).at_nodes(coarse, 0, execution_);
-        const auto points = critical_points(coarse, values, execution_);
+    /// @param cost    of what it predicts
+    /// @param values  at the coarse nodes
+    std::size_t critical_points_of(const Likely& likely, double cost,
+                                   std::span<const double> values) const {
+        const auto points = critical_points(coarse_, values, execution_);
         if (!is_told_by_dips()) return points.size();
         std::vector<std::int64_t> nodes;
-        if (rises_one_way()) nodes = turning_points(coarse, values, execution_);
+        if (rises_one_way()) nodes = turning_points(coarse_, values, execution_);
         for (const CriticalPoint& point : points)
             nodes.push_back(point.node);
         if (is_layered(likely) && plain_cost_ < cost + kClearly) return nodes.size();
-        return connected_parts(nodes, coarse, likely.anisotropy);
+        return connected_parts(nodes, coarse_, likely.anisotropy);
     }
 
     /// Whether dips say nothing of limbs that are overturned.
@@ -360,15 +371,12 @@ private:
     }
 
     /// How much of the lattice each block is.
-    std::vector<double> shares_of(const Likely& likely) const {
-        const Spline spline = through_contacts(likely);
-        const FrameFunction f(known_, spline);
-        const std::vector<double> levels = f.levels();
-        const Lattice coarse = coarsened(known_.lattice(), kMostCounted);
+    std::vector<double> shares_of(const CoarseField& field) const {
+        const std::vector<double>& levels = field.levels;
         std::vector<double> out(levels.size() + 1);
-        for (const double value : f.at_nodes(coarse, 0, execution_))
+        for (const double value : field.values)
             out[std::ranges::lower_bound(levels, value) - levels.begin()] +=
-                1 / static_cast<double>(coarse.nodes());
+                1 / static_cast<double>(coarse_.nodes());
         return out;
     }
 
@@ -388,26 +396,23 @@ private:
 
     /// How steep a field is on the two surfaces of each layer.
     std::vector<double> steepness(const Spline& spline) const {
-        std::vector<std::vector<double>> on(known_.data().surfaces);
-        for (const std::size_t n : sample_)
-            on[known_.surface_of(n)].push_back(
-                length(spline.gradient(known_.contacts()[n], known_.lift_of(n))));
+        const auto on = steepness_on_surfaces(known_, spline, sample_);
         std::vector<double> out;
         for (std::size_t k = 0; k + 1 < on.size(); ++k) {
             std::vector<double> both = on[k];
             both.insert(both.end(), on[k + 1].begin(), on[k + 1].end());
             if (both.empty()) both.push_back(1);
-            const auto middle = both.begin() + static_cast<std::ptrdiff_t>(both.size() / 2);
-            std::nth_element(both.begin(), middle, both.end());
-            out.push_back(std::max(*middle, 1e-9));
+            out.push_back(median_steepness(std::move(both)));
         }
         return out;
     }
 
     const KnownData& known_;
     Execution execution_;
+    Lattice coarse_;
     std::vector<std::size_t> sample_;
     Likely likely_, plain_;
+    std::optional<CoarseField> plain_field_;  // of plain_, where critical points were counted
     double cost_ = 0, plain_cost_ = 0;
     std::vector<double> gaps_;
 };

@@ -7,9 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "base/keep_single.hpp"
-#include "exact/space_predicates.hpp"
-#include "fields/lattice_weights.hpp"
+#include "base/algorithms.hpp"
+#include "exact/space_points.hpp"
+#include "fields/lattice_values.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 

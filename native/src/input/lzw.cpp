@@ -20,7 +20,7 @@ constexpr int kLeastWidth = 9, kGreatestWidth = 12;
 
 /// The bytes of a code: those of the code before it and one more, which lie in the output where the
 /// code was made.
-struct Entry {
+struct CodeEntry {
     std::size_t begin, length;
 };
 
@@ -29,10 +29,10 @@ struct Entry {
 std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std::size_t most) {
     std::vector<std::uint8_t> out;
     out.reserve(most);
-    std::array<Entry, kTableSize> table{};
+    std::array<CodeEntry, kTableSize> table{};
     int next = kFirstFree, width = kLeastWidth;
     bool fresh = true;  // just cleared: the next code is a byte and makes no entry
-    Entry previous{0, 0};
+    CodeEntry previous{0, 0};
     std::uint32_t bits = 0;
     int held = 0;
     for (const std::uint8_t byte : encoded) {
@@ -48,9 +48,9 @@ std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std:
             fresh = true;
             continue;
         }
-        const Entry here{out.size(), code < kClear ? 1
-                                     : code < next ? table[code].length
-                                                   : previous.length + 1};
+        const CodeEntry here{out.size(), code < kClear ? 1
+                                         : code < next ? table[code].length
+                                                       : previous.length + 1};
         if (code > next || (fresh && code > kClear)) refuse("a code that was not made yet");
         if (here.length > most - out.size()) refuse("it is longer than the image");
         if (code < kClear) {

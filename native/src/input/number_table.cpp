@@ -2,21 +2,122 @@
 #include "realmodel/input/number_table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
 
 #include "base/parallel.hpp"
-#include "input/number_text.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::input {
 
 namespace {
 
+enum class Spelling { kNumber, kNotANumber, kNotFinite, kTooLarge };
+
+struct ParsedNumber {
+    Spelling spelling = Spelling::kNotANumber;
+    double value = 0.0;      ///< the nearest double; NaN or infinity where it is not finite
+    std::size_t length = 0;  ///< of what was read, from the beginning of the text
+};
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// Whether a text begins with a word (small letters), in any case.
+bool begins_with(std::string_view text, std::string_view word) {
+    return text.size() >= word.size() &&
+           std::equal(word.begin(), word.end(), text.begin(),
+                      [](char a, char b) { return a == static_cast<char>(b | 0x20); });
+}
+
+ParsedNumber not_finite(std::string_view text, std::size_t sign) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double signed_infinity = sign > 0 && text[0] == '-' ? -infinity : infinity;
+    const std::string_view word = text.substr(sign);
+    if (begins_with(word, "infinity")) return {Spelling::kNotFinite, signed_infinity, sign + 8};
+    if (begins_with(word, "inf")) return {Spelling::kNotFinite, signed_infinity, sign + 3};
+    if (begins_with(word, "nan")) {
+        return {Spelling::kNotFinite, std::numeric_limits<double>::quiet_NaN(), sign + 3};
+    }
+    return {};
+}
+
+/// Where the digits of a number, its decimal mark and its exponent end.
+std::size_t extent_of(std::string_view text, std::size_t begin, char decimal) {
+    std::size_t at = begin;
+    const auto skip_digits = [&] {
+        while (at < text.size() && is_digit(text[at]))
+            ++at;
+    };
+    skip_digits();
+    if (at < text.size() && text[at] == decimal) {
+        ++at;
+        skip_digits();
+    }
+    if (at < text.size() && (text[at] | 0x20) == 'e') {
+        std::size_t exponent = at + 1;
+        if (exponent < text.size() && (text[exponent] == '+' || text[exponent] == '-')) ++exponent;
+        if (exponent < text.size() && is_digit(text[exponent])) {
+            at = exponent;
+            skip_digits();
+        }
+    }
+    return at;
+}
+
+/// A number that from_chars finds to lie beyond the range of doubles: zero, or too large. The
+/// position of the first significant digit decides, as the exponent may be of any length.
+ParsedNumber beyond_range(std::string_view digits, bool negative, std::size_t length) {
+    // Below the least double where the exponent says so or the zeros before the first digit do.
+    const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+    const std::size_t first = digits.find_first_of("123456789");
+    const std::size_t point = std::min(digits.find('.'), e);
+    const auto leading =
+        first < point ? static_cast<double>(point - first) : -static_cast<double>(first - point);
+    double exponent = 0;
+    for (std::size_t i = e + 1; i < digits.size(); ++i) {
+        if (is_digit(digits[i])) exponent = std::min(10 * exponent + (digits[i] - '0'), 1e15);
+    }
+    if (e + 1 < digits.size() && digits[e + 1] == '-') exponent = -exponent;
+    if (leading + exponent > 0) return {Spelling::kTooLarge, 0.0, length};
+    return {Spelling::kNumber, negative ? -0.0 : 0.0, length};
+}
+
+/// The number at the beginning of a text: sign, digits with a decimal mark, exponent (no blanks
+/// before, no hexadecimal, no marks between thousands), or nan, inf, infinity in any case.
+ParsedNumber parse_number(std::string_view text, char decimal) {
+    if (text.empty()) return {};
+    const std::size_t sign = text[0] == '+' || text[0] == '-' ? 1 : 0;
+    if (sign == text.size()) return {};
+    const char first = text[sign];
+    if (!is_digit(first) && first != decimal) return not_finite(text, sign);
+    const bool negative = text[0] == '-';
+    const std::size_t end = extent_of(text, sign, decimal);
+    std::string_view digits = text.substr(sign, end - sign);
+    std::string with_point;  // from_chars knows no other decimal mark
+    if (decimal != '.') {
+        with_point = digits;
+        std::replace(with_point.begin(), with_point.end(), decimal, '.');
+        digits = with_point;
+    }
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::invalid_argument) return {};  // a decimal mark alone
+    if (error == std::errc::result_out_of_range) return beyond_range(digits, negative, end);
+    if (stop != digits.data() + digits.size()) return {};
+    return {Spelling::kNumber, negative ? -value : value, end};
+}
+
 constexpr std::size_t kBytesAtOnce = 1 << 16;  // the least that a thread reads
 
 /// Bytes of the text, without blanks around them and without quotes.
-struct Field {
+struct TextField {
     std::size_t begin, end;
     bool quoted = false;
 };
@@ -32,9 +133,9 @@ bool is_blank(char c) {
 }
 
 /// The lines of a part of the text, one after another.
-class Lines {
+class TextLines {
 public:
-    Lines(std::string_view text, const TableFormat& format) : text_(text), format_(format) {
+    TextLines(std::string_view text, const TableFormat& format) : text_(text), format_(format) {
         for (const std::size_t column : format.columns)
             most_ = std::max(most_, column + 1);
         for (const RowFilter& filter : format.filters)
@@ -61,8 +162,8 @@ public:
 private:
     std::string_view text_;
     const TableFormat& format_;
-    std::size_t most_ = 1;       // fields of a line that matter
-    std::vector<Field> fields_;  // of the present line
+    std::size_t most_ = 1;           // fields of a line that matter
+    std::vector<TextField> fields_;  // of the present line
     std::string unquoted_;
 
     void skip_blanks(std::size_t& at, std::size_t end) const {
@@ -127,13 +228,13 @@ private:
         return !ends_here && at < end ? (++at, true) : false;
     }
 
-    Field trimmed(std::size_t begin, std::size_t end) const {
+    TextField trimmed(std::size_t begin, std::size_t end) const {
         while (end > begin && is_blank(text_[end - 1]))
             --end;
         return {begin, end};
     }
 
-    ParsedNumber number_of(const Field& field) const {
+    ParsedNumber number_of(const TextField& field) const {
         std::size_t begin = field.begin, end = field.end;
         if (field.quoted) {
             while (begin < end && is_blank(text_[begin]))
@@ -146,11 +247,11 @@ private:
         return number;
     }
 
-    bool is_number(const Field& field) const {
+    bool is_number(const TextField& field) const {
         return number_of(field).spelling != Spelling::kNotANumber;
     }
 
-    bool is_one_of(const Field& field, const Values& values) {
+    bool is_one_of(const TextField& field, const Values& values) {
         if (!values.numbers.empty()) {
             const ParsedNumber number = number_of(field);
             if (number.spelling == Spelling::kNumber || number.spelling == Spelling::kNotFinite) {
@@ -191,7 +292,7 @@ private:
             }
         }
         for (std::size_t i = 0; i < format_.columns.size(); ++i) {
-            const Field& field = fields_[format_.columns[i]];
+            const TextField& field = fields_[format_.columns[i]];
             const ParsedNumber number = number_of(field);
             if (number.spelling == Spelling::kNumber) {
                 out.values.push_back(number.value);
@@ -228,7 +329,7 @@ NumberTable read_numbers(std::string_view text, const TableFormat& format, int t
     std::vector<NumberTable> tables(begins.size() - 1);
     std::vector<std::optional<Wrong>> wrong(tables.size());
     parallel_chunks(tables.size(), {threads, nullptr}, [&](std::size_t part) {
-        wrong[part] = Lines(text, format).read(begins[part], begins[part + 1], tables[part]);
+        wrong[part] = TextLines(text, format).read(begins[part], begins[part + 1], tables[part]);
     });
     NumberTable all;
     std::size_t count = 0;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
@@ -58,20 +59,16 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points,
     std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
     const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
-    const auto key = [&](std::int32_t i) {
-        return std::tuple(points[i][0], points[i][1], sheet(i), i);
+    const auto position = [&](std::int32_t i) {
+        return std::tuple(points[i][0], points[i][1], sheet(i));
     };
-    std::ranges::sort(order, {}, key);
+    std::ranges::sort(order, {}, [&](std::int32_t i) { return std::pair(position(i), i); });
     std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its position
-    std::int32_t first = order[0];
-    for (const std::int32_t i : order) {
-        const auto &a = points[first], &b = points[i];
-        if (a[0] != b[0] || a[1] != b[1] || sheet(first) != sheet(i)) {
-            first = i;
-        } else if (a[2] != b[2]) {
-            refuse_contradiction(points, first, i);
+    for (const auto group : groups_of(order, position)) {
+        for (const std::int32_t i : group) {
+            if (points[i][2] != points[group[0]][2]) refuse_contradiction(points, group[0], i);
+            first_at[i] = group[0];
         }
-        first_at[i] = first;
     }
     DataPoints data;
     data.origin = {points[0][0], points[0][1]};

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
@@ -15,10 +16,9 @@ PlacesOnSurface places_on_surface(std::span<const std::array<double, 3>> vertice
                                   std::span<const std::array<double, 2>> nodes,
                                   const Execution& execution) {
     require_finite_nodes(nodes);
-    std::vector<Position> positions;
-    positions.reserve(vertices.size());
-    for (const auto& [x, y, z] : vertices)
-        positions.push_back({x, y});
+    const auto positions = transformed(vertices, [](const auto& p) {
+        return Position{p[0], p[1]};
+    });
     // On the border of a fault, which is asked of each surface, most places lie beside it.
     const spatial::MeshLocator locator(positions, triangles, spatial::box_around(nodes));
     PlacesOnSurface places{std::vector<std::int32_t>(nodes.size(), -1),

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/band.hpp"
-
 #include <algorithm>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "meshing/constrained_delaunay.hpp"
+#include "meshing/lattice.hpp"
 
 namespace realmodel::meshing {
 

@@ -67,7 +67,8 @@ PlanPoint point_of(const Cdt::Vertex_handle& vertex) {
                          -1, {static_cast<std::int64_t>(other), static_cast<std::int64_t>(refused)},
                          std::array{place[0], place[1], 0.0});
     }
-    throw std::logic_error("a segment was refused that crosses none");
+    throw InternalError("a segment that is refused crosses one before it",
+                        std::array{a[0], a[1], 0.0});
 }
 
 }  // namespace
@@ -146,7 +147,9 @@ std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vert
             Cdt::Face_handle face;
             int side = 0;
             if (!cdt.includes_edge(at, end, next, face, side)) {
-                throw std::logic_error("an inserted segment is no chain of edges");
+                const PlanPoint p = point_of(at);
+                throw InternalError("an inserted segment is a chain of edges",
+                                    std::array{p[0], p[1], 0.0});
             }
             const auto [from, to] = std::minmax(at->number, next->number);
             edges.push_back({from, to, static_cast<std::int32_t>(i)});
@@ -161,12 +164,12 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
     ConstrainedTriangulation out;
     if (cdt.dimension() < 2) return out;
 
-    struct Face {
+    struct NumberedFace {
         std::array<std::int32_t, 3> corners;
         int first;
         Cdt::Face_handle handle;
     };
-    std::vector<Face> faces;
+    std::vector<NumberedFace> faces;
     faces.reserve(cdt.number_of_faces());
     for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
         int first = 0;
@@ -178,11 +181,11 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
                          first,
                          face});
     }
-    std::ranges::sort(faces, {}, &Face::corners);
+    std::ranges::sort(faces, {}, &NumberedFace::corners);
 
     // The time stamp leads from a face back to its number without a hash table.
     std::size_t stamps = 0;
-    for (const Face& face : faces)
+    for (const NumberedFace& face : faces)
         stamps = std::max(stamps, face.handle->time_stamp() + 1);
     std::vector<std::int32_t> number_of(stamps, -1);
     for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -191,7 +194,7 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
     out.triangles.reserve(faces.size());
     out.neighbors.reserve(faces.size());
     out.constrained.reserve(faces.size());
-    for (const Face& face : faces) {
+    for (const NumberedFace& face : faces) {
         out.triangles.push_back(face.corners);
         auto& neighbors = out.neighbors.emplace_back();
         auto& constrained = out.constrained.emplace_back();

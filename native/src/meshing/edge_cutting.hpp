@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points added on the edges of a region, however close others come.
+// Edges of a region cut at points, however close others come: its border, and the lines inside.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,8 @@
 
 #include "meshing/check.hpp"
 #include "meshing/flat_mesh.hpp"
+#include "meshing/region_graph.hpp"
+#include "meshing/size_field.hpp"
 
 namespace realmodel::meshing {
 
@@ -23,6 +25,9 @@ double rounding_slack(std::span<const PlanPoint> points);
 /// Whether an edge may be bent by `slack` towards the triangle that a half-edge is in, at points no
 /// nearer to its ends than `nearest`, without meeting the two other edges, be they bent as well.
 bool has_room(const FlatMesh& mesh, HalfEdge edge, double nearest, double slack);
+
+/// Whether an edge can be cut at a point near it without turning a triangle over. Exact.
+bool can_cut(const FlatMesh& mesh, HalfEdge edge, const PlanPoint& p);
 
 /// A triangulation of all of a region's points, of the inside and what is around it, whose fixed
 /// edges are cut at one point after the other. Every step leaves all triangles exactly
@@ -58,5 +63,32 @@ private:
     std::vector<bool> inside_;
     std::vector<HalfEdge> at_;  ///< of each vertex: a half-edge from it
 };
+
+/// First the points of the graph as they are, then points added on its edges, each rounded once.
+/// Pieces cross nowhere: a point is left out, and used by no piece, where rounding would put it
+/// beyond another edge.
+struct BorderPieces {
+    std::vector<PlanPoint> points;
+    std::vector<Segment> border;  ///< the region on their left
+    std::vector<Segment> inner;
+    std::vector<CutEdge> edges;   ///< of the graph, border and inner, with what cuts them
+    std::vector<Segment> locked;  ///< of the border: too close to others outside of the region to
+                                  ///< be cut again; sorted
+};
+
+/// Cuts every edge into pieces that are equal as measured by the length wanted where they are, at
+/// most 1.4 of it. Around a corner sharper than 60 degrees all edges are first cut at one distance
+/// from it, so that the triangle at the tip has two equal edges (Ruppert 1995, section 7, "corner
+/// lopping" by concentric circles). `finest`: pieces half as long will not be cut again.
+BorderPieces cut_border(const RegionGraph& graph, SizeField& size, double finest,
+                        const Check& check);
+
+/// Cuts every edge where it crosses the lines of a grid of squares, but for cuts nearer than
+/// `closest` (sides of a square) to an end or to the cut before.
+BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double side,
+                                double closest, double finest, const Check& check);
+
+/// About how many pieces cut_border makes for one length everywhere; cheap, for estimates.
+double estimate_pieces(const RegionGraph& graph, double edge_length);
 
 }  // namespace realmodel::meshing

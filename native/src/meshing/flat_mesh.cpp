@@ -49,7 +49,7 @@ void FlatMesh::fix(HalfEdge edge, bool is_fixed, bool is_locked) {
                                      (is_fixed ? fixed_bit : 0) | (is_locked ? locked_bit : 0));
 }
 
-void FlatMesh::attach(HalfEdge edge, const Outer& outer) {
+void FlatMesh::attach(HalfEdge edge, const OuterEdge& outer) {
     join(edge, outer.twin);
     fix(edge, outer.is_fixed, outer.is_locked);
 }
@@ -68,8 +68,8 @@ HalfEdge FlatMesh::flip(HalfEdge edge) {
     const std::int32_t p = from(edge), q = to(edge), left = apex(edge), right = apex(other);
     assert(points.empty() || orient2d(points[right], points[left], points[p]) > 0);
     assert(points.empty() || orient2d(points[left], points[right], points[q]) > 0);
-    const Outer t_next = outer(edge.next()), t_prev = outer(edge.prev());
-    const Outer u_next = outer(other.next()), u_prev = outer(other.prev());
+    const OuterEdge t_next = outer(edge.next()), t_prev = outer(edge.prev());
+    const OuterEdge u_next = outer(other.next()), u_prev = outer(other.prev());
     corners[t] = {right, left, p};
     corners[u] = {left, right, q};
     marks[t] = marks[u] = 0;
@@ -106,8 +106,8 @@ HalfEdge FlatMesh::legalize_around(std::int32_t vertex, std::int32_t triangle) {
 
 void FlatMesh::rotate(std::int32_t triangle, int first) {
     const auto old = corners[triangle];
-    const std::array<Outer, 3> beyond{outer({triangle, 0}), outer({triangle, 1}),
-                                      outer({triangle, 2})};
+    const std::array<OuterEdge, 3> beyond{outer({triangle, 0}), outer({triangle, 1}),
+                                          outer({triangle, 2})};
     for (int i = 0; i < 3; ++i) {
         corners[triangle][i] = old[(first + i) % 3];
         attach({triangle, i}, beyond[(first + i) % 3]);
@@ -116,7 +116,7 @@ void FlatMesh::rotate(std::int32_t triangle, int first) {
 
 void FlatMesh::divide(std::int32_t triangle, std::int32_t vertex) {
     const auto [a, b, c] = corners[triangle];
-    const Outer ab = outer({triangle, 0}), bc = outer({triangle, 1}), ca = outer({triangle, 2});
+    const OuterEdge ab = outer({triangle, 0}), bc = outer({triangle, 1}), ca = outer({triangle, 2});
     const std::int32_t second = add_triangle({b, c, vertex});
     const std::int32_t third = add_triangle({c, a, vertex});
     corners[triangle] = {a, b, vertex};
@@ -151,7 +151,7 @@ void FlatMesh::divide(HalfEdge edge, std::int32_t vertex) {
     const HalfEdge other = twin(edge);
     const auto split = [&](HalfEdge e) {  // its triangle keeps the first part, a new one the rest
         const std::int32_t a = from(e), b = to(e), c = apex(e), t = e.triangle();
-        const Outer ab = outer(e), bc = outer(e.next()), ca = outer(e.prev());
+        const OuterEdge ab = outer(e), bc = outer(e.next()), ca = outer(e.prev());
         const std::int32_t rest = add_triangle({vertex, b, c});
         corners[t] = {a, vertex, c};
         marks[t] = 0;
@@ -187,7 +187,7 @@ std::array<HalfEdge, 2> FlatMesh::collapse(HalfEdge edge) {
     } while (around != edge);
     const auto close = [&](HalfEdge beyond_edge, HalfEdge inner) {
         // What lay beyond the triangle's two other edges now meets; the outer one may be fixed.
-        const Outer beyond = outer(beyond_edge);
+        const OuterEdge beyond = outer(beyond_edge);
         const HalfEdge stays = twin(inner);
         attach(stays, beyond);
         if (!beyond.twin.is_none()) fix(beyond.twin, beyond.is_fixed, beyond.is_locked);

@@ -156,12 +156,12 @@ public:
 
 private:
     /// What lies beyond an edge of a triangle that is being replaced, and the edge's marks.
-    struct Outer {
+    struct OuterEdge {
         HalfEdge twin;
         bool is_fixed, is_locked;
     };
-    Outer outer(HalfEdge edge) const { return {twin(edge), is_fixed(edge), is_locked(edge)}; }
-    void attach(HalfEdge edge, const Outer& outer);
+    OuterEdge outer(HalfEdge edge) const { return {twin(edge), is_fixed(edge), is_locked(edge)}; }
+    void attach(HalfEdge edge, const OuterEdge& outer);
     void kill(std::int32_t triangle);
     HalfEdge legalize_around(std::int32_t vertex, std::int32_t triangle);
     std::vector<HalfEdge> open_;

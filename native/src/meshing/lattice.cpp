@@ -16,10 +16,10 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Where something meets a row of the lattice.
-struct Interval {
+struct RowInterval {
     std::int64_t row;
     double from, to;
-    auto operator<=>(const Interval&) const = default;
+    auto operator<=>(const RowInterval&) const = default;
 };
 
 /// Takes in the part of the segment ab that lies on the line y.
@@ -296,12 +296,12 @@ private:
     double edge_length_, room_;
     const Check& check_;
     std::size_t seen_ = 0;
-    std::vector<Interval> crossings_;  // from: x where the border crosses the row; to: not used
-    std::vector<Interval> too_near_;
+    std::vector<RowInterval> crossings_;  // from: x where the border crosses the row; to: not used
+    std::vector<RowInterval> too_near_;
     std::vector<std::array<std::int64_t, 2>> kept_off_;
     TriangleLattice lattice_;
     Row row_;
-    std::vector<Interval>::const_iterator blocked_;
+    std::vector<RowInterval>::const_iterator blocked_;
     double blocked_to_ = -kInfinity;  // in the row, up to what is reached so far
 };
 

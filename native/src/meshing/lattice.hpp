@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of an equilateral lattice inside a region, and the triangles between them.
+// Lattices inside a region, and what lies between them and its border.
 #pragma once
 
-#include "meshing/border_pieces.hpp"
+#include "meshing/edge_cutting.hpp"
 #include "meshing/flat_mesh.hpp"
 
 namespace realmodel::meshing {
@@ -25,7 +25,7 @@ struct TriangleLattice {
     /// Triangles whose corners are all there; in `points` and among themselves. A triangle lies
     /// wholly inside the region.
     FlatMesh mesh;
-    std::vector<HalfEdge> rim;         ///< the sides with no triangle twin them
+    std::vector<HalfEdge> rim;         ///< the sides with no triangle behind them
     std::vector<std::int32_t> loners;  ///< points that no triangle has
 };
 
@@ -37,5 +37,21 @@ struct TriangleLattice {
 TriangleLattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
                                const LatticeFrame& frame, SizeField& size, double edge_length,
                                double clearance, const Check& check);
+
+/// A region's triangles before any is improved: lattices, and the constrained Delaunay
+/// triangulation of the band between them and the border.
+struct BandedMesh {
+    FlatMesh mesh;                   ///< vertices: the border's points, then those of the lattices
+    std::int32_t first_of_band = 0;  ///< triangles before it are a lattice's
+    std::vector<std::int32_t> rim_triangles;  ///< of lattices, beside the band
+};
+
+/// Joins border and lattices; lattices are used up.
+BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
+                     std::vector<TriangleLattice>&& lattices, const Check& check);
+
+/// The same without lattices: the triangulation of the graph with its edges cut.
+FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,
+                              const Check& check);
 
 }  // namespace realmodel::meshing

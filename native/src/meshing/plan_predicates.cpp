@@ -3,7 +3,6 @@
 
 #include <cstdio>
 
-#include "base/vectors.hpp"
 #include "exact/cgal_kernel.hpp"
 
 namespace realmodel::meshing {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "base/vectors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::meshing {
@@ -57,6 +58,10 @@ bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c, 
 /// Where the lines ab and cd meet, rounded; for messages.
 PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                          const PlanPoint& d);
+
+inline PlanPoint middle(const PlanPoint& a, const PlanPoint& b) {
+    return moved(a, 0.5, minus(b, a));
+}
 
 /// "(x, y)" with as many digits as tell it from its neighbors on a map.
 std::string text_of(const PlanPoint& place);

@@ -10,7 +10,6 @@
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/edge_cutting.hpp"
 #include "meshing/plan_predicates.hpp"
-#include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"

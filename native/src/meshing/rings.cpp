@@ -2,28 +2,30 @@
 #include "realmodel/meshing/rings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "base/algorithms.hpp"
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/plan_predicates.hpp"
-#include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/meshing/region_check.hpp"
 
 namespace realmodel::meshing {
 
 namespace {
 
 /// A corner of a ring and its number in the input.
-struct Corner {
+struct RingCorner {
     PlanPoint place;
     std::int64_t number;
 };
 
-std::vector<Corner> distinct_corners(const Ring& ring, std::int64_t ring_number) {
-    std::vector<Corner> corners;
+std::vector<RingCorner> distinct_corners(const Ring& ring, std::int64_t ring_number) {
+    std::vector<RingCorner> corners;
     corners.reserve(ring.size());
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const auto number = static_cast<std::int64_t>(i);
@@ -42,7 +44,7 @@ std::vector<Corner> distinct_corners(const Ring& ring, std::int64_t ring_number)
 }
 
 /// Refuses what has no area whichever way it is looked at.
-void require_area(const std::vector<Corner>& corners, std::int64_t ring_number) {
+void require_area(const std::vector<RingCorner>& corners, std::int64_t ring_number) {
     const auto refuse = [&](const std::string& what) {
         std::optional<std::array<double, 3>> place;
         if (!corners.empty()) place = {corners[0].place[0], corners[0].place[1], 0.0};
@@ -56,7 +58,7 @@ void require_area(const std::vector<Corner>& corners, std::int64_t ring_number) 
         refuse("has " + std::to_string(corners.size()) + " distinct corner" +
                (corners.size() == 1 ? "" : "s"));
     }
-    const bool in_line = std::all_of(corners.begin() + 2, corners.end(), [&](const Corner& c) {
+    const bool in_line = std::all_of(corners.begin() + 2, corners.end(), [&](const RingCorner& c) {
         return orient2d(corners[0].place, corners[1].place, c.place) == 0;
     });
     if (in_line) refuse("has all its corners in one line");
@@ -78,13 +80,28 @@ std::vector<std::int32_t> number_places(const std::vector<PlanPoint>& corners,
     return number;
 }
 
-void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
-    const CoveredEdge* worst = nullptr;
-    for (std::size_t i = 1; i < edges.size(); ++i) {
-        if (edges[i].from != edges[i - 1].from || edges[i].to != edges[i - 1].to) continue;
-        if (worst == nullptr || edges[i].segment < worst->segment) worst = &edges[i];
+/// Calls visit(one, next) for segments that run along the same edge.
+template <class Visit>
+void for_overlaps(const std::vector<CoveredEdge>& edges, const Visit& visit) {
+    const auto ends = [](const CoveredEdge& edge) { return std::array{edge.from, edge.to}; };
+    for (const auto along : groups_of(edges, ends)) {
+        for (std::size_t i = 1; i < along.size(); ++i)
+            visit(along[i - 1], along[i]);
     }
-    if (worst != nullptr) refuse_overlap(graph, *(worst - 1), *worst);
+}
+
+/// Two segments along one edge; null: there are none.
+using Overlap = std::array<const CoveredEdge*, 2>;
+
+void keep_first(Overlap& overlap, const CoveredEdge& a, const CoveredEdge& b) {
+    if (overlap[1] == nullptr || b.segment < overlap[1]->segment) overlap = {&a, &b};
+}
+
+void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
+    Overlap first{};
+    for_overlaps(edges,
+                 [&](const CoveredEdge& a, const CoveredEdge& b) { keep_first(first, a, b); });
+    if (first[1] != nullptr) refuse_overlap(graph, *first[0], *first[1]);
 }
 
 /// Refuses two edges of the graph, given by their segments.
@@ -112,10 +129,10 @@ RingGraph ring_graph(std::span<const Ring> rings) {
     std::vector<std::array<std::size_t, 2>> corner_range;
     for (std::size_t r = 0; r < rings.size(); ++r) {
         const auto ring_number = static_cast<std::int64_t>(r);
-        const std::vector<Corner> ring = distinct_corners(rings[r], ring_number);
+        const std::vector<RingCorner> ring = distinct_corners(rings[r], ring_number);
         require_area(ring, ring_number);
         corner_range.push_back({corners.size(), corners.size() + ring.size()});
-        for (const Corner& corner : ring) {
+        for (const RingCorner& corner : ring) {
             corners.push_back(corner.place);
             graph.origin.push_back({ring_number, corner.number});
         }
@@ -137,9 +154,9 @@ std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places) {
     std::iota(order.begin(), order.end(), 0);
     std::ranges::sort(order, {}, [&](std::int32_t i) { return std::pair(places[i], i); });
     std::vector<std::int32_t> first(places.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && places[order[i]] == places[order[i - 1]];
-        first[order[i]] = same ? first[order[i - 1]] : order[i];
+    for (const auto equal : groups_of(order, [&](std::int32_t i) { return places[i]; })) {
+        for (const std::int32_t i : equal)
+            first[i] = equal[0];
     }
     return first;
 }
@@ -185,6 +202,172 @@ PlanarMesh triangulate_rings(std::span<const Ring> rings) {
         if (region.inside[t]) mesh.triangles.push_back(region.triangulation.triangles[t]);
     }
     return mesh;
+}
+
+namespace {
+
+constexpr std::int32_t kNone = -1;
+
+/// Finds the rings that run along an edge of the triangulation.
+class RingsOfEdges {
+public:
+    RingsOfEdges(const RingGraph& graph, std::span<const RegionRing> rings,
+                 std::vector<CoveredEdge> edges)
+        : graph_(graph), edges_(std::move(edges)) {
+        for_overlaps(edges_, [&](const CoveredEdge& a, const CoveredEdge& b) {
+            shared_ = true;
+            if (rings[ring_of(a)].polygon == rings[ring_of(b)].polygon) keep_first(same_, a, b);
+        });
+    }
+
+    /// Whether polygons share borders.
+    bool shared() const { return shared_; }
+
+    /// Refuses rings of one polygon that share a stretch, the first such one.
+    void require_apart() const {
+        if (same_[1] != nullptr) refuse_overlap(graph_, *same_[0], *same_[1]);
+    }
+
+    /// The rings along the edge between two points.
+    std::vector<std::int32_t> along(std::int32_t a, std::int32_t b) const {
+        const CoveredEdge wanted{std::min(a, b), std::max(a, b), kNone};
+        std::vector<std::int32_t> rings;
+        for (auto at = std::lower_bound(edges_.begin(), edges_.end(), wanted);
+             at != edges_.end() && at->from == wanted.from && at->to == wanted.to; ++at) {
+            rings.push_back(ring_of(*at));
+        }
+        return rings;
+    }
+
+private:
+    std::int32_t ring_of(const CoveredEdge& edge) const {
+        return static_cast<std::int32_t>(graph_.origin[edge.segment][0]);
+    }
+
+    const RingGraph& graph_;
+    std::vector<CoveredEdge> edges_;
+    bool shared_ = false;
+    Overlap same_{};  ///< of one polygon
+};
+
+/// How rings lie in each other, found by walking over the triangles from the outside: of each ring
+/// the innermost other one around it, or kNone.
+class Nesting {
+public:
+    Nesting(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings, std::size_t ring_count)
+        : parents(ring_count, kNone), rings_(rings), met_(ring_count, false) {
+        spread_inward(mesh, kNone, [&](std::int32_t from, int i, std::int32_t around) {
+            const auto& corners = mesh.triangles[from];
+            return mesh.constrained[from][i] ? cross(corners[i], corners[(i + 1) % 3], around)
+                                             : around;
+        });
+    }
+
+    std::vector<std::int32_t> parents;
+
+private:
+    /// The innermost ring around a place, after an edge is crossed along which rings run.
+    std::int32_t cross(std::int32_t a, std::int32_t b, std::int32_t innermost) {
+        std::vector<std::int32_t> along = rings_.along(a, b);
+        for (bool more = true; more;) {  // leave the innermost first, in whatever order they are
+            more = false;
+            for (std::int32_t& ring : along) {
+                if (ring == kNone || ring != innermost) continue;
+                innermost = parents[ring];
+                ring = kNone;
+                more = true;
+            }
+        }
+        for (const std::int32_t ring : along) {
+            if (ring == kNone) continue;
+            if (!met_[ring]) parents[ring] = innermost;
+            met_[ring] = true;
+            innermost = ring;
+        }
+        return innermost;
+    }
+
+    const RingsOfEdges& rings_;
+    std::vector<bool> met_;
+};
+
+/// Refuses the first hole that does not lie inside the outline of its polygon.
+void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nesting) {
+    for (std::size_t r = 0; r < rings.size(); ++r) {
+        if (!rings[r].hole) continue;
+        bool found = false;
+        std::size_t steps = 0;
+        for (std::int32_t around = nesting.parents[r]; around != kNone && steps <= rings.size();
+             around = nesting.parents[around], ++steps) {
+            found = found || (rings[around].polygon == rings[r].polygon && !rings[around].hole);
+        }
+        if (found) continue;
+        const PlanPoint& place = rings[r].corners.front();
+        throw InputError("hole_outside",
+                         "outline " + std::to_string(r) +
+                             ", a hole, does not lie inside its outline, at " + text_of(place),
+                         -1, {static_cast<std::int64_t>(r), 0},
+                         std::array{place[0], place[1], 0.0});
+    }
+}
+
+/// The border of what is inside as rings, each simple, with the inside on the left.
+std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangulation& mesh,
+                               const std::vector<bool>& inside) {
+    const auto is_border = [&](std::int32_t t, int i) {
+        const std::int32_t across = mesh.neighbors[t][i];
+        return across < 0 || !inside[across];
+    };
+    std::vector<std::array<bool, 3>> taken(mesh.triangles.size());
+    std::vector<Ring> rings;
+    for (std::size_t first = 0; first < mesh.triangles.size(); ++first) {
+        if (!inside[first]) continue;
+        for (int edge = 0; edge < 3; ++edge) {
+            auto t = static_cast<std::int32_t>(first);
+            int i = edge;
+            if (taken[t][i] || !is_border(t, i)) continue;
+            Ring& ring = rings.emplace_back();
+            while (!taken[t][i]) {
+                taken[t][i] = true;
+                ring.push_back(graph.points[mesh.triangles[t][i]]);
+                // Around the end of the edge, over triangles inside, to the next edge of the
+                // border.
+                const std::int32_t pivot = mesh.triangles[t][(i + 1) % 3];
+                i = (i + 1) % 3;
+                while (!is_border(t, i)) {
+                    t = mesh.neighbors[t][i];
+                    i = 0;
+                    while (mesh.triangles[t][i] != pivot)
+                        ++i;
+                }
+            }
+        }
+    }
+    return rings;
+}
+
+}  // namespace
+
+std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* progress) {
+    std::vector<Ring> given;
+    given.reserve(rings.size());
+    for (const RegionRing& ring : rings)
+        given.push_back(ring.corners);
+    const ConstrainedRings all = constrained_rings(given, progress);
+    const ConstrainedTriangulation& mesh = all.triangulation;
+    const RingsOfEdges edges(all.graph, rings, all.edges);
+    edges.require_apart();
+    require_holes_inside(rings, Nesting(mesh, edges, rings.size()));
+    const std::vector<bool> inside = inside_rings(mesh, [&](std::int32_t t, int i) {
+        const auto& corners = mesh.triangles[t];
+        return mesh.constrained[t][i] &&
+               edges.along(corners[i], corners[(i + 1) % 3]).size() % 2 != 0;
+    });
+    if (std::none_of(inside.begin(), inside.end(), [](bool in) { return in; })) {
+        throw InputError("no_area", "the polygons cover each other: nothing is left of the region");
+    }
+    if (!edges.shared()) return given;
+    return border_rings(all.graph, mesh, inside);
 }
 
 }  // namespace realmodel::meshing

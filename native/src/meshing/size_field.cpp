@@ -2,12 +2,16 @@
 #include "meshing/size_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <string>
 
+#include "base/algorithms.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::meshing {
 
@@ -62,7 +66,7 @@ void SizeField::make_leaf(std::int32_t node, const std::array<double, 4>& length
         leaf[i] = static_cast<float>(lengths[i] / largest_);
 }
 
-std::array<double, 4> SizeField::corner_lengths(const Cell& cell,
+std::array<double, 4> SizeField::corner_lengths(const QuadtreeCell& cell,
                                                 std::span<const std::int32_t> sources) const {
     std::array<double, 4> lengths;
     for (int i = 0; i < 4; ++i) {
@@ -76,7 +80,7 @@ std::array<double, 4> SizeField::corner_lengths(const Cell& cell,
 }
 
 /// Makes a node a leaf, or an inner node with four children to be opened.
-void SizeField::open(std::int32_t node, const Cell& cell) {
+void SizeField::open(std::int32_t node, const QuadtreeCell& cell) {
     const auto [begin, count] = nodes_[node];
     const double half = cell.width / 2, reach = gradation_ * half * std::numbers::sqrt2;
     const double x = cell.x + half, y = cell.y + half;
@@ -114,7 +118,7 @@ void SizeField::open(std::int32_t node, const Cell& cell) {
         return;
     }
     nodes_[node] = {static_cast<std::int32_t>(nodes_.size()), kInner};
-    nodes_.insert(nodes_.end(), 4, Node{first_kept, kept});
+    nodes_.insert(nodes_.end(), 4, QuadtreeNode{first_kept, kept});
 }
 
 double SizeField::look_up(const PlanPoint& p) {
@@ -127,7 +131,7 @@ double SizeField::look_up(const PlanPoint& p) {
         u = last_u;
         v = last_v;
     } else {
-        Cell cell{low_[0], low_[1], width_, 0};
+        QuadtreeCell cell{low_[0], low_[1], width_, 0};
         std::int32_t node = 0;
         last_ = {1, 0, 0, 0};
         while (nodes_[node].count != kLeaf) {
@@ -153,6 +157,157 @@ double SizeField::look_up(const PlanPoint& p) {
     const double below = leaf[0] + u * (leaf[1] - leaf[0]),
                  above = leaf[2] + u * (leaf[3] - leaf[2]);
     return largest_ * (below + v * (above - below));
+}
+
+namespace {
+
+// Edges half as long as the points are apart: each point gets a few triangles of its own.
+constexpr double kEdgesPerSpacing = 2;
+constexpr double kLongestShare = 4, kShortestShare = 1.0 / 64;
+constexpr std::size_t kCountedNeighbors = 8;
+
+void check_size(const LocalLength& size, std::size_t number, double edge_length) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError("size", "size " + std::to_string(number) + ": " + what, -1,
+                         {static_cast<std::int64_t>(number)});
+    };
+    if (!(size.length > 0) || !std::isfinite(size.length)) {
+        refuse("its length must be a finite number above 0");
+    }
+    if (!(size.distance >= 0) || !std::isfinite(size.distance)) {
+        refuse("its distance must be a finite number from 0");
+    }
+    if (edge_length > 0 && size.length >= edge_length) {
+        refuse("its length must be shorter than the edge length elsewhere");
+    }
+    for (const PlanPoint& p : size.line) {
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+            refuse("a coordinate of its position is not a finite number");
+    }
+}
+
+}  // namespace
+
+double longest_by_density(const RegionGraph& graph, const MeshRequest& request) {
+    return kLongestShare * std::sqrt(graph.area / static_cast<double>(request.density.size())) /
+           kEdgesPerSpacing;
+}
+
+std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRequest& request,
+                                          double edge_length, double scale) {
+    std::vector<SizeSource> sources;
+    for (std::size_t i = 0; i < request.sizes.size(); ++i) {
+        const LocalLength& size = request.sizes[i];
+        check_size(size, i, request.triangles > 0 || !request.density.empty() ? 0 : edge_length);
+        const double start = size.length - kGradation * size.distance;
+        if (size.line.empty()) {
+            for (const auto& [from, to] : graph.border)
+                sources.push_back({graph.points[from], graph.points[to], start, size.length});
+        } else if (size.line.size() == 1) {
+            sources.push_back({size.line[0], size.line[0], start, size.length});
+        }
+        for (std::size_t k = 1; k < size.line.size(); ++k)
+            sources.push_back({size.line[k - 1], size.line[k], start, size.length});
+    }
+    if (request.density.empty()) return sources;
+
+    std::vector<PlanPoint> points = request.density;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (std::isfinite(points[i][0]) && std::isfinite(points[i][1])) continue;
+        throw InputError("density", "point " + std::to_string(i) + " is not a finite number", -1,
+                         {static_cast<std::int64_t>(i)});
+    }
+    sort_unique(points);
+    if (points.size() < 2) {
+        throw InputError("density", "an edge length by density needs two points at least");
+    }
+    const double longest = longest_by_density(graph, request);
+    const std::size_t neighbors = std::min(kCountedNeighbors, points.size() - 1);
+    const spatial::NearestPoints nearest(points);
+    std::vector<spatial::Neighbor> found;
+    for (const PlanPoint& p : points) {
+        nearest.find(p, neighbors + 1, found);  // the first is the point itself
+        // So many points lie in a circle of that radius.
+        const double spacing = std::sqrt(found.back().squared_distance * std::numbers::pi /
+                                         static_cast<double>(neighbors));
+        const double wanted =
+            scale * std::clamp(spacing / kEdgesPerSpacing, kShortestShare * longest, longest);
+        sources.push_back({p, p, wanted, wanted});
+    }
+    return sources;
+}
+
+double pieces_along(std::span<const SizeSource> sources, const PlanPoint& low,
+                    const PlanPoint& high) {
+    double pieces = 0;
+    for (const SizeSource& source : sources) {
+        // The part of the segment in the box, from share t to share u (Liang and Barsky 1984).
+        double t = 0, u = 1;
+        for (int k = 0; k < 2; ++k) {
+            const double run = source.b[k] - source.a[k];
+            if (run == 0) {
+                if (source.a[k] < low[k] || source.a[k] > high[k]) u = -1;
+                continue;
+            }
+            const double first = (low[k] - source.a[k]) / run, last = (high[k] - source.a[k]) / run;
+            t = std::max(t, std::min(first, last));
+            u = std::min(u, std::max(first, last));
+        }
+        if (u > t) {
+            pieces += (u - t) * std::sqrt(squared_distance(source.a, source.b)) / source.least;
+        }
+    }
+    return pieces;
+}
+
+std::vector<double> lattice_lengths(const MeshRequest& request, SizeField& size) {
+    constexpr double kClearlyShorter = 0.8;  // else two lattices would collide
+    std::vector<double> lengths{size.largest()};
+    std::vector<double> wanted;
+    for (const LocalLength& local : request.sizes)
+        if (local.distance > 2 * local.length) wanted.push_back(local.length);
+    std::sort(wanted.rbegin(), wanted.rend());
+    for (const double length : wanted)
+        if (length < kClearlyShorter * lengths.back()) lengths.push_back(length);
+    return lengths;
+}
+
+double triangles_in(const RegionGraph& graph, SizeField& size, const Check& check) {
+    constexpr double kEquilateral = std::numbers::sqrt3 / 4;  // the area at side 1
+    constexpr double kNextToNothing = 0.25 * kEquilateral;
+    if (size.is_uniform()) return graph.area / (kEquilateral * size.largest() * size.largest());
+    Ticker tick(check);
+    double triangles = 0;
+    std::vector<std::array<PlanPoint, 3>> open;
+    for (std::size_t t = 0; t < graph.inside.size(); ++t) {
+        const auto& [a, b, c] = graph.triangulation.triangles[t];
+        if (graph.inside[t]) open.push_back({graph.points[a], graph.points[b], graph.points[c]});
+    }
+    while (!open.empty()) {
+        tick(0);
+        const std::array<PlanPoint, 3> corners = open.back();
+        open.pop_back();
+        const auto& [a, b, c] = corners;
+        const std::array sides{squared_distance(a, b), squared_distance(b, c),
+                               squared_distance(c, a)};
+        const double wanted = size.at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3});
+        const auto longest =
+            static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
+        const double area = 0.5 * twice_area(a, b, c);
+        // Slivers, of which combs have many, are not cut as long as they hold next to nothing: all
+        // of one lies within two thirds of its longest side from its center.
+        const double finest =
+            std::max(size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(sides[longest]));
+        if (sides[longest] <= 9 * wanted * wanted || area <= kNextToNothing * finest * finest) {
+            triangles += area / (kEquilateral * wanted * wanted);
+            continue;
+        }
+        const PlanPoint &from = corners[longest], &to = corners[(longest + 1) % 3],
+                        &apex = corners[(longest + 2) % 3], m = middle(from, to);
+        open.push_back({from, m, apex});
+        open.push_back({m, to, apex});
+    }
+    return triangles;
 }
 
 }  // namespace realmodel::meshing

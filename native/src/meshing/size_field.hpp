@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long edges should be at each place.
+// How long edges should be at each place, and what a request asks for.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meshing/check.hpp"
+#include "meshing/region_graph.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::meshing {
@@ -47,10 +48,10 @@ private:
 
     /// An inner node: the first of its four children; a leaf: its number; a node that nobody has
     /// asked for yet: the first of the sources that may count in it, and how many they are.
-    struct Node {
+    struct QuadtreeNode {
         std::int32_t index, count;
     };
-    struct Cell {
+    struct QuadtreeCell {
         double x, y, width;
         std::int32_t depth;
     };
@@ -60,9 +61,9 @@ private:
         std::int32_t leaf;
     };
     double look_up(const PlanPoint& p);
-    void open(std::int32_t node, const Cell& cell);
+    void open(std::int32_t node, const QuadtreeCell& cell);
     void make_leaf(std::int32_t node, const std::array<double, 4>& lengths);
-    std::array<double, 4> corner_lengths(const Cell& cell,
+    std::array<double, 4> corner_lengths(const QuadtreeCell& cell,
                                          std::span<const std::int32_t> sources) const;
     double length_at(const SizeSource& source, double x, double y) const;
 
@@ -70,10 +71,33 @@ private:
     PlanPoint low_{};
     double width_ = 0;
     std::vector<SizeSource> sources_;
-    std::vector<Node> nodes_;
+    std::vector<QuadtreeNode> nodes_;
     std::vector<std::int32_t> candidates_;      // numbers of sources
     std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
     FoundLeaf last_{0, 1, 1, 0};                // none yet
 };
+
+/// How much lengths may differ from place to place, for each unit between them.
+inline constexpr double kGradation = 0.25;
+
+/// The sources of a request's local lengths and densities. `scale` multiplies what densities ask
+/// for. @throws InputError "size" and "density".
+std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRequest& request,
+                                          double edge_length, double scale);
+
+/// About how many edges lie along the sources within a box: no mesh has fewer.
+double pieces_along(std::span<const SizeSource> sources, const PlanPoint& low,
+                    const PlanPoint& high);
+
+/// The longest edge that a request by density allows: four times what the points, evenly spread
+/// over the region, would ask for.
+double longest_by_density(const RegionGraph& graph, const MeshRequest& request);
+
+/// The distinct lengths that a field has over whole areas, where lattices fit: the largest, and
+/// those of local lengths with room around them.
+std::vector<double> lattice_lengths(const MeshRequest& request, SizeField& size);
+
+/// About how many triangles of these sizes fill a region.
+double triangles_in(const RegionGraph& graph, SizeField& size, const Check& check);
 
 }  // namespace realmodel::meshing

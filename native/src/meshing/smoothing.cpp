@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/smoothing.hpp"
-
-#include "meshing/judged_flips.hpp"
-#include "meshing/star_moves.hpp"
-#include "meshing/valences.hpp"
+#include "meshing/improvement.hpp"
 
 namespace realmodel::meshing {
 

@@ -13,7 +13,7 @@ namespace realmodel::shells {
 namespace {
 
 /// One use of an edge, listed with its lower vertex.
-struct Use {
+struct PolygonEdgeUse {
     std::int32_t upper;
     std::int32_t corner;
 };
@@ -59,21 +59,21 @@ void for_each_side(std::span<const std::int32_t> offsets, std::span<const std::i
 PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
                            std::span<const std::int32_t> corners, std::size_t vertices) {
     require_in_range(offsets, corners, vertices);
-    auto uses = bucketize<Use>(vertices, [&](const auto& put) {  // by the lower vertex
-        for_each_side(offsets, corners,
-                      [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
-                          put(index(lower), Use{upper, static_cast<std::int32_t>(corner)});
-                      });
+    auto uses = bucketize<PolygonEdgeUse>(vertices, [&](const auto& put) {  // by the lower vertex
+        for_each_side(
+            offsets, corners, [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
+                put(index(lower), PolygonEdgeUse{upper, static_cast<std::int32_t>(corner)});
+            });
     });
     PolygonEdges found;
     found.edges.reserve(corners.size() / 2 + 1);
     found.of_corner.resize(corners.size());
     for (std::size_t v = 0; v < vertices; ++v) {
-        const std::span<Use> some = uses[v];
+        const std::span<PolygonEdgeUse> some = uses[v];
         const bool sorted = some.size() > kFewUses;
-        if (sorted) std::ranges::stable_sort(some, {}, &Use::upper);
+        if (sorted) std::ranges::stable_sort(some, {}, &PolygonEdgeUse::upper);
         const std::size_t first = found.edges.size();
-        for (const Use& use : some) {
+        for (const PolygonEdgeUse& use : some) {
             std::size_t edge =
                 sorted && found.edges.size() > first ? found.edges.size() - 1 : first;
             while (edge < found.edges.size() && found.edges[edge][1] != use.upper)

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 using Position = std::array<double, 3>;
 
 /// A face of the complex as one side sees it.
-struct Side {
+struct FaceSide {
     std::int32_t face;
     std::int32_t cell;
     bool reversed;  ///< the cell is the face's second
@@ -54,9 +54,9 @@ void require_in_range(const ComplexView& complex, Progress* progress) {
 
 /// The sides of all faces by the block of their cell, in the order of the faces.
 /// @param between_blocks  leave out faces that have one block on both sides
-std::vector<std::vector<Side>> sides_by_block(const ComplexView& complex, bool between_blocks,
-                                              Progress* progress) {
-    std::vector<std::vector<Side>> found(complex.blocks);
+std::vector<std::vector<FaceSide>> sides_by_block(const ComplexView& complex, bool between_blocks,
+                                                  Progress* progress) {
+    std::vector<std::vector<FaceSide>> found(complex.blocks);
     for (std::size_t f = 0; f < complex.face_count(); ++f) {
         poll(progress, f);
         if (between_blocks &&
@@ -102,7 +102,7 @@ private:
 };
 
 /// Adds a face's corners, as numbers of the complex, and its row.
-void add_polygon(const ComplexView& complex, const Side& side, Shell& shell) {
+void add_polygon(const ComplexView& complex, const FaceSide& side, Shell& shell) {
     const auto corners = complex.face(index(side.face));
     if (side.reversed) {
         shell.corners.insert(shell.corners.end(), corners.rbegin(), corners.rend());
@@ -114,9 +114,9 @@ void add_polygon(const ComplexView& complex, const Side& side, Shell& shell) {
     shell.reversed.push_back(side.reversed ? 1 : 0);
 }
 
-Shell begun(const ComplexView& complex, std::span<const Side> sides) {
+Shell begun(const ComplexView& complex, std::span<const FaceSide> sides) {
     std::size_t corners = 0;
-    for (const Side& side : sides)
+    for (const FaceSide& side : sides)
         corners += complex.face(index(side.face)).size();
     if (std::cmp_greater(corners, std::numeric_limits<std::int32_t>::max()))
         throw InputError("too_large", "a block has more than 2^31 corners of faces", -1, {});
@@ -134,11 +134,12 @@ std::array<float, 3> offset_from(const Position& origin, const Position& at) {
             static_cast<float>(at[2] - origin[2])};
 }
 
-Shell block_shell(const ComplexView& complex, std::span<const Side> sides, const Position& origin) {
+Shell block_shell(const ComplexView& complex, std::span<const FaceSide> sides,
+                  const Position& origin) {
     Shell shell = begun(complex, sides);
     if (sides.empty()) return shell;
     Numbering number(complex.vertex_count());
-    for (const Side& side : sides) {
+    for (const FaceSide& side : sides) {
         add_polygon(complex, side, shell);
         for (const std::int32_t v : complex.face(index(side.face)))
             number.use(v);
@@ -180,18 +181,17 @@ void separate(const ComplexView& complex, std::size_t begin, double shrink, cons
                  static_cast<std::int32_t>(std::ranges::lower_bound(used, corner) - used.begin());
 }
 
-Shell shell_of_cells(const ComplexView& complex, std::vector<Side>& sides, double shrink,
+Shell shell_of_cells(const ComplexView& complex, std::vector<FaceSide>& sides, double shrink,
                      const Position& origin, Progress* progress) {
-    std::ranges::stable_sort(sides, {}, &Side::cell);
+    std::ranges::stable_sort(sides, {}, &FaceSide::cell);
     Shell shell = begun(complex, sides);
     shell.coordinates.reserve(shell.corners.capacity() / 3);
     std::vector<std::int32_t> used;
-    for (std::size_t at = 0; at < sides.size();) {
+    for (const auto of_cell : groups_of(sides, &FaceSide::cell)) {
         const std::size_t begin = shell.corners.size();
-        const std::int32_t cell = sides[at].cell;
-        for (; at < sides.size() && sides[at].cell == cell; ++at) {
-            poll(progress, at);
-            add_polygon(complex, sides[at], shell);
+        for (const FaceSide& side : of_cell) {
+            poll(progress, shell.faces.size());
+            add_polygon(complex, side, shell);
         }
         separate(complex, begin, shrink, origin, used, shell);
     }

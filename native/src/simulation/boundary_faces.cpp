@@ -5,14 +5,21 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
+#include "meshing/size_field.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
+#include "simulation/column_heights.hpp"
+#include "spatial/hash_grid.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::simulation {
 
@@ -30,7 +37,7 @@ double length_at(meshing::SizeField& lengths, const Point& p) {
     return lengths.at({p[0], p[1]});
 }
 
-/// Points in grids of cubes, one grid for all spacings from one power of 2 to the next.
+/// Points far enough from one another: one grid for all spacings from one power of 2 to the next.
 class SpacedPoints {
 public:
     /// Whether it was far enough from all before.
@@ -38,39 +45,21 @@ public:
     bool add(const Point& p, double spacing) {
         const int level = std::ilogb(spacing);
         // The spacing of a point that is nearer than this one's differs by less than factor 2.
-        for (auto grid = grids_.lower_bound(level - 1);
-             grid != grids_.end() && grid->first <= level + 1; ++grid)
-            if (is_near(grid->second, cube(p, grid->first), p, spacing)) return false;
-        grids_[level][cube(p, level)].push_back(p);
+        for (auto at = grids_.lower_bound(level - 1); at != grids_.end() && at->first <= level + 1;
+             ++at) {
+            const auto& grid = at->second;
+            if (grid.any(p, spacing, [&](std::size_t i) {
+                    return length(minus(p, grid.points()[i])) < spacing;
+                }))
+                return false;
+        }
+        // cells are as wide as the largest spacing of the next level
+        grids_.try_emplace(level, std::ldexp(1.0, level + 2)).first->second.add(p);
         return true;
     }
 
 private:
-    using Cube = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
-    using Grid = std::map<Cube, std::vector<Point>>;
-
-    static bool is_near(const Grid& grid, const Cube& around, const Point& p, double spacing) {
-        const auto [x, y, z] = around;
-        for (std::int64_t i = x - 1; i <= x + 1; ++i) {
-            for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-                for (std::int64_t k = z - 1; k <= z + 1; ++k) {
-                    const auto found = grid.find({i, j, k});
-                    if (found == grid.end()) continue;
-                    for (const Point& other : found->second)
-                        if (length(minus(p, other)) < spacing) return true;
-                }
-            }
-        }
-        return false;
-    }
-    /// Cubes are as wide as the largest spacing of the next level.
-    static Cube cube(const Point& p, int level) {
-        const auto of = [&](double x) {
-            return static_cast<std::int64_t>(std::floor(std::ldexp(x, -level - 2)));
-        };
-        return {of(p[0]), of(p[1]), of(p[2])};
-    }
-    std::map<int, Grid> grids_;
+    std::map<int, spatial::HashGrid<3>> grids_;
 };
 
 struct KeptFace {
@@ -83,11 +72,11 @@ struct KeptFace {
 };
 
 std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFace>& faces) {
-    struct Use {
+    struct FaceEdgeUse {
         Edge edge;
         std::int32_t face;
     };
-    std::vector<Use> uses;
+    std::vector<FaceEdgeUse> uses;
     std::vector<Point> normals;
     for (const KeptFace& kept : faces) {
         const auto loop = model.face(kept.face);
@@ -100,17 +89,16 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
         normals.push_back(
             times(kept.behind > kept.in_front ? -1 : 1, unit(polygon_normal(loop.size(), at))));
     }
-    std::ranges::sort(uses, {}, [](const Use& use) { return std::pair(use.edge, use.face); });
-    std::vector<Edge> found;
-    for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
-        while (end < uses.size() && uses[end].edge == uses[i].edge)
-            ++end;
-        const std::size_t first = index(uses[i].face), last = index(uses[end - 1].face);
-        if (end - i != 2 || faces[first].patch() != faces[last].patch() ||
+    std::ranges::sort(uses, {},
+                      [](const FaceEdgeUse& use) { return std::pair(use.edge, use.face); });
+    std::vector<Edge> sharp;
+    for (const auto around : groups_of(uses, &FaceEdgeUse::edge)) {
+        const std::size_t first = index(around.front().face), last = index(around.back().face);
+        if (around.size() != 2 || faces[first].patch() != faces[last].patch() ||
             dot(normals[first], normals[last]) < kSharp)
-            found.push_back(uses[i].edge);
+            sharp.push_back(around[0].edge);
     }
-    return found;
+    return sharp;
 }
 
 }  // namespace
@@ -300,6 +288,84 @@ std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
         }
     }
     return found;
+}
+
+namespace {
+
+constexpr double kMostLeaves = 1e7;  ///< of the field, and pieces that its lines are divided into
+constexpr double kAlike = 3;  ///< edge lengths: in a square as wide edges are about alike in length
+
+[[noreturn]] void refuse_lengths() {
+    throw InputError("too_large",
+                     "the local lengths are so short that the mesh would be too large; "
+                     "use longer ones");
+}
+
+}  // namespace
+
+meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& faces,
+                                double edge_length, double tolerance,
+                                std::span<const meshing::LocalLength> sizes) {
+    if (sizes.empty()) return meshing::SizeField(edge_length);
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        if (sizes[i].length < tolerance) {
+            throw InputError("size",
+                             "size " + std::to_string(i) +
+                                 ": its length must not be below the minimum thickness",
+                             -1, {static_cast<std::int64_t>(i)});
+        }
+    }
+    meshing::RegionGraph graph;
+    for (const auto& [a, b] : faces.sharp_edges) {
+        const auto first = static_cast<std::int32_t>(graph.points.size());
+        graph.points.push_back(plan_of(model, a));
+        graph.points.push_back(plan_of(model, b));
+        graph.border.push_back({first, first + 1});
+    }
+    meshing::MeshRequest request;
+    request.sizes.assign(sizes.begin(), sizes.end());
+    std::vector<meshing::SizeSource> sources =
+        meshing::requested_sources(graph, request, edge_length, 1);
+    spatial::PlanBox box = spatial::kNoBox;
+    for (const BoundaryTriangle& t : faces.triangles) {
+        const auto [a, b, c] = t.corners;
+        box = box.united(spatial::box_around(
+            std::array{plan_of(model, a), plan_of(model, b), plan_of(model, c)}));
+    }
+    const meshing::PlanPoint low{box.low_x, box.low_y}, high{box.high_x, box.high_y};
+    if (meshing::pieces_along(sources, low, high) > kMostLeaves) refuse_lengths();
+    return {edge_length, meshing::kGradation, std::move(sources), low, high, kMostLeaves};
+}
+
+double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
+                const std::array<double, 3>& high, double most, Progress* progress) {
+    const double height = high[2] - low[2];
+    if (lengths.is_uniform()) {
+        const double edge = lengths.largest();
+        return (high[0] - low[0]) * (high[1] - low[1]) * height / (edge * edge * edge);
+    }
+    struct Square {
+        double x, y, width;
+    };
+    double cubes = 0;
+    std::vector<Square> open{{low[0], low[1], std::max(high[0] - low[0], high[1] - low[1])}};
+    for (std::size_t count = 0; !open.empty(); ++count) {
+        poll(progress, count);
+        const auto [x, y, width] = open.back();
+        open.pop_back();
+        if (x >= high[0] || y >= high[1]) continue;
+        const double half = width / 2, edge = lengths.at({x + half, y + half});
+        if (width > kAlike * edge) {
+            for (const double right : {0.0, half})
+                for (const double upper : {0.0, half})
+                    open.push_back({x + right, y + upper, half});
+            continue;
+        }
+        const double area = (std::min(x + width, high[0]) - x) * (std::min(y + width, high[1]) - y);
+        cubes += area / (edge * edge) * std::max(1.0, height / edge);
+        if (cubes > most) refuse_lengths();
+    }
+    return cubes;
 }
 
 }  // namespace realmodel::simulation

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The faces of a model that bound its regions, and the edges that a coarser mesh must keep.
+// The faces of a model that bound its regions, the edges that a coarser mesh must keep, and how
+// long the edges of tetrahedra should be.
 #pragma once
 
 #include <array>
@@ -9,7 +10,9 @@
 
 #include "meshing/size_field.hpp"
 #include "realmodel/base/execution.hpp"
+#include "realmodel/base/progress.hpp"
 #include "realmodel/complex.hpp"
+#include "realmodel/meshing/region_mesh.hpp"
 
 namespace realmodel::simulation {
 
@@ -47,5 +50,19 @@ std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
                                        std::span<const std::array<double, 3>> others,
                                        meshing::SizeField& lengths, double share);
+
+/// As mesh_region has them, and its gradation. A size without places means the sharp edges, seen
+/// in plan.
+/// @throws InputError kinds size (items: its number; a length that is below `tolerance`, or no
+/// shorter than `edge_length`), too_large
+meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& faces,
+                                double edge_length, double tolerance,
+                                std::span<const meshing::LocalLength> sizes);
+
+/// About how many cubes with these edges fill a box, of which any part of the plan has one at
+/// least. @throws InputError kind too_large (where edges differ in length, and there are more than
+/// `most`); Cancelled
+double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
+                const std::array<double, 3>& high, double most, Progress* progress);
 
 }  // namespace realmodel::simulation

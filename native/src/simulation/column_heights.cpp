@@ -9,9 +9,9 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
-#include "spatial/point_bins.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::simulation {
 
@@ -227,6 +227,158 @@ void ColumnHeights::copy(std::size_t to, const ColumnHeights& other, std::size_t
     rock_[to] = other.rock_[from];
     std::copy_n(&other.height_[from * stride_], stride_, &height_[to * stride_]);
     std::copy_n(&other.surface_[from * stride_], stride_, &surface_[to * stride_]);
+}
+
+namespace {
+
+/// How much of the way from a to b is free of steps: 1 if all of it is, but for b itself.
+double free_way(const PlanLines& lines, const spatial::BoxTree& step_tree, const PlanPoint& a,
+                const PlanPoint& b) {
+    double free = 1;
+    step_tree.find(spatial::bounding_box(std::array{a, b}), [&](std::int32_t s) {
+        const auto& [p, q] = lines.steps[index(s)];
+        if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) > 0) return;
+        const int from = exact::orient2d(p, q, a), to = exact::orient2d(p, q, b);
+        if (from * to > 0 || (from == 0 && to == 0)) return;
+        const double off = std::abs(twice_area(p, q, a));
+        const double whole = off + std::abs(twice_area(p, q, b));
+        if (whole > 0) free = std::min(free, off / whole);
+    });
+    return free;
+}
+
+PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
+    if (share == 1) return b;
+    return moved(a, share, minus(b, a));
+}
+
+/// Where the model is asked for the heights of each pillar.
+class PillarPositions {
+public:
+    PillarPositions(const PlanLines& lines, const PlanTopology& plan)
+        : plan_(plan),
+          is_beside_(plan.pillar_count(), 0),
+          center_(plan.pillar_count()),
+          free_(plan.pillar_count(), -1) {
+        const spatial::BoxTree step_tree = tree_in_plan(lines.steps);
+        find_beside();
+        for (std::size_t p = 0; p < center_.size(); ++p)
+            center_[p] = node(p);
+        // of the triangles around a pillar the one that is best seen from its node
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            const auto [a, b, c] = plan.corners(t);
+            const PlanPoint middle = middle_of(plan.point(a), plan.point(b), plan.point(c));
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t p = plan.pillar(t, i);
+                if (free_[p] >= 1) continue;
+                const double own =
+                    is_beside_[p] != 0 ? free_way(lines, step_tree, middle, node(p)) : 1;
+                if (own <= free_[p]) continue;
+                free_[p] = own;
+                center_[p] = middle;
+            }
+        }
+    }
+
+    /// At the node, or beside a step or the border as near to it as the way is free.
+    PlanPoint nearest(std::size_t pillar) const {
+        constexpr double kBesideStep = 1 - 1e-9;
+        return is_beside_[pillar] == 0
+                   ? node(pillar)
+                   : between(center_[pillar], node(pillar), free_[pillar] * kBesideStep);
+    }
+    /// Part of the way to there, from the middle of a triangle.
+    PlanPoint farther(std::size_t pillar, double share) const {
+        return between(center_[pillar], node(pillar), std::max(free_[pillar], 0.0) * share);
+    }
+
+private:
+    const PlanPoint& node(std::size_t pillar) const {
+        return plan_.point(plan_.pillar_node(pillar));
+    }
+
+    void find_beside() {
+        std::vector<std::uint8_t> is_beside(plan_.nodes(), 0);
+        for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (plan_.neighbor(t, i) < 0 || plan_.is_inner_step(t, i))
+                    is_beside[index(plan_.corners(t)[i])] =
+                        is_beside[index(plan_.corners(t)[(i + 1) % 3])] = 1;
+            }
+        }
+        for (std::size_t p = 0; p < is_beside_.size(); ++p)
+            is_beside_[p] = is_beside[index(plan_.pillar_node(p))];
+    }
+
+    const PlanTopology& plan_;
+    std::vector<std::uint8_t> is_beside_;  ///< a step or the border
+    std::vector<PlanPoint> center_;        ///< the middle of a triangle at the pillar
+    std::vector<double> free_;             ///< how much of the way from there to the node is
+};
+
+/// What a simplified border added to the region is as beside it.
+template <class IsSettled>
+void copy_from_neighbors(const PlanTopology& plan, const IsSettled& is_settled,
+                         ColumnHeights& columns) {
+    for (bool any = true; any;) {
+        any = false;
+        std::vector<std::pair<std::size_t, std::size_t>> copies;
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t pillar = plan.pillar(t, i);
+                if (is_settled(pillar)) continue;
+                for (std::size_t k = 1; k < 3; ++k) {
+                    const std::size_t other = plan.pillar(t, (i + k) % 3);
+                    if (!is_settled(other)) continue;
+                    copies.emplace_back(pillar, other);
+                    break;
+                }
+            }
+        }
+        for (const auto& [to, from] : copies) {
+            if (is_settled(to)) continue;
+            columns.copy(to, columns, from);
+            any = true;
+        }
+    }
+}
+
+}  // namespace
+
+ColumnHeights pillar_columns(const ComplexView& model, const RockBlocks& blocks,
+                             const PlanLines& lines, const PlanTopology& plan,
+                             const Execution& execution) {
+    const std::size_t count = plan.pillar_count();
+    const PillarPositions positions(lines, plan);
+    std::vector<std::int32_t> rock(count, -1);
+    for (std::size_t t = 0; t < plan.triangles(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i)
+            rock[plan.pillar(t, i)] = plan.rock(t);
+    }
+    std::vector<std::size_t> open(count);
+    std::vector<PlanPoint> asked(count);
+    for (std::size_t p = 0; p < count; ++p) {
+        open[p] = p;
+        asked[p] = positions.nearest(p);
+    }
+    ColumnHeights columns(model, blocks, asked, execution);
+    const auto is_settled = [&](std::size_t p) {
+        return columns.rock(p) == rock[p] && rock[p] >= 0;
+    };
+    // where rounding, or a border that was simplified, leaves nothing: farther from the node
+    for (const double share : {1 - 1e-6, 0.99, 0.9, 0.7, 0.4, 0.0}) {
+        std::erase_if(open, is_settled);
+        if (open.empty()) return columns;
+        asked.clear();
+        for (const std::size_t p : open)
+            asked.push_back(positions.farther(p, share));
+        const ColumnHeights found(model, blocks, asked, execution);
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            if (found.rock(i) == rock[open[i]]) columns.copy(open[i], found, i);
+        }
+    }
+    copy_from_neighbors(plan, is_settled, columns);
+    return columns;
 }
 
 }  // namespace realmodel::simulation

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/meshing/triangulation.hpp"
+#include "simulation/plan_topology.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::simulation {
 
@@ -16,6 +20,12 @@ using meshing::PlanPoint;
 inline PlanPoint plan_of(const ComplexView& model, std::int32_t vertex) {
     const auto p = model.vertex(vertex);
     return {p[0], p[1]};
+}
+
+/// Lines in plan, to be found by their boxes.
+inline spatial::BoxTree tree_in_plan(std::span<const std::array<PlanPoint, 2>> lines) {
+    return spatial::BoxTree(
+        transformed(lines, [](const auto& line) { return spatial::bounding_box(line); }));
 }
 
 /// Which blocks a rock mass has: those from first[rock] to first[rock + 1], oldest first.
@@ -65,5 +75,12 @@ private:
     std::vector<double> height_;
     std::vector<std::int32_t> surface_;
 };
+
+/// What the model has at each pillar. A pillar beside a step or at the border takes the heights
+/// nearest to its node that are on its own side of the steps of the model: lines were simplified,
+/// so the node itself may lie beyond one. Of a pillar without any its rock is -1.
+ColumnHeights pillar_columns(const ComplexView& model, const RockBlocks& blocks,
+                             const PlanLines& lines, const PlanTopology& plan,
+                             const Execution& execution);
 
 }  // namespace realmodel::simulation

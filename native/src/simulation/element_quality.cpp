@@ -4,26 +4,109 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::simulation {
 
 namespace {
 
+/// How far from its center a face is crossed, as checkMesh measures it: 1 is the edge of the face.
+/// 0 where the line alone shows that it is less than kMostSkewness.
+/// @param way  from the center of an element to that of the face
+/// @param line  from there to the other element; at the outside to the plane of the face, upright
+/// @param share  of the length of the line that counts as the size of a smaller face
+double skewness(const ElementFace& face, const Vec3& way, const Vec3& line, double share) {
+    const double ratio = dot(way, face.area) / dot(line, face.area);
+    const Vec3 off = minus(way, times(ratio, line));  // from where the line crosses the face
+    constexpr double kClear = 0.99 * kMostSkewness;
+    if (dot(off, off) <= kClear * kClear * share * share * dot(line, line)) return 0;
+    const double far = length(off);
+    double reach = share * length(line);
+    for (const Vec3& corner : face.corners)
+        reach = std::max(reach, std::abs(dot(off, minus(corner, face.center))) / far);
+    return far / reach;
+}
+
+}  // namespace
+
+double inner_skewness(const ElementFace& face, const Vec3& own, const Vec3& other) {
+    return skewness(face, minus(face.center, own), minus(other, own), 0.2);
+}
+
+double outer_skewness(const ElementFace& face, const Vec3& own) {
+    const Vec3 way = minus(face.center, own);
+    const double share = dot(way, face.area) / dot(face.area, face.area);
+    return skewness(face, way, times(share, face.area), 0.4);
+}
+
+bool is_bad(const ElementFace& face, const ElementBody& own, const ElementBody& other) {
+    const Vec3 line = minus(other.center, own.center), way = minus(face.center, own.center);
+    const double along = dot(line, face.area), size = length(face.area);
+    if (along < kMostLean * size * length(line)) return true;
+    const double before = std::abs(dot(way, face.area)),
+                 behind = std::abs(dot(minus(other.center, face.center), face.area));
+    if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
+    if (std::min(own.volume, other.volume) < kLeastShare * std::max(own.volume, other.volume))
+        return true;
+    return inner_skewness(face, own.center, other.center) > kMostSkewness;
+}
+
+ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
+                      const std::array<double, 2>& high) {
+    const double at_a = high[0] - low[0], at_b = high[1] - low[1], sum = at_a + at_b;
+    ElementFace face{{{{a[0], a[1], low[0]},
+                       {b[0], b[1], low[1]},
+                       {b[0], b[1], high[1]},
+                       {a[0], a[1], high[0]}}},
+                     {(b[1] - a[1]) * sum / 2, -(b[0] - a[0]) * sum / 2, 0},
+                     {}};
+    // of the two triangles at the diagonal from the first corner, the first is as large as at_b
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto& c = face.corners;
+        face.center[k] =
+            (at_b * (c[0][k] + c[1][k] + c[2][k]) + at_a * (c[0][k] + c[2][k] + c[3][k])) /
+            (3 * sum);
+    }
+    return face;
+}
+
+double determinant_of(std::span<const Vec3> areas) {
+    double mean = 0;
+    for (const Vec3& area : areas)
+        mean += length(area);
+    if (!(mean > 0)) return 0;
+    mean /= static_cast<double>(areas.size());
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    for (const Vec3& area : areas) {
+        const double x = area[0] / mean, y = area[1] / mean, z = area[2] / mean;
+        xx += x * x;
+        xy += x * y;
+        xz += x * z;
+        yy += y * y;
+        yz += y * z;
+        zz += z * z;
+    }
+    return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
+                    xz * (xy * yz - yy * xz)) /
+           8;
+}
+
+namespace {
+
 constexpr double kSteepFace = 0.5;       ///< cosine: of 60 degrees
 constexpr double kNoDeterminant = 1e-8;  ///< inner faces in two directions only
 constexpr double kThickEnd = 3;          ///< minimum thicknesses: no block gives up an end as thick
-constexpr double kEasedFace = 0.8;       ///< cosine: flatter faces are not what makes lines lean
-constexpr double kEasedShare = 0.1;
+constexpr double kRelaxedFace = 0.8;     ///< cosine: flatter faces are not what makes lines lean
+constexpr double kRelaxedShare = 0.1;
 
 using Face = ElementFace;
 
 }  // namespace
 
-ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& levels,
+ElementQuality::ElementQuality(const PlanTopology& plan, const PillarLevels& levels,
                                const ColumnFronts& columns, double minimum_thickness,
                                Progress* progress)
     : plan_(plan),
@@ -89,7 +172,7 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
         for (std::size_t i = 0; i < 3; ++i)
             border |= plan_.neighbor(t, i) < 0 ? 1U << i : 0U;
         const std::size_t first = columns_.offset[t], count = columns_.elements(t);
-        const Corners at = corners(t);
+        const ColumnCorners at = corners(t);
         for (std::size_t e = first; e < first + count; ++e) {
             const bool is_first = e == first, is_last = e + 1 == first + count;
             const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
@@ -116,9 +199,9 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
                 if ((independence > kNoDeterminant || (is_first && is_last)) &&
                     divides_blocks(t, i, gone) && rise >= kThickEnd * minimum_thickness_)
                     continue;
-                const PostLevels::Removal removal{plan_.corners(t)[i], gone,
-                                                  upper ? low[i] : high[i]};
-                const auto levels = levels_.levels(plan_.post(t, i));
+                const PillarLevels::Removal removal{plan_.corners(t)[i], gone,
+                                                    upper ? low[i] : high[i]};
+                const auto levels = levels_.levels(plan_.pillar(t, i));
                 if (is_first && is_last) {
                     if (is_narrow[t] != 0) found.push_back(removal);
                 } else if (!is_weak && levels.back() - levels.front() == 2) {
@@ -154,7 +237,7 @@ std::vector<ElementBody> ElementQuality::bodies() const {
     std::vector<ElementBody> made(columns_.fronts.size());
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
-        const Corners at = corners(t);
+        const ColumnCorners at = corners(t);
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t] + columns_.elements(t); ++e)
             made[e] = body(at, e);
     }
@@ -169,7 +252,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
         poll(progress_, t);
         if (columns_.elements(t) == 0) continue;
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
-        const Corners at = corners(t);
+        const ColumnCorners at = corners(t);
         for (std::size_t e = first; e <= end; ++e) {
             const Front& front = columns_.fronts[e];
             Face face{{}, at.flat_area(front), {}};
@@ -177,7 +260,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
                 face.corners[i] = at.at(i % 3, front[i % 3]);
             for (std::size_t k = 0; k < 3; ++k)
                 face.center[k] = (face.corners[0][k] + face.corners[1][k] + face.corners[2][k]) / 3;
-            const Place below{t, e == first ? kNone : e - 1}, above{t, e == end ? kNone : e};
+            const ElementRef below{t, e == first ? kNone : e - 1}, above{t, e == end ? kNone : e};
             if (e == first)
                 visit(face, above, below);
             else
@@ -193,7 +276,8 @@ void ElementQuality::for_faces(const Visit& visit) const {
                 const Face face =
                     side_face(at.plan[i], at.plan[j], {at.z(i, low[i]), at.z(j, low[j])},
                               {at.z(i, high[i]), at.z(j, high[j])});
-                visit(face, Place{t, e}, is_shared ? Place{index(n), beyond} : Place{t, kNone});
+                visit(face, ElementRef{t, e},
+                      is_shared ? ElementRef{index(n), beyond} : ElementRef{t, kNone});
             });
         }
     }
@@ -202,12 +286,12 @@ void ElementQuality::for_faces(const Visit& visit) const {
 ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
     const std::vector<ElementBody> bodies = this->bodies();
     Removals found;
-    const auto give_up = [&](const Place& place, bool upper) {
+    const auto give_up = [&](const ElementRef& place, bool upper) {
         const auto [t, e] = place;
         const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
         if (columns_.elements(t) == 1) {
             // a thick one alone in its column stays: without it its neighbor would be the end
-            const Corners at = corners(t);
+            const ColumnCorners at = corners(t);
             double rise = 0;
             for (std::size_t i = 0; i < 3; ++i)
                 rise = std::max(rise, at.z(i, high[i]) - at.z(i, low[i]));
@@ -218,13 +302,13 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
-        const Corners at = corners(t);
+        const ColumnCorners at = corners(t);
         for (std::size_t e = first; e < end; ++e) {
             if (determinant(at, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
                 give_up({t, e}, gives_upward(t, e));
         }
     }
-    for_faces([&](const Face& face, const Place& own, const Place& other) {
+    for_faces([&](const Face& face, const ElementRef& own, const ElementRef& other) {
         if (other.element == kNone) return;
         const ElementBody &a = bodies[own.element], &b = bodies[other.element];
         if (!is_bad(face, a, b)) return;
@@ -239,8 +323,8 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     return found;
 }
 
-ElementQuality::Skewed ElementQuality::skewed(bool divided) const {
-    Skewed found;
+ElementQuality::SkewedFaces ElementQuality::skewed(bool divided) const {
+    SkewedFaces found;
     if (!divided) {
         find_skewed(*this, {}, found);
     } else {
@@ -286,10 +370,10 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
 /// @param parts  the faces of these elements are looked at; of which `whole` each is a part, if it
 /// is not one itself
 void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
-                                 Skewed& found) const {
+                                 SkewedFaces& found) const {
     const std::vector<ElementBody> of_parts = parts.bodies();
     const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
-    parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
+    parts.for_faces([&](const Face& face, const ElementRef& own, const ElementRef& other) {
         const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
         const Vec3& center = of_parts[own.element].center;
         const double skewness = is_outer
@@ -324,12 +408,13 @@ bool ElementQuality::joins_upward(std::size_t t, std::size_t e) const {
     const bool below = columns_.blocks[e - 1] == columns_.blocks[e],
                above = columns_.blocks[e + 1] == columns_.blocks[e];
     if (below != above) return above;
-    const Corners at = corners(t);
+    const ColumnCorners at = corners(t);
     return body(at, e + 1).volume < body(at, e - 1).volume;
 }
 
-std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t> is_asked) const {
-    std::vector<PostLevels::Move> moves;
+std::vector<PillarLevels::Move> ElementQuality::steep(
+    std::span<const std::uint8_t> is_asked) const {
+    std::vector<PillarLevels::Move> moves;
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         const auto& nodes = plan_.corners(t);
@@ -337,15 +422,15 @@ std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t
                          [&](std::int32_t n) { return is_asked[index(n)] != 0; }))
             continue;
         const std::size_t first = columns_.offset[t];
-        const Corners at = corners(t);
+        const ColumnCorners at = corners(t);
         for (std::size_t e = first; e + 1 < first + columns_.elements(t); ++e) {
-            if (!leans_at(at, e, kEasedFace, true)) continue;
+            if (!leans_at(at, e, kRelaxedFace, true)) continue;
             const Front& face = columns_.fronts[e + 1];
             double mean = 0;
             for (std::size_t i = 0; i < 3; ++i)
                 mean += at.z(i, face[i]) / 3;
             for (std::size_t i = 0; i < 3; ++i)
-                moves.push_back({nodes[i], face[i], kEasedShare * (mean - at.z(i, face[i]))});
+                moves.push_back({nodes[i], face[i], kRelaxedShare * (mean - at.z(i, face[i]))});
         }
     }
     return moves;
@@ -358,15 +443,10 @@ void ElementQuality::add_spare(Removals& last, Removals& found) const {
     std::vector<std::size_t> elements(plan_.triangles());
     for (std::size_t t = 0; t < elements.size(); ++t)
         elements[t] = columns_.elements(t);
-    const auto around = bucketize<std::int32_t>(plan_.nodes(), [&](const auto& put) {
-        for (std::size_t t = 0; t < plan_.triangles(); ++t) {
-            for (const std::int32_t n : plan_.corners(t))
-                put(index(n), static_cast<std::int32_t>(t));
-        }
-    });
+    const auto around = plan_.triangles_at_nodes();
     std::sort(last.begin(), last.end());
     std::int32_t done = -1;
-    for (const PostLevels::Removal& removal : last) {
+    for (const PillarLevels::Removal& removal : last) {
         const auto triangles = around[index(removal.node)];
         if (removal.node == done ||
             std::any_of(triangles.begin(), triangles.end(), [&](std::int32_t t) {
@@ -382,7 +462,7 @@ void ElementQuality::add_spare(Removals& last, Removals& found) const {
 
 /// Whether an element is higher than its triangle is wide: it would only get worse if it became one
 /// with the next.
-bool ElementQuality::is_tall(const Corners& at, std::size_t element) const {
+bool ElementQuality::is_tall(const ColumnCorners& at, std::size_t element) const {
     const ElementBody own = body(at, element);
     const double area = at.flat_area(columns_.fronts[element])[2];
     return own.volume > area * std::sqrt(2 * area);
@@ -391,7 +471,7 @@ bool ElementQuality::is_tall(const Corners& at, std::size_t element) const {
 /// Whether a height is not just one between layers of one block: without it a block would lose
 /// volume.
 bool ElementQuality::divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const {
-    const auto [below, above] = levels_.blocks_at(plan_.post(t, corner), plan_.rock(t), height);
+    const auto [below, above] = levels_.blocks_at(plan_.pillar(t, corner), plan_.rock(t), height);
     return below != above;
 }
 
@@ -405,7 +485,7 @@ std::size_t ElementQuality::moved_corners(std::size_t element) const {
 /// Whether the line between the centers of an element and the next one leans by more than kMostLean
 /// from the direction across the face between them. Asked of faces that are steeper, or flatter,
 /// than an angle of this cosine.
-bool ElementQuality::leans_at(const Corners& at, std::size_t below, double cosine,
+bool ElementQuality::leans_at(const ColumnCorners& at, std::size_t below, double cosine,
                               bool steeper) const {
     const Vec3 area = at.flat_area(columns_.fronts[below + 1]);
     const double across = dot(area, area);
@@ -415,7 +495,7 @@ bool ElementQuality::leans_at(const Corners& at, std::size_t below, double cosin
 }
 
 /// The center of an element's volume: its upright edges weigh as they are long.
-ElementBody ElementQuality::Corners::body(const Front& low, const Front& high) const {
+ElementBody ElementQuality::ColumnCorners::body(const Front& low, const Front& high) const {
     std::array<Vec3, 3> from;
     std::array<double, 3> rise;
     double total = 0;
@@ -444,12 +524,12 @@ ElementBody ElementQuality::Corners::body(const Front& low, const Front& high) c
     return made;
 }
 
-Vec3 ElementQuality::Corners::flat_area(const Front& front) const {
+Vec3 ElementQuality::ColumnCorners::flat_area(const Front& front) const {
     return times(0.5, triangle_normal(at(0, front[0]), at(1, front[1]), at(2, front[2])));
 }
 
-ElementQuality::Corners ElementQuality::corners(std::size_t t) const {
-    Corners at;
+ElementQuality::ColumnCorners ElementQuality::corners(std::size_t t) const {
+    ColumnCorners at;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::int32_t node = plan_.corners(t)[i];
         at.plan[i] = plan_.point(node);
@@ -458,7 +538,7 @@ ElementQuality::Corners ElementQuality::corners(std::size_t t) const {
     return at;
 }
 
-double ElementQuality::determinant(const Corners& at, std::size_t element, bool is_first,
+double ElementQuality::determinant(const ColumnCorners& at, std::size_t element, bool is_first,
                                    bool is_last, unsigned open_sides) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     std::array<Vec3, 5> areas;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What OpenFOAM's checkMesh measures of elements and their faces, and what mends them.
 #pragma once
 
 #include <array>
@@ -7,24 +8,59 @@
 #include <span>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/progress.hpp"
-#include "simulation/column_fronts.hpp"
-#include "simulation/face_quality.hpp"
+#include "simulation/columns.hpp"
+#include "simulation/pillar_levels.hpp"
 #include "simulation/plan_topology.hpp"
-#include "simulation/post_levels.hpp"
 
 namespace realmodel::simulation {
+
+// Its limits, or a little within them.
+inline constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
+inline constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
+inline constexpr double kSkewnessLimit = 4;         ///< without any option
+inline constexpr double kMostSkewness = 3.8;        ///< what is repaired
+inline constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
+inline constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
+
+/// A face of an element, of three or four corners (of three one is twice there).
+struct ElementFace {
+    std::array<Vec3, 4> corners;
+    Vec3 area, center;
+};
+struct ElementBody {
+    Vec3 center;
+    double volume;
+};
+
+/// The side of a column between heights `low` and `high` at points a and b of the plan.
+ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
+                      const std::array<double, 2>& high);
+
+/// How far from its center a face is crossed by the line between the centers of its elements: 1 is
+/// the edge of the face. 0 where it is clearly less than kMostSkewness.
+double inner_skewness(const ElementFace& face, const Vec3& own, const Vec3& other);
+/// The same at the outside, where the line is upright on the face.
+double outer_skewness(const ElementFace& face, const Vec3& own);
+/// Whether checkMesh fails a face between two elements: for the angle of the line between their
+/// centers, where this crosses the face, or their sizes.
+bool is_bad(const ElementFace& face, const ElementBody& own, const ElementBody& other);
+
+/// The determinant of the sum of n n^T over the inner faces of an element, by eight (n: the normal,
+/// as long as the area over the mean area). It is 0 where these face in two directions only.
+double determinant_of(std::span<const Vec3> areas);
 
 /// Finds the elements that solvers do badly with, as OpenFOAM's checkMesh measures it, and what
 /// mends them. Heights are read anew each time; fronts must stay.
 class ElementQuality {
 public:
-    ElementQuality(const PlanTopology& plan, const PostLevels& levels, const ColumnFronts& columns,
-                   double minimum_thickness, Progress* progress);
+    ElementQuality(const PlanTopology& plan, const PillarLevels& levels,
+                   const ColumnFronts& columns, double minimum_thickness, Progress* progress);
 
     double elements() const { return static_cast<double>(columns_.fronts.size()); }
 
-    using Removals = std::vector<PostLevels::Removal>;
+    using Removals = std::vector<PillarLevels::Removal>;
 
     /// Elements with inner faces in too few directions to compute a gradient with (their cell
     /// determinant), and those whose line to the center of the next element hardly crosses the face
@@ -42,7 +78,7 @@ public:
     /// checkMesh allows, and the worst of them. Elements that are too thin for how steep they are
     /// there become one with the next in their columns (`removals`). At top and base they are too
     /// tall instead: `tall` has the blocks of these.
-    struct Skewed {
+    struct SkewedFaces {
         std::size_t faces = 0;
         double most = 0;
         Vec3 place{};
@@ -50,22 +86,22 @@ public:
         Removals removals;
     };
     /// @param divided  whether elements are divided into tetrahedra
-    Skewed skewed(bool divided) const;
+    SkewedFaces skewed(bool divided) const;
 
     /// Of each steep face that the line between the centers of its elements crosses at too small an
     /// angle: by how much its corners would move to make it less steep.
     /// @param is_asked  of each node: triangles without one are passed over
-    std::vector<PostLevels::Move> steep(std::span<const std::uint8_t> is_asked) const;
+    std::vector<PillarLevels::Move> steep(std::span<const std::uint8_t> is_asked) const;
 
 private:
     static constexpr std::size_t kNone = SIZE_MAX;
     /// An element, or what is outside beside a triangle.
-    struct Place {
+    struct ElementRef {
         std::size_t triangle, element;
     };
 
     /// Where the corners of the elements over one triangle are, looked up once for all of them.
-    struct Corners {
+    struct ColumnCorners {
         std::array<Vec2, 3> plan;
         std::array<std::span<const double>, 3> heights;  ///< of each node
 
@@ -79,9 +115,9 @@ private:
         ElementBody body(const Front& low, const Front& high) const;
     };
 
-    Corners corners(std::size_t t) const;
+    ColumnCorners corners(std::size_t t) const;
     std::size_t moved_corners(std::size_t element) const;
-    ElementBody body(const Corners& at, std::size_t element) const {
+    ElementBody body(const ColumnCorners& at, std::size_t element) const {
         return at.body(columns_.fronts[element], columns_.fronts[element + 1]);
     }
     std::vector<ElementBody> bodies() const;
@@ -93,11 +129,11 @@ private:
     void for_faces(const Visit& visit) const;
     ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
     void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
-                     Skewed& found) const;
-    bool leans_at(const Corners& at, std::size_t below, double cosine, bool steeper) const;
-    double determinant(const Corners& at, std::size_t element, bool is_first, bool is_last,
+                     SkewedFaces& found) const;
+    bool leans_at(const ColumnCorners& at, std::size_t below, double cosine, bool steeper) const;
+    double determinant(const ColumnCorners& at, std::size_t element, bool is_first, bool is_last,
                        unsigned open_sides) const;
-    bool is_tall(const Corners& at, std::size_t element) const;
+    bool is_tall(const ColumnCorners& at, std::size_t element) const;
     bool shares_sides(std::size_t t, std::size_t edge) const;
     bool divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const;
     void add_spare(Removals& last, Removals& found) const;
@@ -107,7 +143,7 @@ private:
     void for_sides(std::size_t t, std::size_t edge, const Visit& visit) const;
 
     const PlanTopology& plan_;
-    const PostLevels& levels_;
+    const PillarLevels& levels_;
     const ColumnFronts& columns_;
     const double minimum_thickness_;
     Progress* progress_;

@@ -29,10 +29,6 @@ std::span<const std::int32_t> loop_of(const FaceLoops& faces, std::int64_t face)
     return faces.vertices.subspan(index(begin), index(end - begin));
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::size_t kCells = 2048;  ///< described at a time
 constexpr std::size_t kFaces = 8192;  ///< put in order at a time
 
@@ -49,7 +45,7 @@ public:
             return;
         }
         for (auto at = static_cast<std::uint32_t>(value);; ++at) {
-            Slot& slot = slots_[at % kSlots];
+            ValueSlot& slot = slots_[at % kSlots];
             if (slot.round != round_) {
                 slot = {round_, value};
                 values_.push_back(value);
@@ -68,11 +64,11 @@ public:
 
 private:
     static constexpr std::size_t kSlots = 256, kMost = 64;
-    struct Slot {
+    struct ValueSlot {
         std::uint64_t round = 0;
         std::int32_t value = 0;
     };
-    std::array<Slot, kSlots> slots_;
+    std::array<ValueSlot, kSlots> slots_;
     std::vector<std::int32_t> values_;
     std::uint64_t round_ = 0;
 };
@@ -102,7 +98,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         }
         first_number[from / kCells] = total;
     });
-    made.faces.resize(count_before(first_number));
+    made.faces.resize(exclusive_scan(first_number));
     std::vector<std::vector<std::int64_t>> vertices(first_number.size());
     parallel_ranges(cells, kCells, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         std::int64_t* number = made.faces.data() + first_number[from / kCells];
@@ -128,7 +124,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
     std::vector<std::size_t> first_corner;
     for (const auto& own : vertices)
         first_corner.push_back(own.size());
-    made.vertices.resize(count_before(first_corner));
+    made.vertices.resize(exclusive_scan(first_corner));
     parallel_chunks(vertices.size(), {0, nullptr}, [&](std::size_t chunk) {
         std::copy(vertices[chunk].begin(), vertices[chunk].end(),
                   made.vertices.data() + first_corner[chunk]);

@@ -6,8 +6,6 @@
 // other, so that nothing has to be divided further where such edges come near each other.
 #include "realmodel/simulation/filled_mesh.hpp"
 
-#include "exact/without_mpfr.hpp"
-// after it
 #include "exact/cgal_kernel.hpp"
 // CGAL
 // A table of 32 kB of each thread goes to the heap: a module that is loaded late has room for few
@@ -45,10 +43,8 @@
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
-#include "simulation/corner_tetrahedra.hpp"
-#include "simulation/edge_lengths.hpp"
-#include "simulation/flat_tetrahedra.hpp"
 #include "simulation/outside_faces.hpp"
+#include "simulation/tetrahedra_repair.hpp"
 
 namespace realmodel::simulation {
 
@@ -83,7 +79,7 @@ Point point_of(const std::array<double, 3>& p) {
     throw InputError("nothing", "the edge length is too large for the model");
 }
 
-struct Face {
+struct InterfaceTriangle {
     Kernel::Triangle_3 triangle;
     std::int32_t behind, in_front, surface;
 };
@@ -94,7 +90,7 @@ struct FaceOfTree {
     using Point = Kernel::Point_3;
     using Datum = Kernel::Triangle_3;
     using Datum_reference = const Datum&;
-    using Shared_data = const std::vector<Face>*;
+    using Shared_data = const std::vector<InterfaceTriangle>*;
 
     FaceOfTree() = default;
     FaceOfTree(std::vector<std::size_t>::const_iterator row, Shared_data /*faces*/) : id_(*row) {}
@@ -164,7 +160,7 @@ public:
         double nearest = 2;
         int found = 0;
         for (const std::size_t row : hits_) {
-            const Face& face = faces_[row];
+            const InterfaceTriangle& face = faces_[row];
             const double share = share_at(face, p, above);
             if (share >= nearest) continue;
             nearest = share;
@@ -236,7 +232,7 @@ private:
     }
     /// Where the line through two points meets the plane of a face. One of the points may be
     /// very far away (the center of four points that are nearly in one plane), so from the nearer.
-    static Point meeting(const Face& face, const Point& from, const Point& to) {
+    static Point meeting(const InterfaceTriangle& face, const Point& from, const Point& to) {
         const Kernel::Triangle_3& t = face.triangle;
         const double a = CGAL::volume(t[0], t[1], t[2], from);
         const double b = CGAL::volume(t[0], t[1], t[2], to);
@@ -245,7 +241,7 @@ private:
                                           : to + b / (b - a) * (from - to);
     }
     /// How far the plane of a face is on the way between two points.
-    static double share_at(const Face& face, const Point& from, const Point& to) {
+    static double share_at(const InterfaceTriangle& face, const Point& from, const Point& to) {
         const Kernel::Triangle_3& t = face.triangle;
         const double a = CGAL::volume(t[0], t[1], t[2], from);
         const double b = CGAL::volume(t[0], t[1], t[2], to);
@@ -253,7 +249,7 @@ private:
     }
 
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, FaceOfTree>>;
-    std::vector<Face> faces_;
+    std::vector<InterfaceTriangle> faces_;
     Tree tree_;
     Progress* progress_;
     mutable std::vector<std::size_t> hits_;

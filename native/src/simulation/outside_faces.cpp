@@ -9,17 +9,110 @@
 #include <utility>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
-#include "simulation/corner_tetrahedra.hpp"
-#include "simulation/flat_tetrahedra.hpp"
-#include "simulation/outside_covers.hpp"
+#include "simulation/tetrahedra_repair.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::simulation {
+
+namespace {
+
+// Flatter ones would be under-determined: one of their faces is outside, where checkMesh sees none.
+constexpr double kLeastOfCovers = 0.003;
+
+template <std::size_t N>
+bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
+    return std::ranges::all_of(wanted, [&](std::int32_t v) { return has(corners, v); });
+}
+
+}  // namespace
+
+OutsideCovers::OutsideCovers(FilledMesh& mesh)
+    : mesh_(mesh),
+      tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
+      triangles_at_(rows_at(mesh, mesh.triangles)),
+      tetrahedra_(mesh.tetrahedra),
+      triangles_(mesh.triangles),
+      is_taken_(mesh.tetrahedra.size(), 0) {}
+
+bool OutsideCovers::add(std::span<const std::int32_t> corners, const Vec3& at) {
+    struct OuterTriangle {
+        std::int32_t row, region;
+    };
+    std::vector<OuterTriangle> outer;
+    std::vector<std::int32_t> inner;
+    for (const std::int32_t f : triangles_at_[index(corners[0])]) {
+        if (!has_all(triangles_[index(f)], corners)) continue;
+        const auto [first, second] =
+            elements_beside(tetrahedra_, tetrahedra_at_[index(corners[0])], triangles_[index(f)]);
+        for (const std::int32_t t : {first, second})
+            if (t >= 0 && is_taken_[index(t)] != 0) return false;
+        if (second < 0)
+            outer.push_back({f, mesh_.region[index(first)]});
+        else
+            inner.push_back(f);
+    }
+    // the edges that two of these faces share, and the triangles inside that end there
+    struct SharedEdge {
+        std::array<std::int32_t, 2> edge;
+        std::vector<std::int32_t> regions, inside;
+    };
+    std::vector<SharedEdge> hinges;
+    for (const OuterTriangle& face : outer) {
+        const auto& own = triangles_[index(face.row)];
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (std::ranges::find(corners, own[i]) != corners.end()) continue;
+            const auto edge = unordered(own[(i + 1) % 3], own[(i + 2) % 3]);
+            auto hinge = std::ranges::find(hinges, edge, &SharedEdge::edge);
+            if (hinge == hinges.end()) hinge = hinges.insert(hinge, {edge, {}, {}});
+            hinge->regions.push_back(face.region);
+        }
+    }
+    const auto has_two = [](const SharedEdge& hinge) { return hinge.regions.size() == 2; };
+    if (!std::ranges::all_of(hinges, has_two)) return false;
+    for (const std::int32_t f : inner)
+        for (SharedEdge& hinge : hinges)
+            if (has_all(triangles_[index(f)], hinge.edge)) hinge.inside.push_back(f);
+
+    const std::int32_t added = checked_number(mesh_.points.size(), "points");
+    mesh_.points.push_back(at);
+    const auto covered = [&](const OuterTriangle& face) {
+        const auto& [a, b, c] = triangles_[index(face.row)];
+        return std::array{a, b, c, added};
+    };
+    const auto is_good = [&](const OuterTriangle& face) {
+        return six_volumes(mesh_, covered(face)) > 0 &&
+               roundness(mesh_, covered(face)) >= kLeastOfCovers;
+    };
+    if (!std::ranges::all_of(outer, is_good)) {
+        mesh_.points.pop_back();
+        return false;
+    }
+    for (const std::int32_t v : corners)
+        for (const std::int32_t t : tetrahedra_at_[index(v)])
+            is_taken_[index(t)] = 1;
+    for (const OuterTriangle& face : outer) {
+        mesh_.tetrahedra.push_back(covered(face));
+        mesh_.region.push_back(face.region);
+        for (const std::int32_t v : corners.subspan(1)) {
+            mesh_.triangles.push_back(with(triangles_[index(face.row)], v, added));
+            mesh_.surface.push_back(mesh_.surface[index(face.row)]);
+        }
+        mesh_.triangles[index(face.row)] = with(triangles_[index(face.row)], corners[0], added);
+    }
+    for (const SharedEdge& hinge : hinges) {
+        // A boundary, or a kept surface within a region. A region that only touches the outside
+        // along the edge is not between the new elements.
+        if (hinge.regions[0] == hinge.regions[1] && hinge.inside.size() != 1) continue;
+        mesh_.triangles.push_back({hinge.edge[0], hinge.edge[1], added});
+        mesh_.surface.push_back(mesh_.surface[index(hinge.inside[0])]);
+    }
+    return true;
+}
 
 namespace {
 
@@ -57,7 +150,7 @@ Vec3 nearest_on_triangle(const std::array<Vec3, 3>& t, const Vec3& p) {
 }
 
 /// A patch of the outside that a corner is near.
-struct Near {
+struct NearPatch {
     std::int32_t patch;
     double distance;
 };
@@ -69,7 +162,7 @@ public:
         : reach_(reach) {
         for (const BoundaryTriangle& t : triangles) {
             if (t.behind != 0 && t.in_front != 0) continue;
-            Triangle own{{}, {}, t.surface};
+            OutsideTriangle own{{}, {}, t.surface};
             for (std::size_t i = 0; i < 3; ++i) {
                 own.at[i] = model.vertex(t.corners[i]);
                 for (const double x : own.at[i])
@@ -82,7 +175,7 @@ public:
         }
         find_patches();
         std::vector<spatial::Box> boxes;
-        for (const Triangle& t : triangles_)
+        for (const OutsideTriangle& t : triangles_)
             boxes.push_back(spatial::bounding_box(t.at));
         tree_ = spatial::BoxTree(std::move(boxes));
         boxes.clear();
@@ -95,14 +188,17 @@ public:
     std::int32_t surface(std::int32_t patch) const { return triangles_[index(patch)].surface; }
 
     /// The patches within reach of a point, by number.
-    std::vector<Near> patches_near(const Vec3& p) const {
-        std::vector<Near> found;
+    std::vector<NearPatch> patches_near(const Vec3& p) const {
+        std::vector<NearPatch> found;
         tree_.find(around(p), [&](std::int32_t t) {
             const double far = length(minus(nearest_on_triangle(triangles_[index(t)].at, p), p));
             if (far <= reach_) found.push_back({patch_[index(t)], far});
         });
-        std::ranges::sort(found, {}, [](const Near& n) { return std::pair(n.patch, n.distance); });
-        const auto is_same = [](const Near& a, const Near& b) { return a.patch == b.patch; };
+        std::ranges::sort(found, {},
+                          [](const NearPatch& n) { return std::pair(n.patch, n.distance); });
+        const auto is_same = [](const NearPatch& a, const NearPatch& b) {
+            return a.patch == b.patch;
+        };
         found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
         return found;
     }
@@ -139,14 +235,14 @@ public:
             }
         });
         std::ranges::sort(found);
-        std::vector<Vec3> places = mapped(found, &std::pair<double, Vec3>::second);
+        std::vector<Vec3> places = transformed(found, &std::pair<double, Vec3>::second);
         places.erase(std::unique(places.begin(), places.end()), places.end());
         if (places.size() > kMostPlaces) places.resize(kMostPlaces);
         return places;
     }
 
 private:
-    struct Triangle {
+    struct OutsideTriangle {
         std::array<Vec3, 3> at;
         Vec3 normal;  ///< outward
         std::int32_t surface;
@@ -155,33 +251,36 @@ private:
         std::array<Vec3, 2> ends;
         std::array<std::int32_t, 2> patches;
     };
-    struct Use {
+    struct OutsideEdgeUse {
         std::array<std::int32_t, 2> edge;
         std::int32_t triangle;
     };
 
     void find_patches() {
-        std::vector<Use> uses;
+        std::vector<OutsideEdgeUse> uses;
         for (std::size_t t = 0; t < corners_.size(); ++t) {
             for (std::size_t i = 0; i < 3; ++i) {
                 uses.push_back({unordered(corners_[t][i], corners_[t][(i + 1) % 3]),
                                 static_cast<std::int32_t>(t)});
             }
         }
-        std::ranges::sort(uses, {}, [](const Use& u) { return std::pair(u.edge, u.triangle); });
+        std::ranges::sort(uses, {},
+                          [](const OutsideEdgeUse& u) { return std::pair(u.edge, u.triangle); });
         DisjointSets sets(triangles_.size());
         const auto each_pair = [&](const auto& visit) {
-            for (std::size_t i = 1; i < uses.size(); ++i)
-                if (uses[i].edge == uses[i - 1].edge) visit(uses[i - 1], uses[i]);
+            for (const auto around : groups_of(uses, &OutsideEdgeUse::edge))
+                for (std::size_t i = 1; i < around.size(); ++i)
+                    visit(around[i - 1], around[i]);
         };
-        each_pair([&](const Use& a, const Use& b) {
-            const Triangle &s = triangles_[index(a.triangle)], &t = triangles_[index(b.triangle)];
+        each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
+            const OutsideTriangle &s = triangles_[index(a.triangle)],
+                                  &t = triangles_[index(b.triangle)];
             if (s.surface == t.surface && dot(s.normal, t.normal) >= kSamePatch)
                 sets.join(a.triangle, b.triangle);
         });
         for (std::size_t t = 0; t < triangles_.size(); ++t)
             patch_.push_back(sets.find(static_cast<std::int32_t>(t)));
-        each_pair([&](const Use& a, const Use& b) {
+        each_pair([&](const OutsideEdgeUse& a, const OutsideEdgeUse& b) {
             const std::array patches{patch_[index(a.triangle)], patch_[index(b.triangle)]};
             if (patches[0] == patches[1]) return;
             const auto& corners = corners_[index(a.triangle)];
@@ -201,7 +300,7 @@ private:
 
     const double reach_;
     double rounding_ = 0;
-    std::vector<Triangle> triangles_;
+    std::vector<OutsideTriangle> triangles_;
     std::vector<std::array<std::int32_t, 3>> corners_;
     std::vector<std::int32_t> patch_;  ///< of each triangle: the least triangle of its patch
     std::vector<Crease> creases_;
@@ -216,9 +315,11 @@ public:
           around_(rows_at(mesh, mesh.tetrahedra)),
           near_(mesh.points.size()) {
         for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-            if (!is_outside(mesh.triangles[f])) continue;
+            const auto& corners = mesh.triangles[f];
+            if (elements_beside(mesh.tetrahedra, around_[index(corners[0])], corners)[1] >= 0)
+                continue;
             faces_.push_back(f);
-            for (const std::int32_t v : mesh.triangles[f])
+            for (const std::int32_t v : corners)
                 if (near_[index(v)].empty()) look_around(v);
         }
     }
@@ -254,8 +355,9 @@ public:
             for (const std::int32_t v : corners) {
                 const auto& own = near_[index(v)];
                 if (is_on(own, *patch)) continue;
-                const auto other = std::ranges::find_if(
-                    own, [&](const Near& near) { return near.distance <= outside_.rounding(); });
+                const auto other = std::ranges::find_if(own, [&](const NearPatch& near) {
+                    return near.distance <= outside_.rounding();
+                });
                 if (other == own.end()) {
                     any |= cover(covers, v, *patch);
                     continue;
@@ -283,23 +385,15 @@ private:
             [&](const Vec3& place) { return covers.add(std::array{v}, place); });
     }
 
-    bool is_outside(const std::array<std::int32_t, 3>& face) const {
-        const auto own = around_[index(face[0])];
-        return std::ranges::count_if(own, [&](std::int32_t t) {
-                   const auto& corners = mesh_.tetrahedra[index(t)];
-                   return std::ranges::find(corners, face[1]) != corners.end() &&
-                          std::ranges::find(corners, face[2]) != corners.end();
-               }) == 1;
-    }
     void look_around(std::int32_t v) {
         near_[index(v)] = outside_.patches_near(mesh_.points[index(v)]);
     }
     /// HUGE_VAL beyond reach.
-    static double distance(const std::vector<Near>& near, std::int32_t patch) {
-        const auto at = std::ranges::lower_bound(near, patch, {}, &Near::patch);
+    static double distance(const std::vector<NearPatch>& near, std::int32_t patch) {
+        const auto at = std::ranges::lower_bound(near, patch, {}, &NearPatch::patch);
         return at != near.end() && at->patch == patch ? at->distance : HUGE_VAL;
     }
-    bool is_on(const std::vector<Near>& near, std::int32_t patch) const {
+    bool is_on(const std::vector<NearPatch>& near, std::int32_t patch) const {
         return distance(near, patch) <= outside_.rounding();
     }
 
@@ -311,7 +405,7 @@ private:
         const Vec3 middle = middle_of(at(0), at(1), at(2));
         std::optional<std::int32_t> best;
         double least = HUGE_VAL;
-        for (const Near& near : near_[index(face[0])]) {
+        for (const NearPatch& near : near_[index(face[0])]) {
             double far = near.distance;
             for (const std::int32_t v : face)
                 far = std::max(far, distance(near_[index(v)], near.patch));
@@ -328,38 +422,29 @@ private:
     bool move(std::int32_t v, std::int32_t patch) {
         Vec3& at = mesh_.points[index(v)];
         const Vec3 from = at;
-        const double before = least_around(v);
+        const double before = least_roundness(mesh_, around_[index(v)]);
         for (const Vec3& place : outside_.places_on(patch, from)) {
-            const auto there = outside_.patches_near(place);
-            const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const Near& own) {
-                return own.distance > outside_.rounding() || is_on(there, own.patch);
+            const auto patches = outside_.patches_near(place);
+            const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const NearPatch& own) {
+                return own.distance > outside_.rounding() || is_on(patches, own.patch);
             });
             if (!stays_on) continue;
             at = place;
-            const double after = least_around(v);
+            const double after = least_roundness(mesh_, around_[index(v)]);
             if (after > 0 && after >= std::min(before, kLeastRoundness)) {
-                near_[index(v)] = there;
+                near_[index(v)] = patches;
                 return true;
             }
         }
         at = from;
         return false;
     }
-    double least_around(std::int32_t v) const {
-        double least = 1;
-        for (const std::int32_t t : around_[index(v)]) {
-            const auto& corners = mesh_.tetrahedra[index(t)];
-            if (!(six_volumes(mesh_, corners) > 0)) return 0;
-            least = std::min(least, roundness(mesh_, corners));
-        }
-        return least;
-    }
 
     FilledMesh& mesh_;
     const Outside& outside_;
     const Buckets<std::int32_t> around_;
-    std::vector<std::vector<Near>> near_;  ///< of each corner outside, by patch
-    std::vector<std::size_t> faces_;       ///< outside
+    std::vector<std::vector<NearPatch>> near_;  ///< of each corner outside, by patch
+    std::vector<std::size_t> faces_;            ///< outside
 };
 
 }  // namespace

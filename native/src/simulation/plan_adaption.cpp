@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/plan_adaption.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,9 +7,9 @@
 
 #include "base/counting_sort.hpp"
 #include "base/vectors.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/elementary.hpp"
-#include "simulation/posts.hpp"
+#include "simulation/plan_topology.hpp"
 
 namespace realmodel::simulation {
 
@@ -58,7 +56,7 @@ private:
     const PlanPoint& at(std::int32_t node) const { return mesh_.points[index(node)]; }
     double angle_of(const Triangle& t) const { return least_angle(at(t[0]), at(t[1]), at(t[2])); }
     bool is_divided(std::int32_t node) const { return is_divided_[index(node)] != 0; }
-    void find_divided() { is_divided_ = Posts(mesh_, edges_).is_divided; }
+    void find_divided() { is_divided_ = Pillars(mesh_, edges_).is_divided; }
     /// Whether an edge is neither on a line nor at the border.
     bool is_free(HalfEdge edge) const {
         return !mesh_.is_border(edge) && edges_.segment(mesh_.from(edge), mesh_.to(edge)) < 0;
@@ -366,7 +364,7 @@ private:
 
     meshing::FlatMesh& mesh_;
     LineEdges& edges_;
-    std::vector<std::uint8_t> is_divided_;  ///< of each node: Posts
+    std::vector<std::uint8_t> is_divided_;  ///< of each node: Pillars
 };
 
 }  // namespace

@@ -9,16 +9,16 @@
 #include <map>
 #include <numbers>
 
+#include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
+#include "meshing/size_field.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
 #include "simulation/column_heights.hpp"
-#include "simulation/line_anchors.hpp"
 #include "simulation/traces.hpp"
 
 namespace realmodel::simulation {
@@ -26,7 +26,6 @@ namespace realmodel::simulation {
 namespace {
 
 constexpr double kAnchorSpacing = 0.8;  ///< of an edge length
-constexpr double kGradation = 0.25;     ///< as in realmodel/meshing
 
 double distance_to_line(const PlanPoint& p, std::span<const PlanPoint> line) {
     double nearest = HUGE_VAL;
@@ -43,7 +42,7 @@ double local_length(const PlanPoint& p, double edge_length, std::span<const Line
     for (const LineLength& own : lengths) {
         const double beyond =
             own.line.empty() ? 0 : std::max(0.0, distance_to_line(p, own.line) - own.distance);
-        least = std::min(least, own.length + kGradation * beyond);
+        least = std::min(least, own.length + meshing::kGradation * beyond);
     }
     return least;
 }

@@ -24,6 +24,8 @@ struct Box {
             high[k] = std::max(high[k], p[k]);
         }
     }
+    /// Of a position in plan, at height 0.
+    void include(const std::array<double, 2>& p) { include(Position{p[0], p[1], 0}); }
     void include(const Box& other) {
         for (std::size_t k = 0; k < 3; ++k) {
             low[k] = std::min(low[k], other.low[k]);
@@ -74,7 +76,7 @@ public:
     explicit BoxTree(std::vector<Box> boxes, const Execution& execution = {1, nullptr}) {
         if (boxes.empty()) return;
         // the boxes and their middles lie together while they are put in order
-        std::vector<Item> items(boxes.size());
+        std::vector<BoxMiddle> items(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             for (std::size_t k = 0; k < 3; ++k)
                 items[i].twice_middle[k] = boxes[i].low[k] + boxes[i].high[k];
@@ -108,13 +110,13 @@ public:
     /// order, the pairs of a first box one after another.
     template <class Visit>
     void find_pairs(std::size_t first_leaf, std::size_t end_leaf, const Visit& visit) const {
-        constexpr std::size_t kTogether = 8;  // leaves that share a search
+        constexpr std::size_t kLeavesOfSearch = 8;  // leaves that share a search
         std::vector<const Node*> near_all, near;
         for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
             const Node& own = nodes_[leaves_[leaf]];
-            if ((leaf - first_leaf) % kTogether == 0) {
+            if ((leaf - first_leaf) % kLeavesOfSearch == 0) {
                 Box all;
-                for (std::size_t i = leaf; i < std::min(end_leaf, leaf + kTogether); ++i)
+                for (std::size_t i = leaf; i < std::min(end_leaf, leaf + kLeavesOfSearch); ++i)
                     all.include(nodes_[leaves_[i]].box);
                 near_all.clear();
                 each_leaf(
@@ -154,13 +156,13 @@ private:
         std::size_t second = 0;  ///< the first child follows; 0: a leaf
     };
 
-    struct Item {
+    struct BoxMiddle {
         Box::Position twice_middle;
         std::int32_t number;
     };
 
     /// What a node has below it: boxes in order, and leaves.
-    struct Part {
+    struct Subtree {
         std::size_t node, begin, end, leaf;
     };
 
@@ -174,12 +176,12 @@ private:
         return boxes >> halvings == kLeaf ? parts + boxes % parts : parts;
     }
     /// Builds large trees on several threads: the parts of one level at once, then what is below.
-    void build_all(std::vector<Item>& items, const std::vector<Box>& boxes,
+    void build_all(std::vector<BoxMiddle>& items, const std::vector<Box>& boxes,
                    const Execution& execution) {
-        constexpr std::size_t kParts = 1 << 5, kLeast = 1 << 11;
-        std::vector<Part> parts{{0, 0, items.size(), 0}}, above;
-        while (parts.size() < kParts && items.size() / parts.size() > 2 * kLeast) {
-            std::vector<Part> halves(2 * parts.size());
+        constexpr std::size_t kParts = 1 << 5, kMinBoxes = 1 << 11;
+        std::vector<Subtree> parts{{0, 0, items.size(), 0}}, above;
+        while (parts.size() < kParts && items.size() / parts.size() > 2 * kMinBoxes) {
+            std::vector<Subtree> halves(2 * parts.size());
             parallel_chunks(
                 parts.size(), execution,
                 [&](std::size_t i) {
@@ -199,9 +201,9 @@ private:
         for (auto part = above.rbegin(); part != above.rend(); ++part)
             join_boxes(part->node);
     }
-    void build(std::vector<Item>& items, const std::vector<Box>& boxes, const Part& part) {
+    void build(std::vector<BoxMiddle>& items, const std::vector<Box>& boxes, const Subtree& part) {
         if (part.end - part.begin > kLeaf) {
-            for (const Part& half : halve(items, part))
+            for (const Subtree& half : halve(items, part))
                 build(items, boxes, half);
             join_boxes(part.node);
             return;
@@ -215,7 +217,7 @@ private:
         nodes_[part.node] = {whole, part.begin, part.end};
         leaves_[part.leaf] = part.node;
     }
-    std::array<Part, 2> halve(std::vector<Item>& items, const Part& part) {
+    std::array<Subtree, 2> halve(std::vector<BoxMiddle>& items, const Subtree& part) {
         const auto [number, begin, end, leaf] = part;
         Box middles;
         for (std::size_t i = begin; i < end; ++i)
@@ -228,13 +230,15 @@ private:
         const auto at = [&items](std::size_t i) {
             return items.begin() + static_cast<std::ptrdiff_t>(i);
         };
-        std::nth_element(at(begin), at(middle), at(end), [axis](const Item& a, const Item& b) {
-            const double p = a.twice_middle[axis], q = b.twice_middle[axis];
-            return p != q ? p < q : a.number < b.number;
-        });
+        std::nth_element(at(begin), at(middle), at(end),
+                         [axis](const BoxMiddle& a, const BoxMiddle& b) {
+                             const double p = a.twice_middle[axis], q = b.twice_middle[axis];
+                             return p != q ? p < q : a.number < b.number;
+                         });
         const std::size_t leaves = leaves_of(middle - begin), second = number + 2 * leaves;
         nodes_[number] = {{}, begin, end, second};
-        return {Part{number + 1, begin, middle, leaf}, Part{second, middle, end, leaf + leaves}};
+        return {Subtree{number + 1, begin, middle, leaf},
+                Subtree{second, middle, end, leaf + leaves}};
     }
     void join_boxes(std::size_t number) {
         Node& node = nodes_[number];

@@ -8,7 +8,7 @@
 
 #include "base/index.hpp"
 #include "base/vectors.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::spatial {
@@ -62,7 +62,8 @@ std::array<PlanPosition, 3> MeshLocator::corners_of(const Triangle& triangle) co
             vertices_[index(triangle[2])]};
 }
 
-std::optional<MeshLocator::Found> MeshLocator::find(const PlanPosition& position) const {
+std::optional<MeshLocator::BarycentricPosition> MeshLocator::find(
+    const PlanPosition& position) const {
     if (!tiles_.frame().contains(position)) return std::nullopt;
     for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
         const std::array<PlanPosition, 3> corner = corners_of(triangles_[index(t)]);
@@ -72,7 +73,7 @@ std::optional<MeshLocator::Found> MeshLocator::find(const PlanPosition& position
             exact::orient2d(corner[2], corner[0], position) == -way) {
             continue;
         }
-        Found found{t, {}};
+        BarycentricPosition found{t, {}};
         double sum = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const double area = twice_area(position, corner[(i + 1) % 3], corner[(i + 2) % 3]);

@@ -20,7 +20,7 @@ public:
     using Triangle = std::array<std::int32_t, 3>;
 
     /// A position in a triangle: weights of its corners, not negative, of sum 1.
-    struct Found {
+    struct BarycentricPosition {
         std::int32_t triangle;
         std::array<double, 3> weights;
     };
@@ -34,7 +34,7 @@ public:
     MeshLocator(std::span<const PlanPosition> vertices, std::span<const Triangle> triangles,
                 const PlanBox& asked = kEverywhere);
 
-    std::optional<Found> find(const PlanPosition& position) const;
+    std::optional<BarycentricPosition> find(const PlanPosition& position) const;
 
 private:
     std::array<PlanPosition, 3> corners_of(const Triangle& triangle) const;

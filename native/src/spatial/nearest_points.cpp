@@ -2,10 +2,13 @@
 #include "spatial/nearest_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nanoflann.hpp>
+#include <numeric>
 
 #include "base/index.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::spatial {
 
@@ -131,6 +134,163 @@ bool NearestPoints::within(const PlanPosition& position, double distance, std::s
     NearEnough near(found, squared + 1e-9 * squared + std::numeric_limits<double>::min(), most);
     if (size() > 0) tree_->index.findNeighbors(near, position.data(), SearchParameters());
     return found.size() <= most;
+}
+
+namespace {
+
+constexpr double kWidest = 0.3;  // radius of a block, in distances to the last point wanted
+constexpr std::size_t kCandidatesOfPoint = 4;  // candidates for each point wanted
+
+}  // namespace
+
+bool BlockNeighbors::prepare(std::span<const PlanPosition> nodes) {
+    const PlanBox box = box_around(nodes);
+    const PlanPosition center{0.5 * (box.low_x + box.high_x), 0.5 * (box.low_y + box.high_y)};
+    tree_.find(center, count_, found_);
+    if (nodes.size() > 1) {
+        const double wanted = std::sqrt(found_.back().squared_distance);
+        const double radius = elementary::hypot(box.high_x - center[0], box.high_y - center[1]);
+        if (radius > kWidest * wanted) return false;
+        // The nearest of a node lie within wanted + radius of it.
+        const double reach = (wanted + 2 * radius) * (1 + 1e-9);
+        if (!tree_.within(center, reach, kCandidatesOfPoint * count_, found_)) return false;
+    }
+    candidates_.clear();
+    for (const Neighbor& neighbor : found_)
+        candidates_.push_back(neighbor.point);
+    std::sort(candidates_.begin(), candidates_.end());
+    x_.clear();
+    y_.clear();
+    for (const std::int32_t point : candidates_) {
+        const auto [x, y] = tree_.point(point);
+        x_.push_back(x);
+        y_.push_back(y);
+    }
+    squared_.resize(candidates_.size());
+    keys_.resize(count_);
+    order_.resize(candidates_.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    return true;
+}
+
+std::span<const std::int32_t> BlockNeighbors::nearest(const PlanPosition& node) {
+    const std::size_t count = candidates_.size();
+#pragma omp simd
+    for (std::size_t i = 0; i < count; ++i) {
+        const double dx = node[0] - x_[i], dy = node[1] - y_[i];
+        squared_[i] = dx * dx + dy * dy;
+    }
+    // Insertion into the order of the node before, which is nearly that of this one. Only the first
+    // count_ are in order.
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t candidate = order_[i];
+        const double key = squared_[static_cast<std::size_t>(candidate)];
+        const auto after = [&](std::size_t k) {
+            return keys_[k] > key || (keys_[k] == key && order_[k] > candidate);
+        };
+        std::size_t at = i;
+        if (i >= count_) {
+            if (!after(count_ - 1)) continue;
+            at = count_ - 1;
+            order_[i] = order_[at];
+        }
+        for (; at > 0 && after(at - 1); --at) {
+            keys_[at] = keys_[at - 1];
+            order_[at] = order_[at - 1];
+        }
+        keys_[at] = key;
+        order_[at] = candidate;
+    }
+    return {order_.data(), count_};
+}
+
+namespace {
+
+constexpr std::size_t kPointsInTile = 2;
+
+std::size_t octant(double dx, double dy) {
+    return (dx < 0 ? 4U : 0U) + (dy < 0 ? 2U : 0U) + (std::abs(dx) < std::abs(dy) ? 1U : 0U);
+}
+
+}  // namespace
+
+OctantSearch::OctantSearch(std::span<const PlanPosition> points, const Wanted& wanted)
+    : points_(points),
+      wanted_(wanted),
+      tiles_(box_around(points), points.size() / kPointsInTile),
+      points_at_(bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
+          for (std::size_t i = 0; i < points.size(); ++i)
+              put(tiles_.tile_at(points[i]), static_cast<std::int32_t>(i));
+      })) {}
+
+void OctantSearch::visit(std::size_t tile, const PlanPosition& position, std::int32_t left_out) {
+    for (const std::int32_t point : points_at_[tile]) {
+        const PlanPosition& there = points_[index(point)];
+        const double dx = there[0] - position[0], dy = there[1] - position[1];
+        const Neighbor here{dx * dx + dy * dy, point};
+        seen_.push_back(here);
+        if (here.point == left_out || here.squared_distance > wanted_.squared_radius) continue;
+        auto& taken = taken_[octant(dx, dy)];
+        if (taken.size() == wanted_.in_octant && taken.back() < here) continue;
+        if (taken.size() == wanted_.in_octant) taken.pop_back();
+        taken.insert(std::upper_bound(taken.begin(), taken.end(), here), here);
+    }
+}
+
+bool OctantSearch::complete(double squared_distance) const {
+    if (squared_distance > wanted_.squared_radius) return true;
+    const auto within = [&](const Neighbor& n) { return n.squared_distance <= squared_distance; };
+    std::size_t taken = 0;
+    for (const auto& octant : taken_)
+        taken += static_cast<std::size_t>(std::count_if(octant.begin(), octant.end(), within));
+    if (taken >= wanted_.in_all) return true;
+    return seen_.size() >= wanted_.looked_at &&
+           static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), within)) >=
+               wanted_.looked_at;
+}
+
+void OctantSearch::find(const PlanPosition& position, std::int32_t left_out,
+                        std::vector<Neighbor>& found) {
+    seen_.clear();
+    for (auto& octant : taken_)
+        octant.clear();
+    const PlanBox& frame = tiles_.frame();
+    const auto columns = static_cast<std::int32_t>(tiles_.columns());
+    const auto rows = static_cast<std::int32_t>(tiles_.rows());
+    const std::int32_t column = tiles_.column(position[0]), row = tiles_.row(position[1]);
+    for (std::int32_t ring = 0;; ++ring) {
+        const TileSpan span{column - ring, column + ring, row - ring, row + ring};
+        for (std::int32_t r = std::max(span.low, 0); r <= std::min(span.high, rows - 1); ++r) {
+            const bool is_whole = r == span.low || r == span.high;
+            const std::int32_t stride = is_whole ? 1 : 2 * ring;
+            for (std::int32_t c = span.left; c <= span.right; c += stride) {
+                if (c >= 0 && c < columns) visit(tiles_.tile(c, r), position, left_out);
+            }
+        }
+        // What was not looked at lies beyond a side that is not the frame's; a little less for
+        // rounding.
+        double reach = std::numeric_limits<double>::infinity();
+        const auto side = [&](double at, double low, double step, std::int32_t from,
+                              std::int32_t to, std::int32_t count) {
+            if (from > 0) reach = std::min(reach, at - (low + from * step) - 1e-9 * step);
+            if (to < count - 1) reach = std::min(reach, low + (to + 1) * step - at - 1e-9 * step);
+        };
+        side(position[0], frame.low_x, tiles_.step_x(), span.left, span.right, columns);
+        side(position[1], frame.low_y, tiles_.step_y(), span.low, span.high, rows);
+        if (std::isinf(reach)) break;
+        reach = std::max(0.0, reach);
+        if (complete(reach * reach)) break;
+    }
+    found.clear();
+    for (const auto& octant : taken_)
+        found.insert(found.end(), octant.begin(), octant.end());
+    std::sort(found.begin(), found.end());
+    if (seen_.size() > wanted_.looked_at) {
+        const auto last_one = seen_.begin() + static_cast<std::ptrdiff_t>(wanted_.looked_at - 1);
+        std::nth_element(seen_.begin(), last_one, seen_.end());
+        found.erase(std::upper_bound(found.begin(), found.end(), *last_one), found.end());
+    }
+    if (found.size() > wanted_.in_all) found.resize(wanted_.in_all);
 }
 
 }  // namespace realmodel::spatial

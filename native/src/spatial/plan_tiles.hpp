@@ -7,6 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
+
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 
 namespace realmodel::spatial {
 
@@ -101,11 +105,8 @@ public:
     template <class Visit>
     void for_each_center_in(const std::array<PlanPosition, 3>& triangle, const Visit& visit) const;
 
-    std::int32_t column(double x) const { return nearest_column((x - frame_.low_x) / step_x_); }
-    std::int32_t row(double y) const { return nearest_row((y - frame_.low_y) / step_y_); }
-    /// The same of coordinates that are counted in tiles already.
-    std::int32_t nearest_column(double at) const { return nearest(at, columns_); }
-    std::int32_t nearest_row(double at) const { return nearest(at, rows_); }
+    std::int32_t column(double x) const { return nearest((x - frame_.low_x) / step_x_, columns_); }
+    std::int32_t row(double y) const { return nearest((y - frame_.low_y) / step_y_, rows_); }
 
 private:
     static std::int32_t nearest(double at, std::int32_t count) {
@@ -146,5 +147,95 @@ void PlanTiles::for_each_center_in(const std::array<PlanPosition, 3>& triangle,
         }
     }
 }
+
+/// The numbers of positions, in their order along a Hilbert curve through their extent (Hilbert
+/// 1891; the turns by table as in Warren, "Hacker's Delight", section 16-1): those near each other
+/// in plan mostly follow each other. Positions too near each other to be told apart stay in the
+/// order in which they came.
+std::vector<std::uint32_t> along_hilbert_curve(std::span<const PlanPosition> positions);
+
+/// Points in plan, in tiles about as many as there are points: finds the few within a box.
+class PointBins {
+public:
+    using Position = PlanPosition;
+
+    explicit PointBins(const std::vector<Position>& points)
+        : tiles_(box_around(points), points.size()) {
+        bins_ = bucketize<BinnedPoint>(tiles_.size(), [&](const auto& put) {
+            for (std::size_t i = 0; i < points.size(); ++i)
+                put(tiles_.tile_at(points[i]), BinnedPoint{points[i], i});
+        });
+    }
+
+    /// Calls visit(number, position) for every point within the box, borders included.
+    template <class Visit>
+    void within(const PlanBox& box, const Visit& visit) const {
+        if (!box.meets(tiles_.frame())) return;
+        tiles_.for_each(tiles_.span(box), [&](std::size_t tile) {
+            for (const auto& [p, number] : bins_[tile]) {
+                if (box.contains(p)) visit(number, p);
+            }
+        });
+    }
+
+private:
+    struct BinnedPoint {
+        Position position;
+        std::size_t number;
+    };
+
+    PlanTiles tiles_;
+    Buckets<BinnedPoint> bins_;
+};
+
+/// Numbers of things, to be found by the tiles that their boxes meet.
+class TileBins {
+public:
+    /// span_of(number) is where each of `count` things is, or null where it does not count; of the
+    /// tiles only those that are wanted are searched.
+    template <class SpanOf>
+    TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, std::size_t count,
+             const SpanOf& span_of, const Execution& execution)
+        : tiles_(tiles) {
+        const auto produce = [&](std::size_t chunk, const auto& put) {
+            for (std::size_t i = chunk * kRange, end = std::min(count, i + kRange); i < end; ++i) {
+                const TileSpan* span = span_of(i);
+                if (span == nullptr) continue;
+                tiles.for_each(*span, [&](std::size_t tile) {
+                    if (is_wanted[tile] != 0)
+                        put(tile, BinnedBox{static_cast<std::int32_t>(i), span->left, span->low});
+                });
+            }
+        };
+        items_ = bucketize_in_any_order<BinnedBox>(tiles.size(), (count + kRange - 1) / kRange,
+                                                   produce, execution);
+    }
+
+    /// Calls test(number) once for each thing in these tiles, which are wanted, in no order that
+    /// may matter, until it is false; whether it never was.
+    template <class Test>
+    bool all(const TileSpan& span, const Test& test) const {
+        for (std::int32_t row = span.low; row <= span.high; ++row) {
+            for (std::int32_t column = span.left; column <= span.right; ++column) {
+                for (const BinnedBox& item : items_[tiles_.tile(column, row)]) {
+                    // in the first tile that both have
+                    if (column == std::max(span.left, item.left) &&
+                        row == std::max(span.low, item.low) && !test(item.number))
+                        return false;
+                }
+            }
+        }
+        return true;
+    }
+
+private:
+    static constexpr std::size_t kRange = 512;
+    struct BinnedBox {
+        std::int32_t number, left, low;  ///< its first column and row
+    };
+
+    const PlanTiles& tiles_;
+    Buckets<BinnedBox> items_;  ///< of each tile
+};
 
 }  // namespace realmodel::spatial

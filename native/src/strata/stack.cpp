@@ -9,21 +9,20 @@
 #include <utility>
 
 #include "realmodel/base/page_store.hpp"
-#include "strata/blocks.hpp"
+#include "strata/build.hpp"
 #include "strata/cells/volumes.hpp"
-#include "strata/columns.hpp"
 #include "strata/repair/border_joining.hpp"
+#include "strata/repair/plan_context.hpp"
 #include "strata/repair/plan_snapping.hpp"
-#include "strata/repair/site.hpp"
 #include "strata/steps.hpp"
 
 namespace realmodel::strata {
 
 namespace {
 
-/// Input that is entered, as given or with its borders joined.
-struct Entered {
-    std::unique_ptr<Site> site;
+/// Input that is loaded, as given or with its borders joined.
+struct LoadedInput {
+    std::unique_ptr<PlanContext> context;
     std::vector<Warning> warnings;
     PlanSnapping snapping;
     BorderChains chains;
@@ -31,55 +30,56 @@ struct Entered {
     bool is_joined = false;
 };
 
-std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
-                                     const PlanSnapping& snapping, std::vector<Warning>& warnings,
-                                     const Execution& execution) {
+std::unique_ptr<PlanContext> load_unrepaired(std::span<const StackInput> rocks,
+                                             const PlanSnapping& snapping,
+                                             std::vector<Warning>& warnings,
+                                             const Execution& execution) {
     begin_step(execution.progress, kBordersDone, kInputDone - kBordersDone,
                "checking the surfaces");
     warnings.clear();
-    return enter_site(rocks, snapping, warnings, execution);
+    return load_input(rocks, snapping, warnings, execution);
 }
 
 /// Finds which borders are to be joined, and whether any is.
-bool compare_borders(std::span<const StackInput> rocks, Entered& entered,
+bool compare_borders(std::span<const StackInput> rocks, LoadedInput& loaded,
                      const Execution& execution) {
     begin_step(execution.progress, 0.0, kBordersDone, "comparing the borders");
-    entered.snapping = find_snapping(rocks, execution);
-    entered.chains = find_chains(rocks, entered.snapping, execution);
-    return !entered.snapping.empty() || !entered.chains.empty();
+    loaded.snapping = find_snapping(rocks, execution);
+    loaded.chains = find_chains(rocks, loaded.snapping, execution);
+    return !loaded.snapping.empty() || !loaded.chains.empty();
 }
 
 /// The input with the joins found, unless they break something: whatever is wrong then, what the
 /// user hears is about the input as given.
-void enter_with_joins(std::span<const StackInput> rocks, Entered& entered,
-                      const Execution& execution) {
-    if (entered.chains.empty()) {
-        entered.site = enter_as_given(rocks, entered.snapping, entered.warnings, execution);
+void load_with_joins(std::span<const StackInput> rocks, LoadedInput& loaded,
+                     const Execution& execution) {
+    if (loaded.chains.empty()) {
+        loaded.context = load_unrepaired(rocks, loaded.snapping, loaded.warnings, execution);
     } else {
-        entered.joined = join_borders(rocks, entered.snapping, entered.chains, execution.progress);
-        entered.site = enter_as_given(entered.joined.rocks, {}, entered.warnings, execution);
+        loaded.joined = join_borders(rocks, loaded.snapping, loaded.chains, execution.progress);
+        loaded.context = load_unrepaired(loaded.joined.rocks, {}, loaded.warnings, execution);
     }
-    entered.is_joined = entered.site->is_single_valued;
-    if (entered.is_joined)
-        entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.chains));
+    loaded.is_joined = loaded.context->is_single_valued;
+    if (loaded.is_joined)
+        loaded.warnings.push_back(joined_by_rounding(loaded.snapping, loaded.chains));
 }
 
 /// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
 /// In one plan only borders of its own parts may lie beside each other: they are looked at where
 /// these overlap.
-Entered enter_joined(std::span<const StackInput> rocks, const Execution& execution) {
-    Entered entered;
+LoadedInput load_repaired(std::span<const StackInput> rocks, const Execution& execution) {
+    LoadedInput loaded;
     const auto join = [&] {
-        if (compare_borders(rocks, entered, execution)) enter_with_joins(rocks, entered, execution);
+        if (compare_borders(rocks, loaded, execution)) load_with_joins(rocks, loaded, execution);
     };
     const bool is_one_plan = share_one_plan(rocks);
     if (!is_one_plan) join();
-    if (entered.is_joined) return entered;
-    entered.site = enter_as_given(rocks, {}, entered.warnings, execution);
-    if (!is_one_plan || entered.site->is_single_valued) return entered;
+    if (loaded.is_joined) return loaded;
+    loaded.context = load_unrepaired(rocks, {}, loaded.warnings, execution);
+    if (!is_one_plan || loaded.context->is_single_valued) return loaded;
     join();
-    if (!entered.is_joined) entered.site = enter_as_given(rocks, {}, entered.warnings, execution);
-    return entered;
+    if (!loaded.is_joined) loaded.context = load_unrepaired(rocks, {}, loaded.warnings, execution);
+    return loaded;
 }
 
 /// Volumes of blocks: over the exact plan positions, so that those of tiles add up to those of the
@@ -101,24 +101,25 @@ std::vector<double> volumes_of(const BuiltCells& built, std::size_t blocks, bool
     return are_same ? volumes : of_cells;
 }
 
-Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells,
-                const Execution& execution) {
-    site.check_regions();
+Tile build_context(PlanContext& context, const std::vector<Warning>& warnings, CellKind cells,
+                   const Execution& execution) {
+    context.check_regions();
     BuiltCells built;
     CellComplex& result = built.complex;
-    if (site.is_empty()) {
+    if (context.is_empty()) {
         result.face_offsets.push_back(0);
     } else {
-        built = cells == CellKind::kBlocks ? build_blocks(site, execution)
-                                           : build_columns(site, execution);
+        built = cells == CellKind::kBlocks ? build_blocks(context, execution)
+                                           : build_columns(context, execution);
     }
     result.cell_kind = cells;
-    const auto blocks = static_cast<std::size_t>(site.surfaces);
-    result.volumes = site.wanted ? std::vector<double>(blocks)
-                                 : volumes_of(built, blocks, site.window.has_value(), execution);
+    const auto blocks = static_cast<std::size_t>(context.surfaces);
+    result.volumes = context.wanted
+                         ? std::vector<double>(blocks)
+                         : volumes_of(built, blocks, context.window.has_value(), execution);
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
-    result.decisions = site.geometry.all_decisions();
-    result.exact_decisions = site.geometry.exact_decisions();
+    result.decisions = context.geometry.all_decisions();
+    result.exact_decisions = context.geometry.exact_decisions();
     begin_step(execution.progress, 1.0, 0.0, "done");
     return {std::move(result), std::move(built.border)};
 }
@@ -127,16 +128,16 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution& execution,
                               CellKind cells, const WantedSpace* wanted, bool is_local) {
-    const page_store::Keeper keeper;
-    const Entered entered = enter_joined(rocks, execution);
-    if (wanted != nullptr) entered.site->wanted.emplace(*wanted);
-    entered.site->is_local = is_local;
-    return build_site(*entered.site, entered.warnings, cells, execution).complex;
+    const page_store::PageCache cache;
+    const LoadedInput loaded = load_repaired(rocks, execution);
+    if (wanted != nullptr) loaded.context->wanted.emplace(*wanted);
+    loaded.context->is_local = is_local;
+    return build_context(*loaded.context, loaded.warnings, cells, execution).complex;
 }
 
 Tile build_tile(std::span<const StackInput> rocks, const Window& window, const Execution& execution,
                 CellKind cells) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     const std::array corners{window.low_x,  window.low_y,  window.high_x, window.low_y,
                              window.high_x, window.high_y, window.low_x,  window.high_y};
     constexpr std::array<std::int32_t, 6> kTriangles{0, 1, 2, 0, 2, 3};
@@ -149,9 +150,9 @@ Tile build_tile(std::span<const StackInput> rocks, const Window& window, const E
         }
     }
     std::vector<Warning> warnings;
-    const auto site = enter_as_given(in_window, {}, warnings, execution);
-    site->window = window;
-    return build_site(*site, warnings, cells, execution);
+    const auto context = load_unrepaired(in_window, {}, warnings, execution);
+    context->window = window;
+    return build_context(*context, warnings, cells, execution);
 }
 
 CellComplex build_stack(const StackInput& input, const Execution& execution, CellKind cells) {

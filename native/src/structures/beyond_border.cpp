@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "structures/structure_surface.hpp"
 
@@ -104,14 +105,17 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
         const auto slab = slab_of(surface.surface.corners(t));
         if (slab && slab->box.meets(sheet)) slabs.push_back(*slab);
     }
+    const spatial::BoxTree tree(transformed(slabs, &Slab::box), execution);
     parallel_ranges(count, 1 << 6, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Prism& prism = prisms[t];
-            for (const Slab& slab : slabs) {
-                if (found[t] == kPasses) break;
-                if (!prism.box.meets(slab.box) || !may_meet(prism, slab, near)) continue;
-                found[t] = may_meet(prism, slab, -near) ? kPasses : kMeets;
-            }
+            const auto passes = [&](std::int32_t number) {
+                const Slab& slab = slabs[index(number)];
+                if (!may_meet(prism, slab, near)) return false;
+                found[t] = kMeets;
+                return may_meet(prism, slab, -near);
+            };
+            if (tree.any(prism.box, passes)) found[t] = kPasses;
         }
     });
     return found;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a fault is divided by one that it ends at.
-#include "structures/branch_sides.hpp"
-
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "arrangement/triangulate.hpp"
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
+#include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
 
@@ -20,7 +20,9 @@ using spatial::bounding_box;
 
 namespace {
 
-/// The area of a region, twice, and a place well inside of it: the middle of the largest of its
+constexpr double kAlike = 1e-9;  // areas, as a share of both
+
+/// The area of a region, twice, and a point well inside of it: the middle of the largest of its
 /// triangles.
 std::pair<double, Position> measured(const exact::SpacePoints& points,
                                      const arrangement::Loops<SpacePointId>& loops,
@@ -71,11 +73,11 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     add(branch, false);
     const std::size_t own = triangles.size();
     add(other, true);
-    const auto boxes =
-        mapped(triangles, [&](std::size_t t) { return bounding_box(surface.surface.corners(t)); });
+    const auto boxes = transformed(
+        triangles, [&](std::size_t t) { return bounding_box(surface.surface.corners(t)); });
     const spatial::BoxTree tree({boxes.begin() + static_cast<std::ptrdiff_t>(own), boxes.end()});
     BranchSides found;
-    std::vector<TriangleArrangement::Intersection> meetings;
+    std::vector<TriangleArrangement::TriangleIntersection> meetings;
     for (std::size_t t = 0; t < own; ++t) {
         std::vector<std::int32_t> near;
         tree.find(boxes[t], [&near](std::int32_t at) { near.push_back(at); });
@@ -113,6 +115,9 @@ std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std:
     const BranchSides found = branch_sides(surface, branch, other);
     if (std::min(found.above, found.below) == 0 && !found.meets)
         throw InputError("does_not_meet", "the fault does not meet a fault that it is to end at",
+                         branch, {other});
+    if (std::abs(found.above - found.below) <= kAlike * (found.above + found.below))
+        throw InputError("equal_halves", "the fault that it is to end at cuts it into two halves",
                          branch, {other});
     return found.below > found.above ? cutting::kBelow : cutting::kAbove;
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/index.hpp"
-#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
@@ -146,7 +146,7 @@ std::vector<std::int32_t> numbers_of_kept(const CellComplex& complex,
 
 /// Whether two surfaces lie upon the same block, or upon nothing.
 bool repeats_blocks(const std::vector<PartSurface>& surfaces) {
-    std::vector<std::int32_t> blocks = mapped(surfaces, &PartSurface::block);
+    std::vector<std::int32_t> blocks = transformed(surfaces, &PartSurface::block);
     std::ranges::sort(blocks);
     return std::ranges::adjacent_find(blocks) != blocks.end();
 }

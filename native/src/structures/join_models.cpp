@@ -6,21 +6,19 @@
 #include <numeric>
 #include <optional>
 
-#include "base/lists.hpp"
+#include "base/algorithms.hpp"
+#include "base/floating_point.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
-#include "base/ulp.hpp"
-#include "cutting/chunked_complex.hpp"
-#include "cutting/model_check.hpp"
+#include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/nearest_side.hpp"
+#include "cutting/pieces.hpp"
 #include "cutting/surface_parts.hpp"
-#include "exact/space_predicates.hpp"
-#include "realmodel/base/errors.hpp"
+#include "exact/space_points.hpp"
 #include "strata/cells/volumes.hpp"
 #include "structures/joined_rounding.hpp"
-#include "structures/near_cells.hpp"
 #include "structures/wanted_parts.hpp"
 
 namespace realmodel::structures {
@@ -38,16 +36,56 @@ Box box_of(const ComplexView& model) {
     return box;
 }
 
+/// Of a cell of a model: that it comes near a structure and is not on the wrong side of another,
+/// that it comes near none and is on the sides that are asked for, or that it is elsewhere.
+enum class CellLocation : std::uint8_t { kElsewhere, kInside, kNear };
+
+/// @param structures  of each where its sides are
+/// @param given       the same structures
+std::vector<CellLocation> locations_of_cells(const ComplexView& model, const Sides& sides,
+                                             std::span<const cutting::NearestSide> structures,
+                                             std::span<const Structure> given,
+                                             const Execution& execution) {
+    assert(sides.size() == structures.size() && sides.size() == given.size());
+    const cutting::CellBoxes cells(model, structures, execution);
+    std::vector<CellLocation> locations(model.cell_count(), CellLocation::kInside);
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+        auto is_near = cutting::cells_near(cells, structures[s], execution);
+        for (std::size_t c = 0; c < locations.size(); ++c) {
+            if (locations[c] == CellLocation::kElsewhere) {
+                is_near[c] = 1;  // not asked for
+            } else if (is_near[c] != 0) {
+                locations[c] = CellLocation::kNear;
+            }
+        }
+        if (sides[s] == 0) continue;  // either side will do
+        // some corners of these may lie where the branch is not, and nearest to its other side
+        for (const std::int32_t other : given[s].ends_at) {
+            const auto beside = cutting::cells_near(cells, structures[index(other)], execution);
+            for (std::size_t c = 0; c < locations.size(); ++c) {
+                if (beside[c] != 0) is_near[c] = 1;
+            }
+        }
+        const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, execution);
+        for (std::size_t c = 0; c < locations.size(); ++c) {
+            if (own[c] != cutting::kOn && own[c] != sides[s])
+                locations[c] = CellLocation::kElsewhere;
+        }
+    }
+    return locations;
+}
+
 /// Cells of several models, with the vertices that they share once.
-struct Together : CellComplex {
+struct MergedModels : CellComplex {
     std::vector<std::int32_t> model_of_cell;
     std::vector<std::uint8_t> is_near;  ///< of cells
     std::vector<Sides> model_sides;
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
 
-    Together(std::span<const PartModel> models, const std::vector<std::vector<CellPlace>>& places,
-             const Execution& execution);
+    MergedModels(std::span<const PartModel> models,
+                 const std::vector<std::vector<CellLocation>>& locations,
+                 const Execution& execution);
     void share_vertices(const Execution& execution);
     ComplexView view() const {
         ComplexView view = *this;
@@ -57,14 +95,15 @@ struct Together : CellComplex {
     }
 };
 
-/// @param places  of the cells of each model
-Together::Together(std::span<const PartModel> models,
-                   const std::vector<std::vector<CellPlace>>& places, const Execution& execution) {
+/// @param locations  of the cells of each model
+MergedModels::MergedModels(std::span<const PartModel> models,
+                           const std::vector<std::vector<CellLocation>>& locations,
+                           const Execution& execution) {
     // the cells and faces of each model that are wanted: how many, then how many before
     std::vector<std::size_t> positions, cells(models.size()), faces(models.size()),
         corners(models.size());
     const auto is_wanted = [&](std::size_t m, std::int32_t cell) {
-        return cell >= 0 && places[m][index(cell)] != CellPlace::kElsewhere;
+        return cell >= 0 && locations[m][index(cell)] != CellLocation::kElsewhere;
     };
     const auto each_face = [&](std::size_t m, const auto& visit) {
         const ComplexView& model = models[m].model;
@@ -81,8 +120,8 @@ Together::Together(std::span<const PartModel> models,
         if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
     }
     parallel_chunks(models.size(), execution, [&](std::size_t m) {
-        cells[m] = places[m].size() -
-                   static_cast<std::size_t>(std::ranges::count(places[m], CellPlace::kElsewhere));
+        cells[m] = locations[m].size() - static_cast<std::size_t>(std::ranges::count(
+                                             locations[m], CellLocation::kElsewhere));
         std::size_t own_faces = 0, own_corners = 0;
         each_face(m, [&](std::size_t f, const auto&) {
             ++own_faces;
@@ -91,15 +130,15 @@ Together::Together(std::span<const PartModel> models,
         faces[m] = own_faces;
         corners[m] = own_corners;
     });
-    vertices.resize(count_before(positions));
-    cell_block.resize(count_before(cells));
+    vertices.resize(exclusive_scan(positions));
+    cell_block.resize(exclusive_scan(cells));
     checked_number(vertices.size(), "vertices");
     checked_number(cell_block.size(), "cells");
     model_of_cell.resize(cell_block.size());
     is_near.resize(cell_block.size());
-    face_surface.resize(count_before(faces));
+    face_surface.resize(exclusive_scan(faces));
     face_cells.resize(face_surface.size());
-    face_vertices.resize(count_before(corners));
+    face_vertices.resize(exclusive_scan(corners));
     face_offsets.resize(face_surface.size() + 1);
     face_offsets.back() = static_cast<std::int64_t>(face_vertices.size());
     parallel_chunks(models.size(), execution, [&](std::size_t m) {
@@ -107,11 +146,11 @@ Together::Together(std::span<const PartModel> models,
         std::vector<std::int32_t> number(model.cell_count(), -1);
         std::size_t cell = cells[m], face = faces[m], corner = corners[m];
         for (std::size_t c = 0; c < number.size(); ++c) {
-            if (places[m][c] == CellPlace::kElsewhere) continue;
+            if (locations[m][c] == CellLocation::kElsewhere) continue;
             number[c] = static_cast<std::int32_t>(cell);
             cell_block[cell] = model.cell_block[c];
             model_of_cell[cell] = static_cast<std::int32_t>(m);
-            is_near[cell++] = places[m][c] == CellPlace::kNear ? 1 : 0;
+            is_near[cell++] = locations[m][c] == CellLocation::kNear ? 1 : 0;
         }
         for (std::size_t v = 0; v < model.vertex_count(); ++v)
             vertices[positions[m] + v] =  // both zeros alike
@@ -136,7 +175,7 @@ Together::Together(std::span<const PartModel> models,
 
 /// Equal positions of near cells get one vertex, and are numbered in their order. Vertices of other
 /// cells alone are of one model each, for between two parts there is a structure.
-void Together::share_vertices(const Execution& execution) {
+void MergedModels::share_vertices(const Execution& execution) {
     std::vector<std::uint8_t> is_shared(vertices.size(), 0);
     for (std::size_t f = 0; f < face_surface.size(); ++f) {
         if (std::ranges::none_of(face_cells[f], [&](std::int32_t cell) {
@@ -147,33 +186,33 @@ void Together::share_vertices(const Execution& execution) {
             is_shared[index(face_vertices[i])] = 1;
     }
     std::vector<std::pair<Position, std::int32_t>> order;
-    std::vector<std::int32_t> number(vertices.size()), places;
+    std::vector<std::int32_t> number(vertices.size()), shared;
     std::iota(number.begin(), number.end(), 0);
     for (const std::int32_t v : number) {
         if (is_shared[index(v)] == 0) continue;
         order.push_back({vertices[index(v)], v});
-        places.push_back(v);
+        shared.push_back(v);
     }
     parallel_sort(order, std::less<>(), execution);
-    auto place = places.begin();
+    auto next = shared.begin();
     for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && order[i].first != order[i - 1].first) ++place;
-        vertices[index(*place)] = order[i].first;
-        number[index(order[i].second)] = *place;
+        if (i > 0 && order[i].first != order[i - 1].first) ++next;
+        vertices[index(*next)] = order[i].first;
+        number[index(order[i].second)] = *next;
     }
     for (std::int32_t& v : face_vertices)
         v = number[index(v)];
 }
 
 /// The faces of what is left of the cells.
-CellComplex assemble(const Together& together, const std::vector<Position>& new_positions,
+CellComplex assemble(const MergedModels& merged, const std::vector<Position>& new_positions,
                      const cutting::WholePieces& pieces, std::span<const cutting::HalfCell> cells,
                      const Execution& execution) {
     CellComplex complex;
-    complex.cell_kind = together.cell_kind;
+    complex.cell_kind = merged.cell_kind;
     for (const cutting::HalfCell& cell : cells)
-        complex.cell_block.push_back(together.cell_block[index(cell.cell)]);
-    const std::size_t own = together.vertices.size();
+        complex.cell_block.push_back(merged.cell_block[index(cell.cell)]);
+    const std::size_t own = merged.vertices.size();
     cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(),
                                     execution);
     const auto is_left = [](const cutting::CutPiece& piece) {
@@ -193,12 +232,11 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
                            if (!is_left(piece)) return;
                            writer.write(nodes, piece.parts,
                                         piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
-                                                       : together.face_surface[index(piece.face)]);
+                                                       : merged.face_surface[index(piece.face)]);
                        });
     });
     chunked.number([&](cutting::NodeId node) {
-        return index(node) < own ? together.vertices[index(node)]
-                                 : new_positions[index(node) - own];
+        return index(node) < own ? merged.vertices[index(node)] : new_positions[index(node) - own];
     });
     return complex;
 }
@@ -206,7 +244,7 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// On which side of each structure something is.
 std::vector<cutting::NearestSide> nearest_sides(const StructureSurface& surface,
                                                 const Execution& execution) {
-    return mapped(surface.single, [&](const cutting::CutterSurface& single) {
+    return transformed(surface.single, [&](const cutting::CutterSurface& single) {
         return cutting::NearestSide(single, execution);
     });
 }
@@ -220,14 +258,14 @@ struct StructuresHere {
 
 /// Joins the models where only the cells that are near structures take part in cutting; nothing
 /// where rounding went beyond them.
-std::optional<Joined> join(const Together& together, const StructuresHere& given,
+std::optional<Joined> join(const MergedModels& merged, const StructuresHere& given,
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
-    const ComplexView all = together.view();
-    const cutting::NearPart part(all, together.is_near, execution);
+    const ComplexView all = merged.view();
+    const cutting::NearPart part(all, merged.is_near, execution);
     const ComplexView near = part.view();
     const auto model_of_cell =
-        mapped(part.cells(), [&](std::int32_t c) { return together.model_of_cell[index(c)]; });
+        transformed(part.cells(), [&](std::int32_t c) { return merged.model_of_cell[index(c)]; });
     begin_phase(execution.progress, 0.1, 0.15, "finding faces near structures");
     // with what continues a structure nothing else is left undivided
     std::vector<std::int32_t> groups;
@@ -239,7 +277,7 @@ std::optional<Joined> join(const Together& together, const StructuresHere& given
     const StructureSides sides(overlay, winding, given.surface, given.structures, given.nearest,
                                execution.progress);
     assert(model_of_cell.size() == near.cell_count());
-    const WantedParts wanted(overlay, winding, sides, model_of_cell, together.model_sides, acts);
+    const WantedParts wanted(overlay, winding, sides, model_of_cell, merged.model_sides, acts);
     begin_phase(execution.progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
     begin_phase(execution.progress, 0.85, 0.92, "rounding what was cut");
@@ -251,12 +289,11 @@ std::optional<Joined> join(const Together& together, const StructuresHere& given
     if (!pieces) return std::nullopt;
     begin_phase(execution.progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
-    joined.complex =
-        assemble(together, overlay.new_positions(), *pieces, made.half_cells, execution);
-    joined.cell_part = mapped(made.half_cells, [&](const cutting::HalfCell& cell) {
-        return together.model_of_cell[index(cell.cell)];
+    joined.complex = assemble(merged, overlay.new_positions(), *pieces, made.half_cells, execution);
+    joined.cell_part = transformed(made.half_cells, [&](const cutting::HalfCell& cell) {
+        return merged.model_of_cell[index(cell.cell)];
     });
-    joined.complex.volumes = strata::block_volumes(joined.complex, together.blocks, execution);
+    joined.complex.volumes = strata::block_volumes(joined.complex, merged.blocks, execution);
     return joined;
 }
 
@@ -298,7 +335,7 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
     };
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!overlay.of_cutter(r)) {
-            if (winding.level(r) < 0) include(sides.part_of(r), overlay.loops(r));
+            if (winding.coincident(r) < 0) include(sides.part_of(r), overlay.loops(r));
         } else if (winding.counts(r) && winding.touches_model(r)) {
             for (std::size_t k = 0; k < 2; ++k) {
                 if (!winding.around(r, k).empty()) include(sides.part_at(r, k), overlay.loops(r));
@@ -309,7 +346,7 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
         if (!overlay.is_active(f))
             include(sides.part_of(overlay.size() + f), std::array{rock.face(f)});
     }
-    return mapped(boxes, [](const auto& own) {
+    return transformed(boxes, [](const auto& own) {
         return Part{own.first, own.second.low, own.second.high};
     });
 }
@@ -326,17 +363,17 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
                                                        : structure_surface(structures, continued);
     const auto nearest = nearest_sides(surface, execution);
     begin_phase(execution.progress, 0, 0.1, "leaving out what is in other parts");
-    const auto places = mapped(models, [&](const PartModel& own) {
-        return places_of_cells(own.model, own.sides, nearest, structures, execution);
+    const auto locations = transformed(models, [&](const PartModel& own) {
+        return locations_of_cells(own.model, own.sides, nearest, structures, execution);
     });
-    Together together(models, places, execution);
-    together.share_vertices(execution);
+    MergedModels merged(models, locations, execution);
+    merged.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
     const StructuresHere given{surface, structures, nearest};
-    if (auto joined = join(together, given, acts, least, execution)) return *std::move(joined);
-    together.is_near.assign(together.is_near.size(), 1);
-    together.share_vertices(execution);
-    return *join(together, given, acts, least, execution);
+    if (auto joined = join(merged, given, acts, least, execution)) return *std::move(joined);
+    merged.is_near.assign(merged.is_near.size(), 1);
+    merged.share_vertices(execution);
+    return *join(merged, given, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,

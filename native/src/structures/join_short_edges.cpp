@@ -7,12 +7,11 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/keep_single.hpp"
-#include "base/lists.hpp"
+#include "base/floating_point.hpp"
 #include "base/parallel.hpp"
-#include "base/ulp.hpp"
-#include "cutting/rounding/contraction.hpp"
+#include "cutting/rounding/rounded_parts.hpp"
 #include "structures/joined_rounding.hpp"
 
 namespace realmodel::structures {
@@ -49,7 +48,7 @@ public:
             constexpr std::size_t kAtOnce = 1 << 3;
             parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, parts_.execution,
                              [&] {
-                                 return [&, scratch = Scratch()](std::size_t chunk) mutable {
+                                 return [&, scratch = ShapeScratch()](std::size_t chunk) mutable {
                                      const std::size_t begin = chunk * kAtOnce;
                                      for (const Edge& edge : std::span(round).subspan(
                                               begin, std::min(kAtOnce, round.size() - begin))) {
@@ -63,8 +62,8 @@ public:
     }
 
 private:
-    using Scratch = Contraction::Scratch;
-    using Shape = Contraction::Shape;
+    using ShapeScratch = Contraction::ShapeScratch;
+    using PartShape = Contraction::PartShape;
     static constexpr std::size_t kMany = 200;
 
     template <class Visit>
@@ -116,22 +115,22 @@ private:
 
     /// Makes the nodes that its ends became one, the lesser one if walls allow it, where no part
     /// comes to touch itself for it.
-    bool contract(const Edge& edge, Scratch& scratch) {
+    bool contract(const Edge& edge, ShapeScratch& scratch) {
         const NodeId a = contraction_.becomes[index(edge[0])];
         const NodeId b = contraction_.becomes[index(edge[1])];
         const NodeId to = std::min(a, b), from = std::max(a, b);
         return a != b && (become_one(to, from, scratch) || become_one(from, to, scratch));
     }
-    bool become_one(NodeId to, NodeId from, Scratch& scratch) {
+    bool become_one(NodeId to, NodeId from, ShapeScratch& scratch) {
         if (!parts_.is_new(from) || leaves_wall(from, to)) return false;
-        std::map<std::int32_t, std::optional<Shape>> after;
+        std::map<std::int32_t, std::optional<PartShape>> after;
         for (const NodeId node : nodes_of(from))
             each_part_at(node, [&after](std::int32_t part) { after[part]; });
         if (std::ranges::any_of(after, [&](const auto& own) { return !now(own.first, scratch); }))
             return false;
         for (auto& [part, found] : after) {
             found = contracted(part, to, from, scratch);
-            const Shape& before = *now(part, scratch);
+            const PartShape& before = *now(part, scratch);
             if (!found || found->touches > before.touches ||
                 (!contraction_.is_sound(*found, part) && contraction_.is_sound(before, part)))
                 return false;
@@ -188,13 +187,14 @@ private:
             contraction_.becomes[index(node)] = to;
     }
     /// What a part is like now.
-    const std::optional<Shape>& now(std::int32_t part, Scratch& scratch) {
+    const std::optional<PartShape>& now(std::int32_t part, ShapeScratch& scratch) {
         auto& known = now_.at(part);
         if (!known) known.emplace(contraction_.shape(part, scratch));
         return *known;
     }
     /// What a part would be like.
-    std::optional<Shape> contracted(std::int32_t part, NodeId to, NodeId from, Scratch& scratch) {
+    std::optional<PartShape> contracted(std::int32_t part, NodeId to, NodeId from,
+                                        ShapeScratch& scratch) {
         if (parts_.pieces_of[index(part)].size() > kMany) {
             const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
             const auto before = contraction_.shape(pieces, part, scratch);
@@ -202,7 +202,7 @@ private:
             const auto found = contraction_.shape(pieces, part, scratch);
             become(from, from);
             if (!before || !found) return std::nullopt;
-            Shape known = *now(part, scratch);
+            PartShape known = *now(part, scratch);
             known.touches += found->touches - before->touches;
             known.count += found->count - before->count;
             if (keeps_extent(known.box, found->box))
@@ -255,7 +255,7 @@ private:
     std::vector<std::vector<Edge>> rounds_;
     std::unordered_map<NodeId, std::vector<NodeId>> nodes_;  ///< that became one, of ends of edges
     /// What the parts around are like: nothing where nobody has asked yet.
-    std::unordered_map<std::int32_t, std::optional<std::optional<Shape>>> now_;
+    std::unordered_map<std::int32_t, std::optional<std::optional<PartShape>>> now_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "cutting/model_check.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {

@@ -5,10 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/parallel.hpp"
-#include "realmodel/base/errors.hpp"
-#include "structures/branch_sides.hpp"
-
 namespace realmodel::structures {
 
 using cutting::kAbove;
@@ -62,17 +58,17 @@ Position StructureSides::middle_of(std::size_t region) const {
 std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
     std::vector<std::vector<RegionOf>> named(overlay_.size());
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!overlay_.of_cutter(r) || winding_.level(r) < 0) continue;
+        if (!overlay_.of_cutter(r) || winding_.coincident(r) < 0) continue;
         const auto triangle = index(overlay_.cutter_triangle(r));
         const std::int32_t s = surface_.structure[triangle];
         const bool is_own = surface_.is_continuation[triangle] == 0;
-        auto& own = named[index(winding_.level(r))];
+        auto& own = named[index(winding_.coincident(r))];
         auto known = std::ranges::find(own, s, &RegionOf::structure);
         if (known == own.end()) known = own.insert(own.end(), {s, 0, false});
         if (structures_[index(s)].is_body) {
             known->change ^= 1;
         } else {
-            known->change += winding_.level_facing(r);
+            known->change += winding_.coincident_facing(r);
         }
         known->is_own = known->is_own || is_own;
     }
@@ -116,7 +112,7 @@ std::vector<std::uint8_t> StructureSides::regions_beyond() const {
     return found;
 }
 
-/// Around edges where structures may end unnoticed nothing is said of the outside of the rock.
+/// Structures may end unnoticed outside of the rock: there the outside gets no label at such edges.
 cutting::SurfaceCells::Rules StructureSides::rules() const {
     return {[this](std::span<const EdgeUse> uses) { return is_known_in_rock_alone(uses); },
             [is_beyond = regions_beyond()](std::size_t region) { return is_beyond[region] != 0; }};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cutting/cutter_sides.hpp"
+#include "realmodel/base/errors.hpp"
 #include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
@@ -30,7 +31,7 @@ struct RegionOf {
 class StructureSides {
 public:
     /// @param nearest  of the surfaces of single structures
-    /// @throws InputError kinds does_not_meet, ends_inside
+    /// @throws InputError kinds does_not_meet, equal_halves, ends_inside
     StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
                    const StructureSurface& surface, std::span<const Structure> structures,
                    std::span<const cutting::NearestSide> nearest, Progress* progress);
@@ -39,10 +40,10 @@ public:
     const Sides& sides(std::size_t part) const { return sides_[part]; }
     /// The part that a region of a face or a face without regions (counted after all regions) is
     /// in.
-    std::size_t part_of(std::size_t item) const { return index(parts_.of(item)); }
+    std::size_t part_of(std::size_t item) const { return checked_part(parts_.of(item)); }
     /// The part at side 0 or 1 of a region of the surface that counts and touches rock.
     std::size_t part_at(std::size_t region, std::size_t side) const {
-        return index(parts_.at(region, side));
+        return checked_part(parts_.at(region, side));
     }
     /// Of a region of the surface that counts.
     const std::vector<RegionOf>& structures_at(std::size_t region) const { return of_[region]; }
@@ -55,6 +56,10 @@ public:
 private:
     using Known = std::vector<std::optional<std::int32_t>>;  ///< of parts: on which side
 
+    static std::size_t checked_part(std::int32_t part) {
+        if (part < 0) throw InternalError("what bounds rock is in a part of space");
+        return index(part);
+    }
     cutting::SurfaceCells::Rules rules() const;
     std::vector<std::vector<RegionOf>> named_structures() const;
     bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults and bodies as one surface that cuts.
+// Faults and bodies as one surface that cuts, with what continues faults beyond their borders.
 #include "structures/structure_surface.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <span>
 
 #include "base/disjoint_sets.hpp"
-#include "base/key_numbers.hpp"
+#include "base/key_table.hpp"
 #include "cutting/nearest_side.hpp"
+#include "exact/orientation.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
-#include "structures/branch_sides.hpp"
-#include "structures/mean_plane.hpp"
+#include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::structures {
 
@@ -21,7 +21,166 @@ using cutting::CutterBorderEdge;
 using cutting::CutterSurface;
 using cutting::NodeId;
 using cutting::Position;
+using meshing::PlanPoint;
 using spatial::Box;
+
+namespace {
+
+/// The directions of a plane and a point of it.
+struct PlaneFrame {
+    Position origin, strike, dip;
+
+    Position at(const PlanPoint& p) const {
+        Position position{};
+        for (std::size_t k = 0; k < 3; ++k)
+            position[k] = origin[k] + p[0] * strike[k] + p[1] * dip[k];
+        return position;
+    }
+    PlanPoint seen(const Position& p) const {
+        const Position off = minus(p, origin);
+        return {dot(off, strike), dot(off, dip)};
+    }
+};
+
+/// The plane through the middle of a surface, by areas, at right angles to its mean normal.
+std::optional<PlaneFrame> mean_plane(const cutting::CutterSurface& surface) {
+    const auto at = [&](NodeId v) { return surface.vertices[index(v)]; };
+    const Position first = at(surface.triangles[0][0]);  // exact where the plane is that of an axis
+    Position normal{0, 0, 0}, total{0, 0, 0};
+    double whole = 0;
+    for (const auto& t : surface.triangles) {
+        const Position own = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
+        const double area = length(own);
+        whole += area;
+        for (std::size_t k = 0; k < 3; ++k) {
+            normal[k] += own[k];
+            for (const NodeId v : t)
+                total[k] += area * (at(v)[k] - first[k]);
+        }
+    }
+    normal = unit(normal);
+    if (normal == Position{}) return std::nullopt;
+    Position strike{-normal[1], normal[0], 0};
+    if (elementary::hypot(normal[0], normal[1]) < 1e-6) strike = cross({0, 1, 0}, normal);
+    strike = unit(strike);
+    Position middle = first;
+    for (std::size_t k = 0; k < 3; ++k)
+        middle[k] += total[k] / (3 * whole);
+    return PlaneFrame{middle, strike, cross(normal, strike)};
+}
+
+/// The triangles of points in plan that lie outside what directed edges have on their left;
+/// nothing where edges cross, or something is on the left of two or none too few.
+std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
+    const std::vector<PlanPoint>& points, const std::vector<std::array<std::int32_t, 2>>& edges) {
+    meshing::ConstrainedTriangulation mesh;
+    try {
+        mesh = meshing::constrained_delaunay(points, edges);
+    } catch (const InputError&) {
+        return std::nullopt;  // edges that cross, or points that are equal
+    }
+    std::map<std::array<std::int32_t, 2>, std::int32_t> rises;  // across edges, to their left
+    for (const auto& [from, to] : edges) {
+        ++rises[{from, to}];
+        --rises[{to, from}];
+    }
+    std::vector<std::int32_t> depth(mesh.triangles.size(), -1), open;
+    std::size_t passed = 0;
+    const auto reach = [&](std::size_t t, std::int32_t value) {
+        if (depth[t] == value) return true;
+        if (depth[t] >= 0 || value < 0 || value > 1) return false;
+        depth[t] = value;
+        open.push_back(static_cast<std::int32_t>(t));
+        return true;
+    };
+    for (std::size_t t = 0; t < depth.size(); ++t) {
+        if (std::ranges::find(mesh.neighbors[t], -1) != mesh.neighbors[t].end() && !reach(t, 0))
+            return std::nullopt;
+    }
+    while (!open.empty()) {
+        const std::size_t t = index(open.back());
+        open.pop_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t next = mesh.neighbors[t][i];
+            const auto across = rises.find({mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]});
+            if (across != rises.end()) ++passed;
+            if (next < 0) continue;
+            const std::int32_t rise = across == rises.end() ? 0 : across->second;
+            if (!reach(index(next), depth[t] - rise)) return std::nullopt;
+        }
+    }
+    // an edge through another point is in two parts, and gapes there
+    if (passed != rises.size()) return std::nullopt;
+    assert(std::ranges::find(depth, -1) == depth.end());
+    std::vector<std::array<std::int32_t, 3>> found;
+    for (std::size_t t = 0; t < depth.size(); ++t) {
+        if (depth[t] == 0) found.push_back(mesh.triangles[t]);
+    }
+    return found;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::array<Position, 3>>> continued_in_mean_plane(
+    const cutting::CutterSurface& fault, std::span<const std::array<NodeId, 2>> border,
+    std::span<const double> lengths) {
+    const auto plane = mean_plane(fault);
+    if (!plane) return std::nullopt;
+    std::map<NodeId, std::int32_t> number;
+    std::vector<PlanPoint> points;
+    std::vector<Position> corners;
+    std::vector<std::array<std::int32_t, 2>> edges;
+    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    const auto add = [&](const PlanPoint& seen, const Position& position) {
+        points.push_back(seen);
+        corners.push_back(position);
+        for (std::size_t k = 0; k < 2; ++k) {
+            low[k] = std::min(low[k], seen[k]);
+            high[k] = std::max(high[k], seen[k]);
+        }
+    };
+    for (const auto& edge : border) {
+        auto& own = edges.emplace_back();
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto [known, is_new] =
+                number.try_emplace(edge[i], static_cast<std::int32_t>(points.size()));
+            const Position& position = fault.vertices[index(edge[i])];
+            if (is_new) add(plane->seen(position), position);
+            own[i] = known->second;
+        }
+    }
+    if (edges.empty()) return std::nullopt;
+    // wide enough for the surface to come down to the plane by and by
+    const double margin = elementary::hypot(high[0] - low[0], high[1] - low[1]) / 2;
+    std::array<PlanPoint, 4> inner{{{low[0] - margin, low[1] - margin},
+                                    {high[0] + margin, low[1] - margin},
+                                    {high[0] + margin, high[1] + margin},
+                                    {low[0] - margin, high[1] + margin}}};
+    const std::array<PlanPoint, 4> first = inner;
+    for (const PlanPoint& corner : first)
+        add(corner, plane->at(corner));
+    const auto filled = outside(points, edges);
+    if (!filled) return std::nullopt;
+    std::vector<std::array<Position, 3>> triangles;
+    for (const auto& t : *filled)
+        triangles.push_back({corners[index(t[0])], corners[index(t[1])], corners[index(t[2])]});
+    for (const double length : lengths) {
+        std::array<PlanPoint, 4> outer = first;
+        for (std::size_t i = 0; i < 4; ++i) {
+            outer[i][0] += i == 1 || i == 2 ? length : -length;
+            outer[i][1] += i >= 2 ? length : -length;
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+            const std::size_t j = (i + 1) % 4;
+            const Position a = plane->at(outer[i]), b = plane->at(outer[j]),
+                           c = plane->at(inner[j]), d = plane->at(inner[i]);
+            triangles.push_back({a, b, c});
+            triangles.push_back({a, c, d});
+        }
+        inner = outer;
+    }
+    return triangles;
+}
 
 namespace {
 
@@ -139,25 +298,25 @@ private:
     /// Gives the edges of each chain the mean of their own directions, unless they go round.
     void take_means(const std::vector<Position>& own, DisjointSets& chains) {
         constexpr double kRound = 0.25;  // of all directions: their sum, at least
-        struct Sum {
+        struct DirectionSum {
             Position way{0, 0, 0};
             double whole = 0;
             std::size_t edges = 0;
         };
-        std::vector<Sum> sums(border_.size());
-        const auto sum_of = [&](std::size_t i) -> Sum& {
+        std::vector<DirectionSum> sums(border_.size());
+        const auto sum_of = [&](std::size_t i) -> DirectionSum& {
             return sums[index(chains.find(static_cast<std::int32_t>(i)))];
         };
         for (std::size_t i = 0; i < border_.size(); ++i) {
             const Position along = minus(at(border_[i].to), at(border_[i].from));
             const double size = length(along);
-            Sum& all = sum_of(i);
+            DirectionSum& all = sum_of(i);
             all.way = moved(all.way, size, own[i]);
             all.whole += size;
             ++all.edges;
         }
         for (std::size_t i = 0; i < border_.size(); ++i) {
-            const Sum& all = sum_of(i);
+            const DirectionSum& all = sum_of(i);
             if (all.edges > 1 && length(all.way) >= kRound * all.whole)
                 direction_[i] = unit(all.way);
         }
@@ -277,7 +436,7 @@ class SurfaceOfTriangles {
 public:
     void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
     void add(const std::array<Position, 3>& corners, bool is_continuation) {
-        if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
+        if (exact::in_one_line(corners[0], corners[1], corners[2])) return;
         put({vertices_.add(corners[0]), vertices_.add(corners[1]), vertices_.add(corners[2])},
             is_continuation);
         CutterSurface& single = all_.single.back();
@@ -291,7 +450,7 @@ public:
         for (std::size_t t = 0; t < body.triangles.size(); ++t) {
             const auto corners = body.corners(t);
             if ((rock && !spatial::bounding_box(corners).meets(*rock)) ||
-                cutting::in_one_line(corners[0], corners[1], corners[2]))
+                exact::in_one_line(corners[0], corners[1], corners[2]))
                 continue;
             std::array<NodeId, 3> own{};
             for (std::size_t i = 0; i < 3; ++i) {
@@ -320,14 +479,14 @@ private:
 };
 
 /// Which triangles of structures there are.
-struct Extent {
+struct SurfaceExtent {
     bool continues_all = false;  ///< those are continued, too, that divide the rock by themselves
     bool has_all_of_bodies = true;  ///< the surface of all has what of bodies is beyond the rock
 };
 
 /// @param count  of structures, those that are taken
 StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
-                            const Box& rock, const Extent& extent_of) {
+                            const Box& rock, const SurfaceExtent& extent_of) {
     std::vector<CutterSurface> given;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {

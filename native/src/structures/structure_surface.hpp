@@ -21,7 +21,9 @@
 // touching      an edge that a part has more than twice: it is set apart there, or stays
 //               (set_touching_apart)
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -60,5 +62,30 @@ StructureSurface first_surface(std::span<const Structure> structures, const spat
 
 /// One structure alone, checked and oriented.
 cutting::CutterSurface checked_surface(const Structure& structure, std::int32_t number);
+
+/// What continues a fault around its border, however ragged that is: triangles between the border
+/// and a rectangle in its mean plane, then that plane. So the continuation crosses neither itself
+/// nor the fault, and it is the same however far it reaches. Holes of the fault are filled.
+///
+/// Nothing where the border crosses itself or turns over seen at right angles to that plane.
+/// @param border   the edges that one triangle has, as that triangle runs
+/// @param lengths  how far beyond the rectangle its parts reach, ascending
+std::optional<std::vector<std::array<cutting::Position, 3>>> continued_in_mean_plane(
+    const cutting::CutterSurface& fault, std::span<const std::array<cutting::NodeId, 2>> border,
+    std::span<const double> lengths);
+
+/// How much of a fault lies on each side of another one.
+struct BranchSides {
+    double above = 0, below = 0;  ///< areas
+    bool meets = false;           ///< whether the faults themselves have a point in common
+};
+
+/// Of a fault that ends at another one, and of that with its continuation. Divided exactly, near
+/// the rock and away from it.
+BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, std::int32_t other);
+
+/// On which side of the other one the larger part of its area lies.
+/// @throws InputError kinds does_not_meet, equal_halves
+std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std::int32_t other);
 
 }  // namespace realmodel::structures

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "structures/wanted_parts.hpp"
 
-#include <algorithm>
 #include <cassert>
 
-#include "base/lists.hpp"
-#include "structures/narrow.hpp"
+#include "base/algorithms.hpp"
 
 namespace realmodel::structures {
 
@@ -39,8 +37,8 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
     faces_on_.resize(overlay.size());
     is_same_.assign(overlay.size(), 0);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
-        if (overlay.of_cutter(r) || winding.level(r) < 0) continue;
-        auto& on = faces_on_[index(winding.level(r))];
+        if (overlay.of_cutter(r) || winding.coincident(r) < 0) continue;
+        auto& on = faces_on_[index(winding.coincident(r))];
         const auto own = overlay.faces_of(r);
         on.insert(on.end(), own.begin(), own.end());
     }
@@ -76,7 +74,7 @@ bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
 }
 
 /// Whether a cell at one side of a region of the surface ends there without the surface, too.
-bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
+bool WantedParts::cell_ends_at(std::int32_t cell, std::size_t region) const {
     const auto is_at = [&](std::size_t side) {
         return std::ranges::any_of(winding_.around(region, side),
                                    [cell](const auto& one) { return one.first == cell; });
@@ -88,27 +86,26 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
 /// off against no rock lies against what is below the oldest surface: a fault displaces that, too,
 /// and what fills a void from a base elevation may have it beside it. Where a body was protected,
 /// what came later may end at its border, and within it at a fault that displaced what protects.
-std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
+std::int32_t WantedParts::last_active_structure(std::size_t region, std::int32_t low,
+                                                std::int32_t high) const {
     assert(low >= 0 || high >= 0);
-    const Sides& below = sides_.sides(sides_.part_at(region, 0));
-    const Sides& above = sides_.sides(sides_.part_at(region, 1));
     const ComplexView& model = overlay_.model();
     const bool differs = low < 0 || high < 0 || model.block(low) != model.block(high);
-    const bool is_cut_off = differs && !(ends_itself(low, region) && ends_itself(high, region));
+    const bool is_cut_off = differs && !(cell_ends_at(low, region) && cell_ends_at(high, region));
     const bool may_end_here =
-        is_cut_off && (low < 0 || high < 0 || is_in_body(below) || is_in_body(above));
+        is_cut_off && (low < 0 || high < 0 || is_in_body(region, 0) || is_in_body(region, 1));
     std::int32_t found = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
-        const auto s = index(of.structure);
-        if (!of.is_own || below[s] == above[s]) continue;
+        if (!of.is_own || !divides_at(of.structure, region)) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
         if (may_end_here) last = of.structure;
     }
     return found >= 0 ? found : last;
 }
 
-/// Whether what has these sides of the structures lies in one of the bodies.
-bool WantedParts::is_in_body(const Sides& sides) const {
+/// Whether what is at one side of a region lies in one of the bodies.
+bool WantedParts::is_in_body(std::size_t region, std::size_t side) const {
+    const Sides& sides = sides_.sides(sides_.part_at(region, side));
     for (std::size_t s = 0; s < sides.size(); ++s) {
         if (sides[s] < 0 && sides_.is_body(static_cast<std::int32_t>(s))) return true;
     }
@@ -116,14 +113,14 @@ bool WantedParts::is_in_body(const Sides& sides) const {
 }
 
 bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) const {
-    return acting(region, cell, -1) < 0;
+    return last_active_structure(region, cell, -1) < 0;
 }
 
 /// Where nothing acts it is what the cells have there without the structures. In slivers that
 /// rounding left there is a wall between cells of one block, and between blocks the surface that
 /// they meet at.
 std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
-    const std::int32_t structure = acting(region, low, high);
+    const std::int32_t structure = last_active_structure(region, low, high);
     const ComplexView& model = overlay_.model();
     if (structure >= 0) return -2 - (model.surfaces + structure);
     for (const std::int32_t face : faces_on_[region]) {
@@ -134,7 +131,7 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
         }
     }
     if (model.block(low) == model.block(high)) return -2 - kWall;
-    const std::int32_t fault = parting(region);
+    const std::int32_t fault = first_dividing(region);
     if (fault >= 0 && is_tall(region)) return -2 - (model.surfaces + fault);
     std::int32_t surface = std::max(model.block(low), model.block(high));
     if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
@@ -144,14 +141,19 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
     return -2 - surface;
 }
 
-/// The first structure that has what is below and above a region on two sides, -1 none.
-std::int32_t WantedParts::parting(std::size_t region) const {
-    const Sides& below = sides_.sides(sides_.part_at(region, 0));
-    const Sides& above = sides_.sides(sides_.part_at(region, 1));
+/// Whether a structure has what is below and above a region on two sides.
+bool WantedParts::divides_at(std::int32_t structure, std::size_t region) const {
+    const auto side = [&](std::size_t k) {
+        return sides_.sides(sides_.part_at(region, k))[index(structure)];
+    };
+    return side(0) != side(1);
+}
+
+/// The first structure that does, -1 none.
+std::int32_t WantedParts::first_dividing(std::size_t region) const {
     const auto& structures = sides_.structures_at(region);
-    const auto found = std::ranges::find_if(structures, [&](const RegionOf& of) {
-        return below[index(of.structure)] != above[index(of.structure)];
-    });
+    const auto found = std::ranges::find_if(
+        structures, [&](const RegionOf& of) { return divides_at(of.structure, region); });
     return found == structures.end() ? -1 : found->structure;
 }
 
@@ -191,7 +193,7 @@ bool WantedParts::is_sliver(std::size_t region) const {
     const auto loops = overlay_.loops(region);
     for (std::size_t k = 0; k < loops.size(); ++k) {
         const auto corners =
-            mapped(loops[k], [this](NodeId node) { return overlay_.position(node); });
+            transformed(loops[k], [this](NodeId node) { return overlay_.position(node); });
         narrow.add(corners, k > 0);
     }
     return static_cast<bool>(narrow);
@@ -199,12 +201,9 @@ bool WantedParts::is_sliver(std::size_t region) const {
 
 /// Refuses a fault that is continued through rock that it displaces, unless it says that it dies
 /// out there.
-void WantedParts::refuse_unsaid_end(std::size_t region, std::int32_t cell) const {
-    const Sides& below = sides_.sides(sides_.part_at(region, 0));
-    const Sides& above = sides_.sides(sides_.part_at(region, 1));
+void WantedParts::refuse_undeclared_tip(std::size_t region, std::int32_t cell) const {
     for (const RegionOf& of : sides_.structures_at(region)) {
-        const auto s = index(of.structure);
-        if (!of.is_own && below[s] != above[s] && !sides_.dies_out(of.structure) &&
+        if (!of.is_own && divides_at(of.structure, region) && !sides_.dies_out(of.structure) &&
             does_act(of.structure, cell))
             sides_.refuse("ends_inside", "the fault ends in rock that it displaces", of.structure,
                           region);
@@ -216,31 +215,26 @@ void WantedParts::refuse_unsaid_end(std::size_t region, std::int32_t cell) const
 /// differs by more than slivers, a fault ends in it.
 bool WantedParts::are_same(std::size_t region, bool may_be_sliver) const {
     const std::int32_t low = wanted_at(region, 0), high = wanted_at(region, 1);
-    if ((low < 0 && high < 0) || acting(region, low, high) >= 0 ||
+    if ((low < 0 && high < 0) || last_active_structure(region, low, high) >= 0 ||
         (may_be_sliver && is_sliver(region)))
         return false;
     const ComplexView& model = overlay_.model();
     if (model.block(low) == model.block(high)) {
-        refuse_unsaid_end(region, low);
+        refuse_undeclared_tip(region, low);
         return true;
     }
-    const auto& structures = sides_.structures_at(region);
-    const auto parts_sides = [&](const RegionOf& of) {
-        const auto s = index(of.structure);
-        return sides_.sides(sides_.part_at(region, 0))[s] !=
-               sides_.sides(sides_.part_at(region, 1))[s];
-    };
     // beyond its tip, surfaces that are torn are displaced still, but for walls of both models
     const bool is_beyond_tip =
-        low >= 0 && high >= 0 && std::ranges::any_of(structures, [&](const RegionOf& of) {
-            return !of.is_own && sides_.dies_out(of.structure) && parts_sides(of);
+        low >= 0 && high >= 0 &&
+        std::ranges::any_of(sides_.structures_at(region), [&](const RegionOf& of) {
+            return !of.is_own && sides_.dies_out(of.structure) && divides_at(of.structure, region);
         });
-    if (ends_itself(low, region) && ends_itself(high, region) &&
+    if (cell_ends_at(low, region) && cell_ends_at(high, region) &&
         (!is_beyond_tip || is_there_without_structures(region, low, high)))
         return false;
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",
-                  parting(region), region);
+                  first_dividing(region), region);
 }
 
 }  // namespace realmodel::structures

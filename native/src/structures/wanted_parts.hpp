@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "structures/structure_sides.hpp"
 
 namespace realmodel::structures {
+
+/// Whether polygons, of which some may be holes, are narrower than rounding may have made them.
+class Narrow {
+public:
+    /// @param least_rounding  how coarse rounding is at least
+    explicit Narrow(double least_rounding = 0) : rounding_(least_rounding) {}
+    void add(std::span<const cutting::Position> corners, bool is_hole) {
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            border_ += length(minus(corners[(i + 1) % corners.size()], corners[i]));
+        const double size = length(polygon_normal(corners));
+        area_ += is_hole ? -size : size;
+        rounding_ = std::max(rounding_, cutting::rounding_of(corners));
+    }
+    explicit operator bool() const { return area_ <= kTimes * rounding_ * border_; }
+
+private:
+    static constexpr double kTimes = 64;  ///< rounding
+    double border_ = 0, area_ = 0, rounding_;
+};
 
 /// Of the cells of several models those parts that lie in their model's part of space.
 class WantedParts : public cutting::PartSides {
@@ -36,17 +56,19 @@ public:
 
 private:
     std::int8_t of_item(std::size_t item, std::size_t face) const;
-    std::int32_t acting(std::size_t region, std::int32_t low, std::int32_t high) const;
+    std::int32_t last_active_structure(std::size_t region, std::int32_t low,
+                                       std::int32_t high) const;
     bool does_act(std::int32_t structure, std::int32_t cell) const;
-    bool is_in_body(const Sides& sides) const;
+    bool is_in_body(std::size_t region, std::size_t side) const;
     bool is_there_without_structures(std::size_t region, std::int32_t low, std::int32_t high) const;
-    std::int32_t parting(std::size_t region) const;
+    bool divides_at(std::int32_t structure, std::size_t region) const;
+    std::int32_t first_dividing(std::size_t region) const;
     bool is_tall(std::size_t region) const;
     bool is_sliver(std::size_t region) const;
-    void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;
+    void refuse_undeclared_tip(std::size_t region, std::int32_t cell) const;
     bool are_same(std::size_t region, bool may_be_sliver) const;
     std::int32_t wanted_at(std::size_t region, std::size_t side) const;
-    bool ends_itself(std::int32_t cell, std::size_t region) const;
+    bool cell_ends_at(std::int32_t cell, std::size_t region) const;
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;

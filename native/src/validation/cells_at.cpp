@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "base/lists.hpp"
-#include "exact/space_predicates.hpp"
-#include "spatial/point_bins.hpp"
+#include "base/algorithms.hpp"
+#include "exact/space_points.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::validation {
 
@@ -52,15 +52,15 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
         });
     };
     auto all = found_in_each<Passage>(model.face_count(), execution, look);
-    std::ranges::sort(all, {}, [](const Passage& p) { return std::pair{p.position, p.cell}; });
+    const auto position_and_cell = [](const Passage& p) { return std::pair{p.position, p.cell}; };
+    std::ranges::sort(all, {}, position_and_cell);
     std::vector<std::int32_t> cells(positions.size(), -1);
-    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-        const auto& [position, cell, first_times] = all[begin];
+    for (const auto passages : groups_of(all, position_and_cell)) {
         std::int32_t times = 0;
-        for (end = begin;
-             end < all.size() && all[end].position == position && all[end].cell == cell; ++end)
-            times += all[end].times;
-        if (times > 0 && cells[position] < 0) cells[position] = cell;
+        for (const Passage& passage : passages)
+            times += passage.times;
+        std::int32_t& cell = cells[passages[0].position];
+        if (times > 0 && cell < 0) cell = passages[0].cell;
     }
     return cells;
 }

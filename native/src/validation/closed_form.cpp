@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "exact/local_arrangement.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::validation {
 

@@ -11,14 +11,14 @@
 namespace realmodel::validation {
 
 /// A stretch of a vertical line within one block.
-struct Interval {
+struct BlockInterval {
     std::int32_t block;
     double low, high;
 };
 
 /// What the closed form of docs/dev/geometry.md says of one plan place.
 struct ClosedColumn {
-    std::vector<Interval> intervals;                    ///< upwards
+    std::vector<BlockInterval> intervals;               ///< upwards
     std::vector<std::optional<double>> surface_height;  ///< of the surfaces of all rock masses
     double slope = 0;                                   ///< steepest of the surfaces there
     double highest = 0;  ///< largest height of their triangles' corners, without its sign

@@ -5,10 +5,15 @@
 #include <cmath>
 #include <optional>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "base/vectors.hpp"
+#include "exact/double_double_interval.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "spatial/plan_tiles.hpp"
+#include "validation/findings.hpp"
 
 namespace realmodel::validation {
 
@@ -156,10 +161,10 @@ PlanPosition outward(const ComplexView& model, const WallSample& wall) {
     return {sign * way[1] / length, -sign * way[0] / length};
 }
 
-class Choice {
+class ProbeChoice {
 public:
-    Choice(const ComplexView& model, const ModelInput& input, std::uint64_t seed,
-           const PlanRounding& rounding)
+    ProbeChoice(const ComplexView& model, const ModelInput& input, std::uint64_t seed,
+                const PlanRounding& rounding)
         : model_(model), input_(input), seed_(seed), rounding_(rounding) {}
 
     void evenly(std::size_t count) {
@@ -268,12 +273,217 @@ Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int
         (model.face_surface[f] == kWall ? walls : others).push_back(static_cast<std::int32_t>(f));
     }
     const auto count = static_cast<std::size_t>(std::max<std::int64_t>(places, 0));
-    Choice choice(model, input, seed, rounding);
+    ProbeChoice choice(model, input, seed, rounding);
     choice.evenly(count / 4);
     choice.in_triangles(count / 4);
     choice.on_faces(count / 4, others);
     choice.beside_walls(count / 8, walls);  // two places each
     return std::move(choice.chosen);
+}
+
+namespace {
+
+/// How often a closed loop winds round a place, counter-clockwise; exact. Loops that share an edge
+/// agree about it, so that a vertical line meets the faces of closed cells in pairs.
+int winding(std::span<const PlanPosition> loop, const PlanPosition& place) {
+    int turns = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const PlanPosition& p = loop[i];
+        const PlanPosition& q = loop[i + 1 < loop.size() ? i + 1 : 0];
+        if (p[1] <= place[1]) {
+            if (q[1] > place[1] && exact::orient2d(p, q, place) > 0) ++turns;
+        } else if (q[1] <= place[1] && exact::orient2d(p, q, place) < 0) {
+            --turns;
+        }
+    }
+    return turns;
+}
+
+/// Whether a segment passes within `reach` of a place (a little more may count).
+bool passes(const PlanPosition& from, const PlanPosition& to, const PlanPosition& place,
+            double reach) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        if (place[axis] < std::min(from[axis], to[axis]) - reach) return false;
+        if (place[axis] > std::max(from[axis], to[axis]) + reach) return false;
+    }
+    return std::abs(twice_area(from, to, place)) <= 1.001 * reach * distance(from, to) + 1e-290;
+}
+
+bool contains(const std::array<PlanPosition, 3>& p, const PlanPosition& place) {
+    const int turn = exact::orient2d(p[0], p[1], p[2]);
+    if (turn == 0) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (exact::orient2d(p[i], p[(i + 1) % 3], place) == -turn) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
+                           const PlanRounding& rounding, const Execution& execution)
+    : near_edge_(probes.probes.size(), 0) {
+    std::vector<PlanPosition> places;
+    for (const Probe& probe : probes.probes)
+        places.push_back(probe.place);
+    const spatial::PointBins bins(places);
+    const auto is_lower = [](std::int32_t t, std::int32_t known) { return known < 0 || t < known; };
+    for (const strata::StackInput& rock : input.rocks)
+        surfaces_ += rock.surfaces.size();
+    triangle_.assign(places.size() * surfaces_, -1);
+
+    /// Calls visit(probe, triangle) for all triangles of a mesh that contain a probe.
+    const auto look = [&](std::span<const double> vertices, std::size_t columns,
+                          std::span<const std::int32_t> triangles, const auto& visit) {
+        parallel_each(triangles.size() / 3, execution, [&](std::size_t t) {
+            std::array<PlanPosition, 3> p;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double* row = &vertices[index(triangles[3 * t + i]) * columns];
+                p[i] = {row[0], row[1]};
+            }
+            const spatial::PlanBox box = spatial::box_around(p).widened(rounding.near);
+            bins.within(box, [&](std::size_t i, const PlanPosition&) {
+                for (std::size_t e = 0; e < 3; ++e) {
+                    if (passes(p[e], p[(e + 1) % 3], places[i], rounding.near))
+                        atomic_set(near_edge_[i]);
+                }
+                if (contains(p, places[i])) visit(i, static_cast<std::int32_t>(t));
+            });
+        });
+    };
+    std::size_t first = 0;
+    for (const strata::StackInput& rock : input.rocks) {
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            const TriangleView& s = rock.surfaces[k];
+            look(s.vertices, 3, s.triangles, [&](std::size_t probe, std::int32_t t) {
+                atomic_min_by(triangle_[probe * surfaces_ + first + k], t, is_lower);
+            });
+        }
+        if (rock.region) {
+            std::vector<std::uint8_t> inside(places.size(), 0);
+            look(rock.region->vertices, 2, rock.region->triangles,
+                 [&](std::size_t probe, std::int32_t) { atomic_set(inside[probe]); });
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                if (inside[i] != 0) continue;
+                std::fill_n(triangle_.begin() + static_cast<std::ptrdiff_t>(i * surfaces_ + first),
+                            rock.surfaces.size(), -1);
+            }
+        }
+        first += rock.surfaces.size();
+    }
+}
+
+using exact::DoubleDoubleInterval;
+
+namespace {
+
+/// A face's corners, and its loop seen from above.
+class FaceInPlan {
+public:
+    explicit FaceInPlan(const ComplexView& model) : model_(model) {}
+
+    void load(std::size_t face) {
+        const auto loop = model_.face(face);
+        corners.resize(loop.size());
+        plan.resize(loop.size());
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            corners[i] = model_.vertex(loop[i]);
+            plan[i] = {corners[i][0], corners[i][1]};
+        }
+    }
+
+    /// The height of the face at a place within it: of the triangle of its fan there.
+    double height(const PlanPosition& place) const {
+        for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+            const int a = exact::orient2d(plan[0], plan[i], place);
+            const int b = exact::orient2d(plan[i], plan[i + 1], place);
+            const int c = exact::orient2d(plan[i + 1], plan[0], place);
+            if (exact::orient2d(plan[0], plan[i], plan[i + 1]) == 0) continue;
+            if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))
+                return triangle_height(i, place);
+        }
+        return corners[0][2];
+    }
+
+    std::vector<std::array<double, 3>> corners;
+    std::vector<PlanPosition> plan;
+
+private:
+    // to twice the precision of doubles, for needles
+    double triangle_height(std::size_t i, const PlanPosition& place) const {
+        const auto &o = corners[0], &p = corners[i], &q = corners[i + 1];
+        const auto d = [&](double a, double b) { return DoubleDoubleInterval::difference(a, b); };
+        const DoubleDoubleInterval ux = d(p[0], o[0]), uy = d(p[1], o[1]), vx = d(q[0], o[0]),
+                                   vy = d(q[1], o[1]);
+        const DoubleDoubleInterval wx = d(place[0], o[0]), wy = d(place[1], o[1]);
+        const DoubleDoubleInterval area = ux * vy - uy * vx;
+        const DoubleDoubleInterval s = (wx * vy - wy * vx) / area, t = (ux * wy - uy * wx) / area;
+        return (DoubleDoubleInterval(o[2]) + s * d(p[2], o[2]) + t * d(q[2], o[2])).high;
+    }
+
+    const ComplexView& model_;
+};
+
+bool same_stretch(const WallSample& wall, const PlanPosition& p, const PlanPosition& q) {
+    return (wall.from == p && wall.to == q) || (wall.from == q && wall.to == p);
+}
+
+}  // namespace
+
+ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
+                           const PlanRounding& rounding, const Execution& execution)
+    : near_edge_(probes.probes.size(), 0), coincident_(probes.walls.size(), 0) {
+    const std::size_t count = probes.probes.size();
+    std::vector<PlanPosition> places;
+    for (const Probe& probe : probes.probes)
+        places.push_back(probe.place);
+    for (const WallSample& wall : probes.walls)
+        places.push_back(wall.middle);
+    const spatial::PointBins bins(places);
+    const double beside = rounding.step + rounding.near;
+    std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
+                                             kItemsOfChunk);
+    parallel_ranges(
+        model.face_count(), kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
+            auto& own = found[begin / kItemsOfChunk];
+            FaceInPlan face(model);
+            const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
+                for (std::size_t k = 0; k < face.plan.size(); ++k) {
+                    const PlanPosition& p = face.plan[k];
+                    const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
+                    if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach)) return true;
+                }
+                return false;
+            };
+            for (std::size_t f = begin; f < end; ++f) {
+                face.load(f);
+                const spatial::PlanBox box = spatial::box_around(face.plan).widened(beside);
+                bins.within(box, [&](std::size_t i, const PlanPosition&) {
+                    if (i >= count) {
+                        const WallSample& wall = probes.walls[i - count];
+                        const auto its_own = [&](const auto& p, const auto& q) {
+                            return same_stretch(wall, p, q);
+                        };
+                        if (edge_passes(i, beside, its_own)) atomic_set(coincident_[i - count]);
+                        return;
+                    }
+                    const auto none = [](const auto&, const auto&) { return false; };
+                    if (edge_passes(i, rounding.near, none)) atomic_set(near_edge_[i]);
+                    const int turns = winding(face.plan, places[i]);
+                    if (turns == 0) return;
+                    const bool up = turns > 0;
+                    own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
+                                   model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
+                                   face.height(places[i])});
+                });
+            }
+        });
+    crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
+        for (const auto& part : found) {
+            for (const Crossing& c : part)
+                put(index(c.probe), c);
+        }
+    });
 }
 
 }  // namespace realmodel::validation

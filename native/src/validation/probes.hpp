@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/counting_sort.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/validation/sampling.hpp"
 
@@ -50,5 +52,51 @@ double largest_plan_coordinate(const ComplexView& model, const ModelInput& input
 /// Chooses the places; the same for the same seed.
 Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int64_t places,
                      std::uint64_t seed, const PlanRounding& rounding, Progress* progress);
+
+/// The triangles of the input above and below each probe.
+class InputColumns {
+public:
+    InputColumns(const ModelInput& input, const Probes& probes, const PlanRounding& rounding,
+                 const Execution& execution);
+
+    std::size_t surface_count() const { return surfaces_; }
+    /// The triangle of a surface (counted through all rock masses) there, -1 where it has none or
+    /// the region leaves it out.
+    std::int32_t triangle(std::size_t probe, std::size_t surface) const {
+        return triangle_[probe * surfaces_ + surface];
+    }
+    /// Whether an edge of the input passes too close to be sure on which side a probe lies.
+    bool near_edge(std::size_t probe) const { return near_edge_[probe] != 0; }
+
+private:
+    std::size_t surfaces_ = 0;
+    std::vector<std::int32_t> triangle_;
+    std::vector<std::uint8_t> near_edge_;
+};
+
+/// Where the vertical line through a probe meets a face.
+struct Crossing {
+    std::int32_t probe, face;
+    std::int32_t below, above;  ///< cells, -1 outside
+    double height;
+};
+
+/// What the model has on the vertical lines through all probes.
+class ModelColumns {
+public:
+    ModelColumns(const ComplexView& model, const Probes& probes, const PlanRounding& rounding,
+                 const Execution& execution);
+
+    /// In the order of their faces.
+    std::span<const Crossing> of_probe(std::size_t probe) const { return crossings_[probe]; }
+    /// Whether an edge of the model passes too close to a probe to be sure on which side it lies.
+    bool near_edge(std::size_t probe) const { return near_edge_[probe] != 0; }
+    /// Whether another edge passes so close to a wall that the probes beside it may lie beyond.
+    bool coincident(std::size_t wall) const { return coincident_[wall] != 0; }
+
+private:
+    Buckets<Crossing> crossings_;
+    std::vector<std::uint8_t> near_edge_, coincident_;
+};
 
 }  // namespace realmodel::validation

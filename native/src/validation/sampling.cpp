@@ -7,11 +7,9 @@
 #include <limits>
 
 #include "realmodel/base/errors.hpp"
-#include "validation/chunked.hpp"
 #include "validation/closed_form.hpp"
-#include "validation/figure.hpp"
-#include "validation/input_columns.hpp"
-#include "validation/model_columns.hpp"
+#include "validation/findings.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 
@@ -28,9 +26,9 @@ double rounding_of_heights(double highest) {
     return 2 * kHeightSteps * std::max(highest * 0x1p-52, kLeast);
 }
 
-std::string text_of(const std::vector<Interval>& column) {
+std::string text_of(const std::vector<BlockInterval>& column) {
     std::string text;
-    for (const Interval& i : column) {
+    for (const BlockInterval& i : column) {
         text += (text.empty() ? "block " : ", block ") + std::to_string(i.block) + " from " +
                 figure(i.low) + " to " + figure(i.high);
     }
@@ -39,7 +37,7 @@ std::string text_of(const std::vector<Interval>& column) {
 
 /// The model along a vertical line: upwards from the outside, from cell to cell, to the outside.
 struct ModelColumn {
-    std::vector<Interval> intervals;
+    std::vector<BlockInterval> intervals;
     std::string broken;  ///< why that could not be done; empty where it could
 };
 
@@ -76,17 +74,18 @@ ModelColumn walk(const ComplexView& model, std::span<const Crossing> crossings) 
     return column;
 }
 
-std::vector<Interval> thicker_than(const std::vector<Interval>& column, double least) {
-    std::vector<Interval> kept;
-    for (const Interval& i : column) {
+std::vector<BlockInterval> thicker_than(const std::vector<BlockInterval>& column, double least) {
+    std::vector<BlockInterval> kept;
+    for (const BlockInterval& i : column) {
         if (i.high - i.low > least) kept.push_back(i);
     }
     return kept;
 }
 
-bool agree(const std::vector<Interval>& a, const std::vector<Interval>& b, double allowed) {
+bool agree(const std::vector<BlockInterval>& a, const std::vector<BlockInterval>& b,
+           double allowed) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [allowed](const Interval& one, const Interval& other) {
+                      [allowed](const BlockInterval& one, const BlockInterval& other) {
                           return one.block == other.block &&
                                  std::abs(one.low - other.low) <= allowed &&
                                  std::abs(one.high - other.high) <= allowed;
@@ -103,11 +102,11 @@ struct SampleFindings {
 };
 
 /// Compares the model with the closed form probe by probe.
-class Comparison {
+class ProbeComparison {
 public:
-    Comparison(const ComplexView& model, const ModelInput& input, const Probes& probes,
-               const PlanRounding& rounding, const ModelColumns& model_columns,
-               const InputColumns& input_columns)
+    ProbeComparison(const ComplexView& model, const ModelInput& input, const Probes& probes,
+                    const PlanRounding& rounding, const ModelColumns& model_columns,
+                    const InputColumns& input_columns)
         : model_(model),
           input_(input),
           probes_(probes),
@@ -206,7 +205,7 @@ private:
                               closed.slope * (rounding_.step + rounding_.near);
         bool at_border = wall.half_width <= margin || !column.broken.empty();
         std::int32_t have = -1;
-        for (const Interval& i : column.intervals) {
+        for (const BlockInterval& i : column.intervals) {
             if (i.low < wall.height && wall.height < i.high) have = i.block;
             at_border |=
                 std::abs(i.low - wall.height) <= margin || std::abs(i.high - wall.height) <= margin;
@@ -277,7 +276,7 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
     report(0.5, "finding the surfaces at the test points");
     const InputColumns input_columns(input, probes, rounding, execution);
     report(0.7, "comparing with the closed form");
-    const Comparison comparison(model, input, probes, rounding, model_columns, input_columns);
+    const ProbeComparison comparison(model, input, probes, rounding, model_columns, input_columns);
     constexpr std::size_t kProbesOfChunk = 64;
     const auto look = [&](std::size_t begin, std::size_t end, SampleFindings& found) {
         for (std::size_t i = begin; i < end; ++i)

@@ -4,17 +4,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "base/corrected_sum.hpp"
-#include "validation/arrays_test.hpp"
-#include "validation/cell_extent.hpp"
+#include "base/floating_point.hpp"
+#include "validation/array_tests.hpp"
 #include "validation/cell_sides.hpp"
-#include "validation/chunked.hpp"
-#include "validation/closed_cells.hpp"
-#include "validation/face_measures.hpp"
 #include "validation/face_shape.hpp"
-#include "validation/figure.hpp"
-#include "validation/outside_test.hpp"
-#include "validation/vertex_test.hpp"
+#include "validation/findings.hpp"
 
 namespace realmodel::validation {
 

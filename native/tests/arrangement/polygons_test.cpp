@@ -91,5 +91,106 @@ TEST(SixfoldVolume, IsPositiveWhereTheTriangleIsSeenCounterClockwiseFromOutside)
     EXPECT_EQ(sixfold_volume(o, a, b, b), 0);
 }
 
+std::int8_t facing(const Nodes& one, const Nodes& other) {
+    return facing_of(std::span(one), std::span(other));
+}
+
+TEST(FacingOf, LoopsOfTheSameNodesMayBeginAnywhere) {
+    EXPECT_EQ(facing({1, 2, 3, 4}, {3, 4, 1, 2}), 1);
+    EXPECT_EQ(facing({1, 2, 3, 4}, {2, 1, 4, 3}), -1);
+    EXPECT_EQ(facing({1, 2, 3, 4}, {1, 3, 2, 4}), 0);
+    EXPECT_EQ(facing({1, 2, 3}, {1, 2, 3, 4}), 0);
+    EXPECT_EQ(facing({1, 2, 3, 2, 5}, {2, 5, 1, 2, 3}), 1);  // a node that is passed twice
+    EXPECT_EQ(facing({1, 2, 3, 2, 5}, {2, 3, 2, 1, 5}), -1);
+}
+
+TEST(LoopHash, IsTheSameWhereverALoopBegins) {
+    const Nodes one{1, 2, 3, 4}, same{3, 4, 1, 2}, other{1, 2, 3, 5};
+    EXPECT_EQ(loop_hash(std::span(one)), loop_hash(std::span(same)));
+    EXPECT_NE(loop_hash(std::span(one)), loop_hash(std::span(other)));
+}
+
+TEST(LoopTable, HasLoopsOfRegions) {
+    LoopTable<std::int32_t> table;
+    table.add_loop(Nodes{1, 2, 3});
+    table.add_loop(Nodes{7, 8});
+    table.end_region();
+    table.nodes.push_back(4);
+    table.end_loop();
+    table.end_region();
+    ASSERT_EQ(table.size(), 2U);
+    ASSERT_EQ(table[0].size(), 2U);
+    EXPECT_EQ(table[0][1][1], 8);
+    std::size_t nodes = 0;
+    for (const auto loop : table[0])
+        nodes += loop.size();
+    EXPECT_EQ(nodes, 5U);
+    EXPECT_EQ(table[1][0][0], 4);
+}
+
+using NodeLoops = std::vector<std::vector<NodeId>>;
+
+NodeLoops outlines(JoinedPolygons& joined) {
+    NodeLoops found;
+    joined.each_outline([&](std::span<const JoinedPolygons::PolygonHalfEdge> outline) {
+        auto& loop = found.emplace_back();
+        for (const auto& edge : outline)
+            loop.push_back(edge.from);
+    });
+    return found;
+}
+
+JoinedPolygons joined(const NodeLoops& loops) {
+    JoinedPolygons result;
+    for (std::size_t i = 0; i < loops.size(); ++i)
+        result.add(loops[i], static_cast<std::int32_t>(i));
+    return result;
+}
+
+const auto kAlways = [](const auto&...) { return true; };
+
+TEST(JoinedPolygons, TwoTrianglesMakeASquare) {
+    JoinedPolygons square = joined({{0, 1, 2}, {0, 2, 3}});
+    square.pair(kAlways);
+    EXPECT_EQ(outlines(square), (NodeLoops{{0, 1, 2, 3}}));
+    int pairs = 0;
+    square.each_pair([&](std::int32_t p, std::int32_t q) {
+        EXPECT_NE(p, q);
+        ++pairs;
+    });
+    EXPECT_EQ(pairs, 2);
+}
+
+TEST(JoinedPolygons, WhatMayNotJoinStaysApart) {
+    JoinedPolygons square = joined({{0, 1, 2}, {0, 2, 3}});
+    square.pair([](const std::array<NodeId, 2>& edge, std::int32_t, std::int32_t) {
+        return edge != std::array<NodeId, 2>{0, 2};
+    });
+    EXPECT_EQ(outlines(square), (NodeLoops{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(JoinedPolygons, PairsThatMayNotStayArePartedAgain) {
+    JoinedPolygons fan = joined({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+    fan.pair(kAlways);
+    fan.part([](std::int32_t p, std::int32_t q) { return p < 2 && q < 2; });
+    EXPECT_EQ(outlines(fan), (NodeLoops{{0, 1, 2, 3}, {0, 3, 4}}));
+}
+
+TEST(JoinedPolygons, ARingOfPolygonsHasTwoOutlines) {
+    JoinedPolygons ring =
+        joined({{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});  // around 4, 5, 6, 7
+    ring.pair(kAlways);
+    EXPECT_EQ(outlines(ring), (NodeLoops{{0, 1, 2, 3}, {5, 4, 7, 6}}));
+}
+
+TEST(JoinedPolygons, OthersComeAfterClear) {
+    JoinedPolygons one = joined({{0, 1, 2}, {0, 2, 3}});
+    one.pair(kAlways);
+    one.clear();
+    one.add(std::vector<NodeId>{7, 8, 9}, 0);
+    one.pair(kAlways);
+    EXPECT_EQ(outlines(one), (NodeLoops{{7, 8, 9}}));
+}
+
 }  // namespace
 }  // namespace realmodel::arrangement

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 
 namespace realmodel {
 namespace {

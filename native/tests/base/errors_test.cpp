@@ -41,5 +41,11 @@ TEST(InputError, IsARuntimeErrorAndCancelledIsNone) {
         Cancelled);
 }
 
+TEST(InternalError, SaysWhatDoesNotHoldAndWhere) {
+    const InternalError error("each edge has two faces", std::array<double, 3>{0.5, 2, -3});
+    EXPECT_STREQ(error.what(), "this does not hold: each edge has two faces at 0.5, 2, -3");
+    EXPECT_STREQ(InternalError("a").what(), "this does not hold: a");
+}
+
 }  // namespace
 }  // namespace realmodel

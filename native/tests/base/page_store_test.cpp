@@ -45,9 +45,9 @@ TEST(PageStore, KeepsBlocksOnlyWhileSomebodyAsksForIt) {
     { const Array<std::uint64_t> array(kLarge); }
     expect_kept(0);
     {
-        const page_store::Keeper keeper;
+        const page_store::PageCache cache;
         {
-            const page_store::Keeper another;
+            const page_store::PageCache second;
             const Array<std::uint64_t> array(kLarge);
         }
         expect_kept(5);
@@ -56,7 +56,7 @@ TEST(PageStore, KeepsBlocksOnlyWhileSomebodyAsksForIt) {
 }
 
 TEST(PageStore, AnArrayTakesWhatIsNearestToItsSize) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     Array<std::uint64_t> first(kLarge), between(kLarge), third(2 * kLarge);
     fill(between, 7);
     first = {};
@@ -81,7 +81,7 @@ TEST(PageStore, AnArrayTakesWhatIsNearestToItsSize) {
 }
 
 TEST(PageStore, NoMoreIsHeldThanArraysHadAtMost) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     Array<std::uint64_t> first(kLarge), second(kLarge);
     first = {};
     expect_kept(5);
@@ -90,7 +90,7 @@ TEST(PageStore, NoMoreIsHeldThanArraysHadAtMost) {
 }
 
 TEST(PageStore, AnArrayKeepsItsContentsAsItGrows) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     Array<std::uint64_t> array;
     for (std::size_t i = 0; i < 6 * kLarge; ++i) {
         array.push_back(mixed(i));
@@ -120,7 +120,7 @@ TEST(PageStore, ElementsOfOddSizesKeepTheirPlaces) {
 }
 
 TEST(PageStore, WhatIsReservedCountsOnceItIsReady) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     { const Array<std::uint64_t> dropped(kLarge); }
     {
         Array<std::uint64_t> array;
@@ -137,7 +137,7 @@ TEST(PageStore, WhatIsReservedCountsOnceItIsReady) {
 }
 
 TEST(PageStore, ThreadsTakeAndDropAtOnce) {
-    const page_store::Keeper keeper;
+    const page_store::PageCache cache;
     std::vector<std::thread> threads;
     std::vector<int> wrong(4);
     for (std::size_t t = 0; t < wrong.size(); ++t) {

@@ -43,7 +43,7 @@ TEST(ParallelCounts, EachItemIsCountedOnce) {
     std::vector<std::uint32_t> number(kItems);
     parallel_ranges(kItems, 1000, {3, nullptr}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            number[i] = count_one(counters[i % 7]);
+            number[i] = atomic_increment(counters[i % 7]);
     });
     for (std::size_t group = 0; group < 7; ++group) {
         std::vector<std::uint8_t> taken(counters[group], 0);

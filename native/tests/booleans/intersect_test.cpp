@@ -211,6 +211,24 @@ TEST(Intersect, ASphereMovedByOneUnitInTheLastPlace) {
     EXPECT_NEAR(v.first_only, 0, 1e-12);
 }
 
+TEST(Intersect, AnOperandThatReachesFarLeavesTheNearOneItsVolume) {
+    for (const double far : {1e6, 1e10, 1e14, 1e15, 1e17, 1e20, 1e38}) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Mesh near = cube({-1, -1, -1}, 2);
+            Mesh half = cube({-1, -1, -1}, 2);  // all space below 0.25 along an axis
+            for (std::size_t i = 0; i < half.vertices.size(); ++i)
+                half.vertices[i] =
+                    i % 3 == axis && half.vertices[i] > 0 ? 0.25 : far * half.vertices[i];
+            const Refinement r = intersect(near.view(), half.view());
+            const auto common = r.boundary(Operation::kIntersection);
+            const auto rest = r.boundary(Operation::kDifference);
+            EXPECT_TRUE(is_closed(common) && is_closed(rest)) << far;
+            EXPECT_NEAR(volume_of(r, common), 5, 1e-12) << far;
+            EXPECT_NEAR(volume_of(r, rest), 3, 1e-12) << far;
+        }
+    }
+}
+
 TEST(Intersect, RefusesWhatIsNoSurface) {
     const Mesh a = cube({0, 0, 0}, 1);
     Mesh b = a;

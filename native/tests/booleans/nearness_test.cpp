@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 
 namespace realmodel::booleans {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 #include "small_meshes.hpp"
 
 namespace realmodel::booleans {
@@ -79,6 +79,17 @@ TEST(Snapping, ATriangleWithoutAreaIsFoldedOntoItsLongestEdge) {
     EXPECT_EQ(changed, (std::vector<std::int32_t>{0, 2}));
     EXPECT_TRUE(found.has(0, middle));
     EXPECT_TRUE(found.pieces.of(2).empty());  // two parts, folded upon each other
+}
+
+TEST(KeyNumbers, NumbersKeysInTheOrderInWhichTheyCome) {
+    KeyNumbers<std::array<std::int64_t, 3>> table;
+    EXPECT_EQ(table.find({1, 2, 3}), -1);
+    EXPECT_EQ(table.add({1, 2, 3}), 0);
+    EXPECT_EQ(table.add({3, 2, 1}), 1);
+    EXPECT_EQ(table.add({1, 2, 3}), 0);
+    EXPECT_EQ(table.find({3, 2, 1}), 1);
+    EXPECT_EQ(table.size(), 2U);
+    EXPECT_EQ(table[1], (std::array<std::int64_t, 3>{3, 2, 1}));
 }
 
 }  // namespace

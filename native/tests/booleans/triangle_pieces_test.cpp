@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "../base/read_text.hpp"
-#include "booleans/dump.hpp"
+#include "debug/dump.hpp"
 #include "small_meshes.hpp"
 
 namespace realmodel::booleans {

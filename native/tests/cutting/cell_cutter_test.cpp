@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/cell_cutter.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "../arrangement/small_polygons.hpp"
-#include "cutting/face_splitter.hpp"
+#include "cutting/plane_division.hpp"
 #include "prism.hpp"
 
 namespace realmodel::cutting {

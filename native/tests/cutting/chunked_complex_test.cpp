@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/chunked_complex.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <vector>
+
+#include "cutting/assembly.hpp"
 
 namespace realmodel::cutting {
 namespace {

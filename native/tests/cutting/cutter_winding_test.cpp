@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/cutter_winding.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../validation/small_complex.hpp"
+#include "cutting/cutter_sides.hpp"
 #include "level_cutter.hpp"
 
 namespace realmodel::cutting {
@@ -103,11 +102,11 @@ TEST(CutterWinding, AFaceKnowsTheRegionItLiesOnAndHowItFaces) {
         int found = 0;
         for (std::size_t r = 0; r < wound.overlay.size(); ++r) {
             if (wound.overlay.of_cutter(r)) continue;
-            const bool lies_on = wound.winding.level(r) >= 0;
+            const bool lies_on = wound.winding.coincident(r) >= 0;
             EXPECT_EQ(lies_on, wound.overlay.face_of(r) == 1);
             if (!lies_on) continue;
             ++found;
-            EXPECT_EQ(wound.winding.level_facing(r), upward ? 1 : -1);
+            EXPECT_EQ(wound.winding.coincident_facing(r), upward ? 1 : -1);
         }
         EXPECT_EQ(found, 2);
     }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/dump.hpp"
+#include "debug/dump.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "../base/read_text.hpp"
 #include "halved_box.hpp"
 
 namespace realmodel::cutting {
@@ -12,21 +11,16 @@ namespace {
 
 class CuttingDump : public AHalvedBox {
 protected:
-    CuttingDump() : path_(testing::TempDir() + "realmodel_cutting_dump.obj") {}
     ~CuttingDump() override { std::filesystem::remove(path_); }
-    std::string read() const {
-        std::stringstream text;
-        text << std::ifstream(path_).rdbuf();
-        return text.str();
-    }
-
-    std::string path_;
+    // One for each test: CTest runs them side by side.
+    std::string path_ =
+        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
 };
 
 TEST_F(CuttingDump, PartsAreGroupsOfPolygonsSeenFromOutside) {
     cut_at(0.5);
     dump_parts(rounded_parts(), path_.c_str());
-    const std::string text = read();
+    const std::string text = read_text(path_);
     EXPECT_NE(text.find("v 1 1 0.5\n"), std::string::npos);
     const std::size_t second = text.find("g part_1\n");
     EXPECT_LT(text.find("g part_0\n"), second);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/edge_intersections.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "../validation/small_complex.hpp"
+#include "cutting/plane_division.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/face_splitter.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "../arrangement/small_polygons.hpp"
+#include "cutting/plane_division.hpp"
 #include "prism.hpp"
 
 namespace realmodel::cutting {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "../validation/small_complex.hpp"
-#include "cutting/polygons.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "../arrangement/small_polygons.hpp"
-#include "cutting/halves.hpp"
+#include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/halves.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
+#include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
 
 namespace realmodel::cutting {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/model_check.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "../validation/small_complex.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/plane_points.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../validation/small_complex.hpp"
-#include "exact/orient2d.hpp"
+#include "cutting/plane_division.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::cutting {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/positions.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "cutting/rounding/rounded_parts.hpp"
 
 namespace realmodel::cutting {
 namespace {

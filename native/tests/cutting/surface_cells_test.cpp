@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/surface_cells.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../validation/small_complex.hpp"
+#include "cutting/cutter_sides.hpp"
 #include "level_cutter.hpp"
 
 namespace realmodel::cutting {

@@ -8,8 +8,8 @@
 
 #include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
-#include "base/ulp.hpp"
-#include "exact/space_predicates.hpp"
+#include "base/floating_point.hpp"
+#include "exact/space_points.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
 

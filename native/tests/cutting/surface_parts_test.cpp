@@ -25,7 +25,7 @@ struct PartedCells {
     std::vector<std::size_t> caps() const {
         std::vector<std::size_t> found;
         for (std::size_t p = 0; p < parts.pieces.size(); ++p) {
-            if (parts.pieces[p].is_level) found.push_back(p);
+            if (parts.pieces[p].is_on_cutter) found.push_back(p);
         }
         return found;
     }

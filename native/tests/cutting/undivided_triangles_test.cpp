@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/undivided_triangles.hpp"
-
 #include <gtest/gtest.h>
+
+#include "cutting/surface_overlay.hpp"
 
 namespace realmodel::cutting {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/space_points.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "exact/space_predicates.hpp"
 
 namespace realmodel::exact {
 namespace {

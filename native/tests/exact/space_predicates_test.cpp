@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exact/space_predicates.hpp"
-
 #include <gtest/gtest.h>
 
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::exact {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/active_inequalities.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
+
+#include "fields/spline_constraints.hpp"
 
 namespace realmodel::fields {
 namespace {
@@ -28,7 +28,7 @@ std::vector<Functional> plane() {
 }
 
 Inequality at_least(const Vec3& at, double least) {
-    return {value_at(at), least, Inequality::Kind::kBound, 0, at};
+    return {value_at(at), least, Inequality::Origin::kBound, 0, at};
 }
 
 /// The spline through the plane's values and the active inequalities.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/even_steepness.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "fields/spline_constraints.hpp"
 
 namespace realmodel::fields {
 namespace {

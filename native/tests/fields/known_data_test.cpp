@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "fields/neighbors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::fields {
@@ -75,8 +74,8 @@ TEST(KnownData, LevelsRiseAndPolaritiesAreInequalities) {
     const Beds beds;
     std::size_t orders = 0, polarities = 0;
     for (const Inequality& inequality : beds.known().inequalities()) {
-        orders += inequality.kind == Inequality::Kind::kOrder ? 1 : 0;
-        polarities += inequality.kind == Inequality::Kind::kPolarity ? 1 : 0;
+        orders += inequality.kind == Inequality::Origin::kOrder ? 1 : 0;
+        polarities += inequality.kind == Inequality::Origin::kPolarity ? 1 : 0;
     }
     EXPECT_EQ(orders, 1U);
     EXPECT_EQ(polarities, 4U);

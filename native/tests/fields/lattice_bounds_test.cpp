@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/lattice_bounds.hpp"
 
 #include <gtest/gtest.h>
 
-#include "fields/lattice_weights.hpp"
+#include "fields/lattice_values.hpp"
 
 namespace realmodel::fields {
 namespace {

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "fields/lattice_weights.hpp"
-
 namespace realmodel::fields {
 namespace {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fields/random_function.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
+
+#include "fields/frame_function.hpp"
 
 namespace realmodel::fields {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "realmodel/fields/rising_field.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "realmodel/base/errors.hpp"
+#include "realmodel/fields/critical_points.hpp"
 
 namespace realmodel::fields {
 namespace {

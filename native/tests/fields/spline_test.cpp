@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "fields/anisotropy.hpp"
+#include "fields/likely_field.hpp"
 
 namespace realmodel::fields {
 namespace {

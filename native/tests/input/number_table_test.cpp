@@ -82,6 +82,8 @@ TEST(NumberTable, AtTheEndsOfTheRangeOfDoubles) {
                                          "0." + zeros + "1",
                                          "0." + zeros + "1e400",
                                          "0." + zeros + "1e800",
+                                         "0." + zeros + "1e999999999999999999",
+                                         "-0",
                                          "-0e99999",
                                          "0.0",
                                          "." + zeros};
@@ -91,10 +93,10 @@ TEST(NumberTable, AtTheEndsOfTheRangeOfDoubles) {
 
 TEST(NumberTable, OnlyPlainNumbersAreNumbers) {
     for (const char* text : {".", "+", "-", "+-1", "--1", "0x10", "1_0", "1e", "1e+", "1,5", "1 2",
-                             "1.5.2", "e5", "\"", "''", "1\x80", "infinit", "nan1"}) {
+                             "1.5.2", "e5", "x", "\"", "''", "1\x80", "infinit", "nan1"}) {
         EXPECT_EQ(read_one(text), "not_a_number") << text;
     }
-    for (const char* text : {"nan", "-NaN", "inf", "+Infinity"}) {
+    for (const char* text : {"nan", "-NaN", "inf", "-inf", "+Infinity"}) {
         EXPECT_EQ(read_one(text), "not_finite") << text;
     }
     for (const char* text :

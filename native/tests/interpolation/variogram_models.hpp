@@ -16,9 +16,8 @@ inline constexpr std::array kAllVariogramModels{
 /// Semivariance along the azimuth of each structure.
 inline double gamma_of(const Variogram& variogram, double distance) {
     if (distance == 0) return 0;
-    double sum = variogram.nugget +
-                 variogram.first_sill() * structure(variogram.model, distance / variogram.range);
-    for (const NestedStructure& nested : variogram.further)
+    double sum = variogram.nugget;
+    for (const NestedStructure& nested : variogram.structures())
         sum += nested.sill * structure(nested.model, distance / nested.range);
     return sum;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/judged_flips.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <numbers>
+
+#include "meshing/improvement.hpp"
 
 namespace realmodel::meshing {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/columns.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,17 +8,13 @@
 #include <fstream>
 #include <string>
 
+#include "debug/dump.hpp"
 #include "plane_models.hpp"
 #include "plans.hpp"
 #include "realmodel/base/errors.hpp"
-#include "simulation/column_filler.hpp"
-#include "simulation/column_repair.hpp"
-#include "simulation/dump.hpp"
+#include "simulation/column_heights.hpp"
 #include "simulation/element_quality.hpp"
-#include "simulation/narrow_strips.hpp"
-#include "simulation/post_columns.hpp"
-#include "simulation/post_levels.hpp"
-#include "simulation/vertical_faults.hpp"
+#include "simulation/pillar_levels.hpp"
 
 namespace realmodel::simulation {
 namespace {
@@ -37,39 +35,39 @@ struct Fixture {
           lines(plan_lines),
           blocks(model.block_rock),
           plan(lines, fans()),
-          heights(post_columns(model.view, blocks, lines, plan, {1, nullptr})) {}
-    double height(const PostLevels& levels, std::size_t post, std::size_t level) const {
+          heights(pillar_columns(model.view, blocks, lines, plan, {1, nullptr})) {}
+    double height(const PillarLevels& levels, std::size_t pillar, std::size_t level) const {
         return levels.heights(
-            plan.post_node(post))[static_cast<std::size_t>(levels.levels(post)[level])];
+            plan.pillar_node(pillar))[static_cast<std::size_t>(levels.levels(pillar)[level])];
     }
 };
 
-TEST(PostColumnsTest, PostsHaveTheHeightsAtTheirNodes) {
+TEST(PillarColumnsTest, PillarsHaveTheHeightsAtTheirNodes) {
     const Fixture at({{0, 0}, {4, 14}});
-    for (std::size_t p = 0; p < at.plan.post_count(); ++p) {
+    for (std::size_t p = 0; p < at.plan.pillar_count(); ++p) {
         ASSERT_EQ(at.heights.rock(p), 0);
-        EXPECT_NEAR(at.heights.levels(p)[1], 4 + at.plan.point(at.plan.post_node(p))[0], 1e-6);
+        EXPECT_NEAR(at.heights.levels(p)[1], 4 + at.plan.point(at.plan.pillar_node(p))[0], 1e-6);
     }
 }
 
-TEST(PostColumnsTest, ANodeBeyondTheModelTakesHeightsFromWithin) {
+TEST(PillarColumnsTest, ANodeBeyondTheModelTakesHeightsFromWithin) {
     const Fixture at({{0, 0}, {4, 4}});
     PlanLines lines = at.lines;
     meshing::PlanarMesh mesh = fans();
     lines.points[2] = mesh.vertices[2] = {10.5, 0};
     const PlanTopology plan(lines, mesh);
-    const auto heights = post_columns(at.model.view, at.blocks, lines, plan, {1, nullptr});
-    for (std::size_t p = 0; p < plan.post_count(); ++p) {
+    const auto heights = pillar_columns(at.model.view, at.blocks, lines, plan, {1, nullptr});
+    for (std::size_t p = 0; p < plan.pillar_count(); ++p) {
         EXPECT_EQ(heights.rock(p), 0);
         EXPECT_EQ(heights.levels(p)[1], 4);
     }
 }
 
-TEST(PostLevelsTest, BlocksAreDividedAsTheirThicknessAllows) {
+TEST(PillarLevelsTest, BlocksAreDividedAsTheirThicknessAllows) {
     const Fixture at({{0, 0}, {1, 1}, {5, 5}});
-    const PostLevels levels(at.input, {.minimum_thickness = 0.4, .layers = {3, 2}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.4, .layers = {3, 2}});
     EXPECT_EQ(levels.layer_blocks(0).size(), 5u);
-    for (std::size_t p = 0; p < at.plan.post_count(); ++p) {
+    for (std::size_t p = 0; p < at.plan.pillar_count(); ++p) {
         ASSERT_EQ(levels.levels(p).size(), 6u);
         EXPECT_DOUBLE_EQ(at.height(levels, p, 1), 0.5);
         EXPECT_DOUBLE_EQ(at.height(levels, p, 2), 1);
@@ -78,31 +76,32 @@ TEST(PostLevelsTest, BlocksAreDividedAsTheirThicknessAllows) {
         EXPECT_DOUBLE_EQ(at.height(levels, p, 5), 5);
     }
     EXPECT_THROW(
-        PostLevels(at.input, {.minimum_thickness = 0.4, .layers = {0, 0}, .layer_thickness = 1e-6}),
+        PillarLevels(at.input,
+                     {.minimum_thickness = 0.4, .layers = {0, 0}, .layer_thickness = 1e-6}),
         InputError);
 }
 
-TEST(PostLevelsTest, WhatIsTooThinIsSharedByItsNeighbors) {
+TEST(PillarLevelsTest, WhatIsTooThinIsSharedByItsNeighbors) {
     const Fixture at({{0, 0}, {4, 4}, {4.2, 4.2}, {9, 9}});
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1, 1}});
-    for (std::size_t p = 0; p < at.plan.post_count(); ++p) {
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1, 1}});
+    for (std::size_t p = 0; p < at.plan.pillar_count(); ++p) {
         EXPECT_EQ(levels.levels(p)[1], levels.levels(p)[2]);
         EXPECT_DOUBLE_EQ(at.height(levels, p, 1), 4.1);
     }
 }
 
-TEST(PostLevelsTest, PostsOfOneNodeShareHeights) {
+TEST(PillarLevelsTest, PillarsOfOneNodeShareHeights) {
     const Fixture at({{0, 0}, {4, 4}}, true);
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {2}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {2}});
     EXPECT_EQ(levels.height_count(), 3 * at.plan.nodes());
-    EXPECT_GT(at.plan.post_count(), at.plan.nodes());
+    EXPECT_GT(at.plan.pillar_count(), at.plan.nodes());
 }
 
-TEST(PostLevelsTest, AHeightThatIsRemovedBecomesTheNext) {
+TEST(PillarLevelsTest, AHeightThatIsRemovedBecomesTheNext) {
     const Fixture at({{0, 0}, {4, 4}});
-    PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {4}});
+    PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {4}});
     const std::size_t before = levels.height_count();
-    std::vector<PostLevels::Removal> removals{{6, 2, 1}, {6, 3, 2}, {0, 1, 0}};
+    std::vector<PillarLevels::Removal> removals{{6, 2, 1}, {6, 3, 2}, {0, 1, 0}};
     EXPECT_EQ(levels.remove(at.plan, removals), 2u);  // one of each node
     EXPECT_EQ(levels.height_count(), before - 2);
     EXPECT_EQ(levels.heights(6).size(), 4u);
@@ -111,17 +110,17 @@ TEST(PostLevelsTest, AHeightThatIsRemovedBecomesTheNext) {
     EXPECT_EQ(levels.heights(0)[1], 2);
 }
 
-TEST(PostLevelsTest, HeightsMoveWithinBoundsAndKeepTheirDistance) {
+TEST(PillarLevelsTest, HeightsMoveWithinBoundsAndKeepTheirDistance) {
     const Fixture at({{0, 0}, {4, 4}});
-    PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {4}});
+    PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {4}});
     std::vector<std::uint8_t> moved(at.plan.nodes(), 0), flat(at.plan.nodes(), 0);
     flat[0] = 1;
-    const std::vector<PostLevels::Move> moves{{6, 2, 9}, {0, 4, 1}, {0, 4, 0}};
-    EXPECT_TRUE(levels.ease(moves, 0.75, 0.5, true, flat, moved));
+    const std::vector<PillarLevels::Move> moves{{6, 2, 9}, {0, 4, 1}, {0, 4, 0}};
+    EXPECT_TRUE(levels.relax_heights(moves, 0.75, 0.5, true, flat, moved));
     EXPECT_DOUBLE_EQ(levels.heights(6)[2], 2.5);  // as near to 3 as they may be
     EXPECT_DOUBLE_EQ(levels.heights(6)[3], 3);
     EXPECT_DOUBLE_EQ(levels.heights(0)[4], 4.5);  // by the mean of what was asked
-    EXPECT_TRUE(levels.ease({{0, 4, 9}}, 0.75, 0.5, false, flat, moved));
+    EXPECT_TRUE(levels.relax_heights({{0, 4, 9}}, 0.75, 0.5, false, flat, moved));
     EXPECT_DOUBLE_EQ(levels.heights(0)[4], 4.75);
     EXPECT_EQ(levels.heights(0)[0], 0);  // a flat base
     EXPECT_GT(levels.heights(0)[2], 2);
@@ -131,7 +130,7 @@ TEST(PostLevelsTest, HeightsMoveWithinBoundsAndKeepTheirDistance) {
 TEST(ColumnFillerTest, ColumnsOfPrisms) {
     for (const bool is_step : {false, true}) {
         const Fixture at({{0, 0}, {4, 4}, {6, 6}}, is_step);
-        const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {2, 1}});
+        const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {2, 1}});
         const FilledColumns columns = fill_columns(at.input, levels, nullptr);
         EXPECT_EQ(columns.mesh.prisms.corners.size(), 3 * at.plan.triangles());
         EXPECT_EQ(columns.mesh.volumes, (std::vector<double>{240, 120}));
@@ -145,7 +144,7 @@ TEST(ColumnFillerTest, ColumnsOfPrisms) {
 
 TEST(ColumnFillerTest, FacesOnAStepThatBothSidesHaveAreInside) {
     const Fixture at({{0, 0}, {4, 4}}, true);
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1}});
     FilledColumns columns = fill_columns(at.input, levels, nullptr);
     const std::size_t before = columns.mesh.quadrilaterals.corners.size();
     add_step_faces(columns, VerticalFaults(at.model.view, at.lines.steps));
@@ -157,7 +156,7 @@ TEST(ColumnFillerTest, FacesOnAStepThatBothSidesHaveAreInside) {
 
 TEST(ColumnFillerTest, WhereALayerEndsElementsHaveFewerCorners) {
     const Fixture at({{0, 0}, {4, 4}, {4, 9}});  // the upper one has no thickness at x = 0
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1}});
     const FilledColumns columns = fill_columns(at.input, levels, nullptr);
     // of the four triangles of the left half one has an edge at x = 0, two a corner
     EXPECT_EQ(columns.mesh.tetrahedra.corners.size(), 1u);
@@ -168,7 +167,7 @@ TEST(ColumnFillerTest, WhereALayerEndsElementsHaveFewerCorners) {
 
 TEST(ElementQualityTest, NothingIsWrongWithUprightPrisms) {
     const Fixture at({{0, 0}, {4, 4}});
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {3}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {3}});
     const FilledColumns columns = fill_columns(at.input, levels, nullptr);
     const ElementQuality quality(at.plan, levels, columns.fronts, 0.5, nullptr);
     const auto narrow = narrow_strips(at.plan, columns.fronts);
@@ -181,14 +180,14 @@ TEST(ElementQualityTest, NothingIsWrongWithUprightPrisms) {
 
 TEST(ElementQualityTest, ThinElementsUnderASteepTopAreSkewed) {
     const Fixture at({{0, 60}, {0.6, 60.6}});
-    const PostLevels levels(at.input, {.minimum_thickness = 0.1, .layers = {2}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.1, .layers = {2}});
     const FilledColumns columns = fill_columns(at.input, levels, nullptr);
     const ElementQuality quality(at.plan, levels, columns.fronts, 0.1, nullptr);
     const auto skewed = quality.skewed(false);
     EXPECT_GT(skewed.faces, 0u);
     EXPECT_GT(skewed.most, kSkewnessLimit);
     ASSERT_FALSE(skewed.removals.empty());
-    for (const PostLevels::Removal& removal : skewed.removals)
+    for (const PillarLevels::Removal& removal : skewed.removals)
         EXPECT_EQ(std::abs(removal.height - removal.into), 1);
     const auto moves = quality.steep(std::vector<std::uint8_t>(at.plan.nodes(), 1));
     EXPECT_FALSE(moves.empty());
@@ -207,7 +206,7 @@ TEST(ColumnRepairTest, ColumnsInOrderAreDividedAsAsked) {
 TEST(ColumnRepairTest, LevelsUnderASteepTopAreMergedUntilFewerFacesAreSkewed) {
     const Fixture at({{0, 60}, {0.6, 60.6}});
     const Layering layering{.minimum_thickness = 0.1, .layers = {2}};
-    const PostLevels levels(at.input, layering);
+    const PillarLevels levels(at.input, layering);
     const FilledColumns columns = fill_columns(at.input, levels, nullptr);
     const auto before =
         ElementQuality(at.plan, levels, columns.fronts, 0.1, nullptr).skewed(false).faces;
@@ -242,16 +241,16 @@ std::size_t lines_with(const std::string& path, const std::string& begin) {
     return count;
 }
 
-TEST(SimulationDumpTest, PlansPostsAndColumns) {
+TEST(SimulationDumpTest, PlansPillarsAndColumns) {
     const Fixture at({{0, 0}, {4, 4}, {6, 6}}, true);
-    const PostLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1}});
+    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1}});
     const FilledColumns columns = fill_columns(at.input, levels, nullptr);
     const auto path = (std::filesystem::path(testing::TempDir()) / "columns.obj").string();
     dump_plan(at.plan, path.c_str());
     EXPECT_EQ(lines_with(path, "f "), at.plan.triangles());
     EXPECT_EQ(lines_with(path, "g rock_0"), 1u);
     EXPECT_EQ(lines_with(path, "l "), 6u + 2);
-    dump_posts(at.plan, levels, path.c_str());
+    dump_pillars(at.plan, levels, path.c_str());
     EXPECT_EQ(lines_with(path, "l "), 3 * at.plan.triangles());
     dump_columns(at.plan, levels, columns.fronts, path.c_str());
     EXPECT_EQ(lines_with(path, "f "), 2 * 2 * at.plan.triangles());

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/cleaning/change_check.hpp"
 #include "towers.hpp"
 
 namespace realmodel::simulation {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/face_quality.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "simulation/element_quality.hpp"
 
 namespace realmodel::simulation {
 namespace {

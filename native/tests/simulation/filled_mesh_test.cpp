@@ -12,9 +12,8 @@
 
 #include "../sanitized.hpp"
 #include "realmodel/base/errors.hpp"
-#include "simulation/corner_tetrahedra.hpp"
-#include "simulation/flat_tetrahedra.hpp"
-#include "simulation/outside_covers.hpp"
+#include "simulation/outside_faces.hpp"
+#include "simulation/tetrahedra_repair.hpp"
 
 namespace realmodel::simulation {
 namespace {

@@ -5,8 +5,7 @@
 
 #include "base/vectors.hpp"
 #include "simulation/boundary_faces.hpp"
-#include "simulation/edge_lengths.hpp"
-#include "simulation/vertical_faults.hpp"
+#include "simulation/columns.hpp"
 #include "towers.hpp"
 
 namespace realmodel::simulation {

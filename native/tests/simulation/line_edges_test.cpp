@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/line_edges.hpp"
-
 #include <gtest/gtest.h>
 
 #include "meshing/flat_mesh.hpp"
 #include "plans.hpp"
 #include "realmodel/base/errors.hpp"
+#include "simulation/plan_topology.hpp"
 
 namespace realmodel::simulation {
 namespace {

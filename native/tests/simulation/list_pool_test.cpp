@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/cleaning/list_pool.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "simulation/cleaning/editable_complex.hpp"
 
 namespace realmodel::simulation {
 namespace {

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <set>
 
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "plans.hpp"
 #include "realmodel/base/errors.hpp"
-#include "simulation/plan_adaption.hpp"
 
 namespace realmodel::simulation {
 namespace {
@@ -40,25 +39,26 @@ TEST(LineEdgesTest, AMeshWithoutTheEndOfALineIsRefused) {
     EXPECT_THROW(LineEdges(lines, mesh), InputError);
 }
 
-TEST(PostsTest, AStepPartsTheSurroundingsOfItsNodes) {
+TEST(PillarsTest, AStepPartsTheSurroundingsOfItsNodes) {
     const meshing::FlatMesh mesh(fans());
     const PlanLines step = halves(true), line = halves(false);
-    const Posts posts(mesh, LineEdges(step, mesh));
-    EXPECT_EQ(posts.node.size(), 10u);  // two more: nodes 1 and 4 have two
+    const Pillars pillars(mesh, LineEdges(step, mesh));
+    EXPECT_EQ(pillars.node.size(), 10u);  // two more: nodes 1 and 4 have two
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
-        EXPECT_EQ(posts.is_divided[n] != 0, n == 1 || n == 4);
-        EXPECT_EQ(std::count(posts.node.begin(), posts.node.end(), n), n == 1 || n == 4 ? 2 : 1);
+        EXPECT_EQ(pillars.is_divided[n] != 0, n == 1 || n == 4);
+        EXPECT_EQ(std::count(pillars.node.begin(), pillars.node.end(), n),
+                  n == 1 || n == 4 ? 2 : 1);
     }
-    EXPECT_EQ(Posts(mesh, LineEdges(line, mesh)).node.size(), 8u);
+    EXPECT_EQ(Pillars(mesh, LineEdges(line, mesh)).node.size(), 8u);
 }
 
-TEST(PostsTest, ANodeWhereTheRegionTouchesItselfHasTwo) {
+TEST(PillarsTest, ANodeWhereTheRegionTouchesItselfHasTwo) {
     const PlanLines none;
     const meshing::FlatMesh mesh(
         {{{0, 0}, {2, 0}, {2, 2}, {-2, 0}, {-2, -2}}, {{0, 1, 2}, {0, 3, 4}}});
-    const Posts posts(mesh, LineEdges(none, mesh));
-    EXPECT_EQ(posts.node.size(), 6u);
-    EXPECT_EQ(posts.is_divided, (std::vector<std::uint8_t>{1, 0, 0, 0, 0}));
+    const Pillars pillars(mesh, LineEdges(none, mesh));
+    EXPECT_EQ(pillars.node.size(), 6u);
+    EXPECT_EQ(pillars.is_divided, (std::vector<std::uint8_t>{1, 0, 0, 0, 0}));
 }
 
 TEST(PlanAdaptionTest, BorderCornersAreFlippedOrDivided) {
@@ -73,7 +73,7 @@ TEST(PlanAdaptionTest, BorderCornersAreFlippedOrDivided) {
     }
 }
 
-TEST(PlanTopologyTest, TrianglesHaveOneStepAtMostAndOnePostAcrossFromIt) {
+TEST(PlanTopologyTest, TrianglesHaveOneStepAtMostAndOnePillarAcrossFromIt) {
     const PlanLines lines = halves(true, 0, 1);
     // no node is in the middle of the halves: all edges to the border lie between divided nodes
     PlanTopology plan(lines, {{{0, 0}, {5, 0}, {10, 0}, {10, 6}, {5, 6}, {0, 6}},
@@ -87,10 +87,10 @@ TEST(PlanTopologyTest, TrianglesHaveOneStepAtMostAndOnePostAcrossFromIt) {
         for (std::size_t i = 0; i < 3; ++i) {
             if (!plan.is_inner_step(t, i)) continue;
             EXPECT_FALSE(plan.is_divided(plan.corners(t)[(i + 2) % 3]));
-            const auto beyond = plan.posts_beyond(t, i);
-            EXPECT_NE(beyond[0], plan.post(t, i));
-            EXPECT_EQ(plan.post_node(beyond[0]), plan.corners(t)[i]);
-            EXPECT_EQ(plan.post_node(beyond[1]), plan.corners(t)[(i + 1) % 3]);
+            const auto beyond = plan.pillars_beyond(t, i);
+            EXPECT_NE(beyond[0], plan.pillar(t, i));
+            EXPECT_EQ(plan.pillar_node(beyond[0]), plan.corners(t)[i]);
+            EXPECT_EQ(plan.pillar_node(beyond[1]), plan.corners(t)[(i + 1) % 3]);
         }
     }
     EXPECT_EQ(rocks, (std::set<std::int32_t>{0, 1}));

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "plane_models.hpp"
-#include "simulation/line_anchors.hpp"
 #include "towers.hpp"
 
 namespace realmodel::simulation {

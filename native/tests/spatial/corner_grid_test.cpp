@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::spatial {
 namespace {

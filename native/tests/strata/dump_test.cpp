@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/dump.hpp"
+#include "debug/dump.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,30 +4,30 @@
 #include <memory>
 
 #include "complex_checks.hpp"
-#include "strata/repair/site.hpp"
-#include "strata/tiling/block_tiling.hpp"
+#include "strata/repair/plan_context.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
-/// Surfaces that are entered, as the stages of the overlay get them.
+/// Surfaces that are loaded, as the stages of the overlay get them.
 struct Scene {
-    std::unique_ptr<Site> site;
+    std::unique_ptr<PlanContext> context;
 
     explicit Scene(const std::vector<OwnedSurface>& surfaces) {
         StackInput input;
         for (const OwnedSurface& s : surfaces)
             input.surfaces.push_back(s.view());
         std::vector<Warning> warnings;
-        site = enter_site({&input, 1}, {}, warnings, {1, nullptr});
+        context = load_input({&input, 1}, {}, warnings, {1, nullptr});
     }
-    exact::PlanArrangement& geometry() { return site->geometry; }
+    exact::PlanArrangement& geometry() { return context->geometry; }
     SurfaceTiling tiling(std::size_t k) {
-        EnteredRock& rock = site->rocks[0];
+        LoadedRock& rock = context->rocks[0];
         return make_surface_tiling(geometry(), rock.surfaces[k].triangles, rock.plans[k], {},
                                    static_cast<int>(k), {1, nullptr});
     }
     BlockTiling block_tiling(std::size_t k, TriangleLinks& links) {
-        EnteredRock& rock = site->rocks[0];
+        LoadedRock& rock = context->rocks[0];
         return make_block_tiling(geometry(), rock.surfaces[k].triangles, std::move(rock.plans[k]),
                                  static_cast<std::int32_t>(k), links, {1, nullptr});
     }

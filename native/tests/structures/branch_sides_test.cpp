@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "structures/branch_sides.hpp"
-
 #include "faulted_cubes.hpp"
 #include "realmodel/base/errors.hpp"
+#include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
 namespace {
@@ -46,6 +45,19 @@ TEST(BranchSides, ABranchThatDoesNotMeetTheOtherIsRefused) {
     } catch (const InputError& e) {
         EXPECT_EQ(e.kind, "does_not_meet");
         EXPECT_EQ(e.surface, 1);
+    }
+}
+
+TEST(BranchSides, ABranchThatIsCutInHalvesIsRefused) {
+    for (const double beyond : {0.0, 1e-12}) {
+        try {
+            kept_side(with_branch(across(-1.5, 2.5 + beyond)), 1, 0);
+            FAIL();
+        } catch (const InputError& e) {
+            EXPECT_EQ(e.kind, "equal_halves");
+            EXPECT_EQ(e.surface, 1);
+            EXPECT_EQ(e.items, std::vector<std::int64_t>{0});
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 #include "structures/joined_rounding.hpp"
 
 #include "../cutting/halved_box.hpp"
-#include "base/ulp.hpp"
+#include "base/floating_point.hpp"
 
 namespace realmodel::structures {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "structures/mean_plane.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "../strata/complex_checks.hpp"
-#include "cutting/polygons.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {

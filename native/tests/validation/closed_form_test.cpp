@@ -9,7 +9,7 @@
 
 namespace realmodel::validation {
 
-static bool operator==(const Interval& a, const Interval& b) {
+static bool operator==(const BlockInterval& a, const BlockInterval& b) {
     return a.block == b.block && a.low == b.low && a.high == b.high;
 }
 
@@ -17,7 +17,7 @@ namespace {
 
 using strata::OwnedSurface;
 using strata::Rule;
-using Intervals = std::vector<Interval>;
+using Intervals = std::vector<BlockInterval>;
 
 OwnedSurface plane(double at_origin, double along_x = 0, double along_y = 0) {
     OwnedSurface s;

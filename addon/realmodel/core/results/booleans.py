@@ -218,8 +218,9 @@ def intersect(
     out is a hole in another part, and inside where it is by itself. threads: 0, as many as there are.
     progress(fraction, text), cancel() -> True to stop: called from this thread.
 
-    Decisions are exact on the coordinates as they are given; new vertices are rounded to doubles once, and no
-    triangles cross after that. The result is the same for any number of threads.
+    Decisions are exact on the coordinates as they are given, but for what is thinner than rounding
+    (docs/dev/exactness.md); new vertices are rounded to doubles, and no triangles cross after that. The
+    result is the same for any number of threads.
 
     Raises InputRefused (with the numbers of the triangles and a place), UsageError, Cancelled, BuildFailed.
 

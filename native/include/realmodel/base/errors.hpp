@@ -31,6 +31,15 @@ struct InputError : std::runtime_error {
     std::optional<std::array<double, 3>> place;
 };
 
+/// An invariant of the library does not hold: a defect of it, not of the input. what() says which
+/// one and where, for a report that carries the input with it.
+struct InternalError : std::logic_error {
+    /// @param invariant  what does not hold, e.g. "a facet lies beneath each facet of a block"
+    /// @param where      x, y, z in model units
+    explicit InternalError(const std::string& invariant,
+                           std::optional<std::array<double, 3>> where = std::nullopt);
+};
+
 /// The caller asked to stop (Progress::cancel). Nothing of the result exists.
 struct Cancelled : std::exception {
     const char* what() const noexcept override;

@@ -6,8 +6,8 @@
 
 /// The memory of arrays, which comes from malloc. A build makes and drops large arrays many times
 /// as large as what it holds at once, and a system hands out pages one by one, cleared, which takes
-/// a tenth of the build's time. So while a Keeper lives, the memory of dropped arrays stays in the
-/// process, and a new array takes what is nearest to its size.
+/// a tenth of the build's time. So while a PageCache lives, the memory of dropped arrays stays in
+/// the process, and a new array takes what is nearest to its size.
 namespace realmodel::page_store {
 
 /// What has at least so many bytes is kept. AddressSanitizer is to see all that is dropped.
@@ -39,7 +39,7 @@ void reserve(Memory& memory, std::size_t bytes);
 /// @throws std::bad_alloc, as reserve()
 void make_ready(Memory& memory, std::size_t bytes);
 
-/// Drops the memory. That of a large array is kept while there is a Keeper.
+/// Drops the memory. That of a large array is kept while there is a PageCache.
 void drop(Memory& memory) noexcept;
 
 /// Bytes that are kept for later.
@@ -47,12 +47,12 @@ std::size_t kept() noexcept;
 
 /// While one of these lives, on any thread, memory that is dropped is kept, with what arrays have
 /// no more than they had at most at once. The last one gives it back to the system.
-class Keeper {
+class PageCache {
 public:
-    Keeper();
-    ~Keeper();
-    Keeper(const Keeper&) = delete;
-    Keeper& operator=(const Keeper&) = delete;
+    PageCache();
+    ~PageCache();
+    PageCache(const PageCache&) = delete;
+    PageCache& operator=(const PageCache&) = delete;
 };
 
 }  // namespace realmodel::page_store

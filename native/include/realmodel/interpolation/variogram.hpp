@@ -67,6 +67,8 @@ struct Variogram {
 
     /// Sill of the first structure alone.
     double first_sill() const;
+    /// All of them, the first one first.
+    std::vector<NestedStructure> structures() const;
 };
 
 /// Ranges, sills and ratios must be positive, 0 <= nugget <= sill, nugget and further sills

@@ -8,11 +8,11 @@
 /// - segment: a line between two anchors, in the place of traces. A step has other heights on its
 ///   other side; along other segments blocks end without thickness.
 /// - node: a vertex of the planar mesh. Segments are chains of its edges.
-/// - post: one part of the surroundings of a node, between steps; a node on no step has one.
+/// - pillar: one part of the surroundings of a node, between steps; a node on no step has one.
 /// - rock mass, block, layer: a rock mass has blocks, oldest first; a block is divided into layers.
-/// - level: l of a post is the height at which layer l of its rock mass begins; two are equal where
-///   the layer is absent.
-/// - height: h of a node, ascending. Posts of one node share heights; each level is the number of
+/// - level: l of a pillar is the height at which layer l of its rock mass begins; two are equal
+///   where the layer is absent.
+/// - height: h of a node, ascending. Pillars of one node share heights; each level is the number of
 ///   one. A point of the mesh is a node with a height.
 /// - front: one height at each corner of a triangle of the planar mesh.
 /// - element: what lies between two fronts that differ by one height at one corner (tetrahedron),
@@ -20,7 +20,7 @@
 /// - removal: a height is given up; what had it takes the next one below or above.
 ///
 /// The repair of columns asks for elements and faces that are weak (thin ends), steep, failing
-/// (whatever OpenFOAM's checkMesh does) or skewed: src/simulation/column_repair.cpp has the steps.
+/// (whatever OpenFOAM's checkMesh does) or skewed: src/simulation/layered_mesh.cpp has the steps.
 #pragma once
 
 #include <array>

@@ -34,8 +34,9 @@ struct Part {
 /// once, ascending.
 /// @throws InputError  `surface` is the structure's number; kinds not_finite, bad_index,
 ///         no_triangles, branching, one_sided; not_closed (of a body: the place of an open edge);
-///         does_not_meet (a fault and one that it ends at, which it does not meet); folded (one
-///         that dies out, whose border crosses itself seen at right angles to its mean plane)
+///         does_not_meet (a fault and one that it ends at, which it does not meet); equal_halves
+///         (one that a fault it ends at cuts into two parts of one area); folded (one that dies
+///         out, whose border crosses itself seen at right angles to its mean plane)
 /// @throws Cancelled
 std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
                            std::span<const Structure> structures, const Execution& execution);

@@ -31,24 +31,25 @@ void level_base(RoundedParts& parts);
 void join_coincident(RoundedParts& parts, const std::array<bool, 2>& touches, bool may_fold);
 
 /// Moves new nodes that are still where another is to the nearest free position beside it.
-void set_apart(RoundedParts& parts);
+void separate_coincident_nodes(RoundedParts& parts);
 
 /// Gives parts without thickness on an axis, and walls without extent in plan, one unit of it.
-void give_extents(RoundedParts& parts);
+void widen_flat_parts(RoundedParts& parts);
 
 /// Where two polygons of a half are the same and face each other from outside of it, nothing is
 /// between them: they become one between their parts, or none in one part.
 /// @return of pieces, not 0: another of its half is the same and faces the same way, of parts that
 ///         overlap
-std::vector<std::uint8_t> glue_doubled(RoundedParts& parts);
+std::vector<std::uint8_t> merge_coincident_faces(RoundedParts& parts);
 
-/// Divides polygons that rounding has bent, walls that have no extent in plan still, and those that
-/// are there already, in triangles about a node of their own: an edge between two others may be one
-/// already. Where this node would not see all of a polygon, the same is done with its convex parts,
-/// between two of which there is such a node, too. What is known of nodes and parts is not updated.
+/// Triangulates polygons that rounding has bent, walls that have no extent in plan still, and
+/// polygons that are there already, about a node of their own: an edge between two others may be
+/// one already. Where this node would not see all of a polygon, the same is done with its convex
+/// parts, between two of which there is such a node, too. What is known of nodes and parts is not
+/// updated.
 /// @param is_bent_too  more that are to be divided, of at least four corners; nullptr: none
-void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
-                 bool (*is_bent_too)(std::span<const Position> corners) = nullptr);
+void triangulate_nonplanar(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
+                           bool (*is_bent_too)(std::span<const Position> corners) = nullptr);
 
 /// Parts that lost all of their polygons to others are no more.
 void drop_empty(RoundedParts& parts);

@@ -2,17 +2,27 @@
 #pragma once
 
 #include <cassert>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/counting_sort.hpp"
-#include "cutting/far_faces.hpp"
+#include "base/key_table.hpp"
+#include "cutting/near_part.hpp"
 #include "cutting/pieces.hpp"
-#include "cutting/positions.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+/// Where a point may move to: anywhere, on its height only, or rather up and down than aside.
+enum class Freedom { kAny, kLevel, kUpright };
+
+using Positions = KeyNumbers<Position>;
+
+/// A position as near to p as doubles allow that is not taken yet; it is then.
+Position free_position_beside(const Position& p, Freedom freedom, Positions& taken);
 
 /// Exact parts of cells whose nodes were rounded to doubles: what the passes of part_rounding.hpp
 /// work on, one after another.
@@ -83,11 +93,67 @@ struct RoundedParts {
     std::vector<std::uint8_t> on_base, on_wall;  ///< of nodes
     std::vector<std::uint8_t> is_near;           ///< of nodes: of what the cutter has changed
     Buckets<std::int32_t> pieces_of;             ///< the pieces around each part
-    Positions taken;  ///< of nodes, from set_apart() on; of the vertices those near new nodes
+    /// Of nodes, from separate_coincident_nodes() on; of the vertices those near new nodes.
+    Positions taken;
 
 private:
     std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more
     bool has_taken_all_ = false;          ///< the positions of all of the model's vertices
+};
+
+/// Which way round a loop goes from its least node to the lesser of the two beside that: 1 or -1.
+int winding_of(std::span<const NodeId> loop);
+
+/// The nodes of a loop from its least one on, toward the lesser of the two beside that: the same
+/// for loops that pass the same edges.
+void put_first(std::span<const NodeId> loop, std::vector<NodeId>& nodes);
+
+/// Pieces near the cutter that pass the same edges: groups of two or more.
+std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts);
+
+/// Nodes that become others, and what the parts around them become by it.
+class Contraction {
+public:
+    /// @param may_fold  whether two polygons of a part that are the same but face each other cancel
+    Contraction(RoundedParts& parts, bool may_fold);
+
+    /// Of polygons of a part: how often they use an edge beyond twice, how many there are, and
+    /// where.
+    struct PartShape {
+        std::size_t touches = 0, count = 0;
+        spatial::Box box;
+    };
+    /// A polygon of a part as contractions leave it: nodes from `begin` on.
+    struct ContractedPolygon {
+        std::uint32_t hash;
+        std::size_t begin, size;
+        int winding;
+    };
+    /// What shape() uses again.
+    struct ShapeScratch {
+        std::vector<ContractedPolygon> faces;
+        std::vector<NodeId> nodes, sorted;  ///< of all, the latter of each in order
+        std::vector<std::uint8_t> is_repeated;
+        std::vector<std::uint64_t> uses;  ///< of edges, as numbers: these are sorted sooner
+    };
+    /// What some of the polygons of a part are like. None where a polygon passes a node twice, or
+    /// two have the same nodes.
+    std::optional<PartShape> shape(std::span<const std::int32_t> pieces, std::int32_t part,
+                                   ShapeScratch& scratch) const;
+    /// The same of a whole part, which stays closed.
+    std::optional<PartShape> shape(std::int32_t part, ShapeScratch& scratch) const;
+    /// Whether a whole part has an extent, or vanishes where its polygons may cancel.
+    bool is_sound(const PartShape& shape, std::int32_t part) const;
+    /// Makes it so: polygons that vanish are no more.
+    void apply();
+
+    std::vector<NodeId> becomes;  ///< of nodes
+
+private:
+    void add_contracted(std::size_t piece, std::vector<NodeId>& nodes) const;
+
+    RoundedParts& parts_;
+    bool may_fold_;
 };
 
 }  // namespace realmodel::cutting

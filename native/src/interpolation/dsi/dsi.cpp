@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
-#include "interpolation/dsi/ordered_mesh.hpp"
 #include "interpolation/dsi/smooth_system.hpp"
+#include "interpolation/dsi/spline_grid.hpp"
 #include "interpolation/linear_data.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/mesh_locator.hpp"
@@ -20,7 +20,7 @@ namespace realmodel::interpolation {
 namespace {
 
 using Triangle = OrderedMesh::Triangle;
-using Kind = Constraint::Kind;
+using Relation = Constraint::Relation;
 
 // Strength of constraints that are met exactly, in units of the mesh's stiffness: a larger one
 // needs fewer rounds of multipliers, and makes each round slower.
@@ -30,7 +30,7 @@ constexpr double kExactRiseStrength = 32;
 // A round of multipliers that leaves more than this of what was missing ends them: points
 // contradict each other on the mesh. With dips, which are met more slowly, it has to leave more.
 constexpr double kStalled = 0.5, kStalledWithDips = 0.9;
-constexpr double kMet = 1e-8;  // of the range of heights
+constexpr double kTolerance = 1e-8;  // of the range of heights
 constexpr int kMostRounds = 30;
 // The same where the bounds that count are settled first; rounds for that before each; and how many
 // rounds in turn may bring little: bounds contradict each other on the mesh.
@@ -93,17 +93,17 @@ public:
                         thread_count(execution.threads), [this] { check(); });
         report(0.1, "points on the mesh");
         add_points(points, locator, triangles);
-        add_nodes(constraints.equal, Kind::kEqual);
+        add_nodes(constraints.equal, Relation::kEqual);
         if (constraints_.empty()) {
             throw InputError("no_points",
                              "no point lies on the mesh and no node has a given height");
         }
         add_dips(constraints.dips, locator, triangles, nodes);
         subtract_plane();
-        add_nodes(constraints.least, Kind::kLeast);
-        add_nodes(constraints.most, Kind::kMost);
-        add_bounds(constraints.lower, Kind::kLeast, locator, triangles);
-        add_bounds(constraints.upper, Kind::kMost, locator, triangles);
+        add_nodes(constraints.least, Relation::kLeast);
+        add_nodes(constraints.most, Relation::kMost);
+        add_bounds(constraints.lower, Relation::kLeast, locator, triangles);
+        add_bounds(constraints.upper, Relation::kMost, locator, triangles);
         tighten_bounds();
         hold_tilt();
     }
@@ -121,10 +121,10 @@ public:
         out.iterations = iterations_;
         out.converged = system_->converged();
         for (const Constraint& c : constraints_) {
-            const bool is_bound = c.kind == Kind::kLeast || c.kind == Kind::kMost;
-            if (is_bound && !c.of_node && c.violation(z) > 2 * kMet * range_) ++out.bounds_missed;
-            const bool exact_point = c.kind == Kind::kEqual && !c.of_node;
-            if (!exact_point || c.violation(z) <= 1e3 * kMet * range_) continue;
+            if (c.is_bound() && !c.of_node && c.violation(z) > 2 * kTolerance * range_)
+                ++out.bounds_missed;
+            const bool exact_point = c.kind == Relation::kEqual && !c.of_node;
+            if (!exact_point || c.violation(z) <= 1e3 * kTolerance * range_) continue;
             if (c.is_rise()) {
                 ++out.dips_missed;
                 continue;
@@ -152,12 +152,13 @@ private:
                 ++outside_;
                 continue;
             }
-            add_height(*found, triangles, weighted ? Kind::kWeighted : Kind::kEqual, height);
+            add_height(*found, triangles, weighted ? Relation::kWeighted : Relation::kEqual,
+                       height);
         }
     }
 
-    Constraint& add_height(const spatial::MeshLocator::Found& found,
-                           std::span<const Triangle> triangles, Kind kind, double height) {
+    Constraint& add_height(const spatial::MeshLocator::BarycentricPosition& found,
+                           std::span<const Triangle> triangles, Relation kind, double height) {
         Constraint c{{}, found.weights, 0, kind, height};
         for (std::size_t k = 0; k < 3; ++k)
             c.nodes[k] = mesh_.new_number[triangles[found.triangle][k]];
@@ -166,14 +167,14 @@ private:
             c.nodes.fill(c.nodes[most - c.weights.begin()]);
             c.weights = {1, 0, 0};
         }
-        const double strength = kind == Kind::kWeighted ? weight_ : kExactStrength;
+        const double strength = kind == Relation::kWeighted ? weight_ : kExactStrength;
         c.strength = strength * system_->stiffness(c.nodes);
         constraints_.push_back(c);
         return constraints_.back();
     }
 
     /// Bounds outside the mesh say nothing.
-    void add_bounds(std::span<const std::array<double, 3>> bounds, Kind kind,
+    void add_bounds(std::span<const std::array<double, 3>> bounds, Relation kind,
                     const spatial::MeshLocator& locator, std::span<const Triangle> triangles) {
         for (const auto& [x, y, height] : bounds) {
             const auto found = locator.find({x, y});
@@ -188,8 +189,8 @@ private:
     void tighten_bounds() {
         for (Constraint& c : constraints_) {
             if (c.of_node || c.is_rise()) continue;
-            if (c.kind == Kind::kLeast) c.height += kMet * range_;
-            if (c.kind == Kind::kMost) c.height -= kMet * range_;
+            if (c.kind == Relation::kLeast) c.height += kTolerance * range_;
+            if (c.kind == Relation::kMost) c.height -= kTolerance * range_;
         }
     }
 
@@ -215,7 +216,7 @@ private:
                 Constraint c{ordered,
                              {},
                              strength,
-                             weight_ > 0 ? Kind::kWeighted : Kind::kEqual,
+                             weight_ > 0 ? Relation::kWeighted : Relation::kEqual,
                              given * dips.slopes[i][axis]};
                 c.along[axis] = length;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -239,14 +240,14 @@ private:
         return system_->stiffness({number, number, number});
     }
 
-    void add_nodes(std::span<const double> heights, Kind kind) {
+    void add_nodes(std::span<const double> heights, Relation kind) {
         if (heights.empty()) return;
         for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
             const double height = heights[mesh_.old_number[i]];
             if (std::isnan(height)) continue;
             constraints_.push_back(Constraint::at_node(
                 i, kExactStrength * stiffness(i), kind,
-                kind == Kind::kEqual ? height : height - plane_at(mesh_.nodes[i])));
+                kind == Relation::kEqual ? height : height - plane_at(mesh_.nodes[i])));
         }
     }
 
@@ -316,7 +317,7 @@ private:
                 if (x * p[0] + y * p[1] > x * q[0] + y * q[1]) far = i;
             }
             const double strength = kTiltStrength * stiffness(far) / (reach * reach);
-            constraints_.push_back(Constraint::at_node(far, strength, Kind::kWeighted, 0));
+            constraints_.push_back(Constraint::at_node(far, strength, Relation::kWeighted, 0));
         }
     }
 
@@ -339,11 +340,10 @@ private:
         double stalled = kStalled;
         double largest = 0;
         for (Constraint& c : constraints_) {
-            exact = exact || c.kind != Kind::kWeighted;
+            exact = exact || c.kind != Relation::kWeighted;
             if (c.is_rise()) stalled = kStalledWithDips;
-            bounded = bounded || c.kind == Kind::kLeast || c.kind == Kind::kMost;
-            c.active =
-                c.kind == Kind::kWeighted || c.kind == Kind::kEqual || c.next_multiplier(z) != 0;
+            bounded = bounded || c.is_bound();
+            c.active = !c.is_bound() || c.next_multiplier(z) != 0;
             largest = std::max(largest, c.active ? std::abs(c.height) : 0.0);
         }
         if (largest == 0) return true;  // the plane meets all constraints
@@ -367,7 +367,7 @@ private:
             settling = 0;
             double missing = 0;
             std::tie(missing, changed) = update_multipliers(z);
-            if (missing <= kMet * range_ && !changed) return true;
+            if (missing <= kTolerance * range_ && !changed) return true;
             // Points that contradict each other on this mesh are met as well as possible.
             if (!changed && !bounded && round > 2 && missing > stalled * before) return true;
             stalls = missing > kStalledWithDips * before ? stalls + 1 : 0;
@@ -383,7 +383,7 @@ private:
     bool activate(const Vector& z) {
         bool changed = false;
         for (Constraint& c : constraints_) {
-            if (c.kind != Kind::kLeast && c.kind != Kind::kMost) continue;
+            if (!c.is_bound()) continue;
             const bool active = c.next_multiplier(z) != 0;
             changed = changed || active != c.active;
             c.active = active;
@@ -407,10 +407,10 @@ private:
         double missing = 0;
         bool changed = false;
         for (Constraint& c : constraints_) {
-            if (c.kind == Kind::kWeighted) continue;
+            if (c.kind == Relation::kWeighted) continue;
             missing = std::max(missing, c.violation(z));
             c.multiplier = c.next_multiplier(z);
-            const bool active = c.kind == Kind::kEqual || c.multiplier != 0;
+            const bool active = c.kind == Relation::kEqual || c.multiplier != 0;
             changed = changed || active != c.active;
             c.active = active;
         }
@@ -419,7 +419,7 @@ private:
 
     /// Meets the constraints of nodes to the last digit: after the rounds only little is missing.
     void settle(Vector& z) const {
-        for (const Kind kind : {Kind::kLeast, Kind::kMost, Kind::kEqual}) {
+        for (const Relation kind : {Relation::kLeast, Relation::kMost, Relation::kEqual}) {
             for (const Constraint& c : constraints_) {
                 if (c.kind == kind && c.of_node && c.violation(z) > 0) z[c.nodes[0]] = c.height;
             }

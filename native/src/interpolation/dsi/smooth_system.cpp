@@ -80,10 +80,10 @@ double SmoothSystem::precondition(const Vector& residual, Vector& out) {
         return dot(residual, out, threads_);
     }
     check_();
-    smoother_.before(rows_, residual, out, threads_);
+    smoother_.pre_smooth(rows_, residual, out, threads_);
     correct();
     check_();
-    return smoother_.after(rows_, residual, out, threads_);
+    return smoother_.post_smooth(rows_, residual, out, threads_);
 }
 
 /// The correction of the splines' grids to the residual that smoothing leaves.

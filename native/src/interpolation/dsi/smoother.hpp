@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "interpolation/dsi/staged_sweep.hpp"
-#include "interpolation/dsi/vectors.hpp"
+#include "interpolation/dsi/wavefront_sweep.hpp"
 
 namespace realmodel::interpolation {
 
@@ -35,16 +34,16 @@ public:
 
     /// x from 0, and what residual it leaves.
     template <class Matrix>
-    void before(const Matrix& matrix, const Vector& right, Vector& x, int threads);
+    void pre_smooth(const Matrix& matrix, const Vector& right, Vector& x, int threads);
     const Vector& residual() const { return residual_; }
 
-    /// To be set between before() and after(): the correction from coarser functions.
+    /// To be set between pre_smooth() and post_smooth(): the correction from coarser functions.
     Vector& correction() { return steps_.back(); }
 
     /// Adds the correction, and the polynomial of what is left then.
     /// @return right . x
     template <class Matrix>
-    double after(const Matrix& matrix, const Vector& right, Vector& x, int threads);
+    double post_smooth(const Matrix& matrix, const Vector& right, Vector& x, int threads);
 
 private:
     // Step k is old[k] times the one before, and fresh[k] D^-1 times the residual.
@@ -69,7 +68,7 @@ inline void Smoother::set(Vector inverse_diagonal, double largest) {
 }
 
 template <class Matrix>
-void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
+void Smoother::pre_smooth(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
     matrix.sweep().run(kDegree + 1, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
         const auto [begin, end] = matrix.rows(piece);
         if (stage == 0) {
@@ -95,7 +94,7 @@ void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int 
 }
 
 template <class Matrix>
-double Smoother::after(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
+double Smoother::post_smooth(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
     return matrix.sweep().sum(kDegree, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
         const auto [begin, end] = matrix.rows(piece);
         std::array<double, Matrix::kMostRows> product;

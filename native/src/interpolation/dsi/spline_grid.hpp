@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "interpolation/data_points.hpp"
-#include "interpolation/dsi/staged_sweep.hpp"
-#include "interpolation/dsi/vectors.hpp"
+#include "interpolation/dsi/wavefront_sweep.hpp"
 
 namespace realmodel::interpolation {
 
@@ -81,7 +82,7 @@ public:
     }
 
     static constexpr std::size_t kMostRows = 512;
-    const StagedSweep& sweep() const { return sweep_; }
+    const WavefrontSweep& sweep() const { return sweep_; }
     /// Numbers of coefficients: a part of a row of the grid.
     std::array<std::size_t, 2> rows(std::ptrdiff_t piece) const;
     void times(std::ptrdiff_t piece, const double* x, double* out) const;
@@ -90,7 +91,22 @@ private:
     SplineGrid grid_;
     std::size_t width_, height_, parts_;  // columns, rows of coefficients; pieces in each row
     Vector entries_;                      // [row][k][column]
-    StagedSweep sweep_;
+    WavefrontSweep sweep_;
 };
+
+/// A mesh in units of its mean edge, its nodes in the order of the cells of a grid of splines.
+struct OrderedMesh {
+    using Triangle = std::array<std::int32_t, 3>;
+
+    SplineGrid grid;
+    std::vector<std::size_t> first_in_cell;  ///< nodes of each cell of the grid, and their number
+    std::vector<std::int32_t> old_number, new_number;
+    std::vector<Position> nodes;
+    std::vector<Triangle> triangles;
+};
+
+/// @param nodes, triangles  at least one of each, of valid indices
+OrderedMesh ordered_mesh(std::span<const Position> nodes,
+                         std::span<const OrderedMesh::Triangle> triangles);
 
 }  // namespace realmodel::interpolation

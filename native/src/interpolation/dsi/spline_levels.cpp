@@ -81,7 +81,7 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Position> nod
     fill_border_cells(nodes, hinges);
     while (levels_.back().stencils.grid().coefficients() > kCoarsestCoefficients)
         levels_.emplace_back(levels_.back().stencils.grid().coarser());
-    for (Level& level : levels_) {
+    for (SplineLevel& level : levels_) {
         const std::size_t length = level.stencils.grid().length();
         level.smoother.resize(length);
         level.right.assign(length, 0.0);
@@ -178,7 +178,7 @@ void SplineLevels::restrict_elements(std::vector<SplineGrid::Element>& elements,
     elements = std::move(out);
 }
 
-void SplineLevels::assemble(Level& level, const std::vector<SplineGrid::Element>& elements,
+void SplineLevels::assemble(SplineLevel& level, const std::vector<SplineGrid::Element>& elements,
                             double least) {
     level.stencils.assemble(elements, least, threads_);
     const SplineGrid& grid = level.stencils.grid();
@@ -224,7 +224,7 @@ void SplineLevels::factor_coarsest(double least) {
 /// x of a level from its right side.
 void SplineLevels::cycle(std::size_t at) {
     check_();
-    Level& level = levels_[at];
+    SplineLevel& level = levels_[at];
     if (at + 1 == levels_.size()) {
         const SplineGrid& grid = level.stencils.grid();
         const Eigen::MatrixXd right = coefficients_of(grid, level.right);
@@ -233,10 +233,10 @@ void SplineLevels::cycle(std::size_t at) {
         return;
     }
     const int threads = threads_of(level.stencils.grid());
-    level.smoother.before(level.stencils, level.right, level.x, threads);
+    level.smoother.pre_smooth(level.stencils, level.right, level.x, threads);
     const Vector& residual = level.smoother.residual();
     Vector& correction = level.smoother.correction();
-    Level& coarse = levels_[at + 1];
+    SplineLevel& coarse = levels_[at + 1];
     const SplineGrid &fine = level.stencils.grid(), &grid = coarse.stencils.grid();
     // A coarse coefficient from the fine ones 2 i - 2 .. 2 i + 1 along each axis; what lies beside
     // the grid is 0.
@@ -269,7 +269,7 @@ void SplineLevels::cycle(std::size_t at) {
                          (1 - y0) * (x0 * high[i] + (1 - x0) * high[i + 1]);
         }
     });
-    level.smoother.after(level.stencils, level.right, level.x, threads);
+    level.smoother.post_smooth(level.stencils, level.right, level.x, threads);
 }
 
 }  // namespace realmodel::interpolation

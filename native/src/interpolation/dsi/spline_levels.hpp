@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
-#include "interpolation/dsi/hinges.hpp"
+#include "interpolation/dsi/roughness.hpp"
 #include "interpolation/dsi/smoother.hpp"
 #include "interpolation/dsi/spline_grid.hpp"
-#include "interpolation/dsi/vectors.hpp"
+#include "interpolation/dsi/wavefront_sweep.hpp"
 
 namespace realmodel::interpolation {
 
@@ -43,8 +43,8 @@ public:
     void solve() { cycle(0); }
 
 private:
-    struct Level {
-        explicit Level(const SplineGrid& grid) : stencils(grid) {}
+    struct SplineLevel {
+        explicit SplineLevel(const SplineGrid& grid) : stencils(grid) {}
         SplineStencils stencils;
         Smoother smoother;
         Vector right, x;
@@ -53,7 +53,8 @@ private:
     void fill_border_cells(std::span<const Position> nodes, std::span<const Hinge> hinges);
     void restrict_elements(std::vector<SplineGrid::Element>& elements,
                            const SplineGrid& fine) const;
-    void assemble(Level& level, const std::vector<SplineGrid::Element>& elements, double least);
+    void assemble(SplineLevel& level, const std::vector<SplineGrid::Element>& elements,
+                  double least);
     void factor_coarsest(double least);
     void cycle(std::size_t at);
     int threads_of(const SplineGrid& grid) const;
@@ -61,7 +62,7 @@ private:
     int threads_;
     std::function<void()> check_;
     std::vector<SplineGrid::Element> rough_;  // of the finest grid
-    std::vector<Level> levels_;
+    std::vector<SplineLevel> levels_;
     Eigen::LDLT<Eigen::MatrixXd> coarsest_;
 };
 

@@ -2,10 +2,12 @@
 #include "interpolation/kriging/covariance.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "interpolation/kriging/estimate.hpp"
 #include "realmodel/base/elementary.hpp"
+#include "realmodel/interpolation/dips.hpp"
 
 namespace realmodel::interpolation {
 
@@ -13,8 +15,7 @@ namespace {
 
 std::vector<CovariancePart> parts_of(const Variogram& variogram) {
     std::vector<CovariancePart> parts;
-    const auto add = [&](VariogramModel model, double range, double sill,
-                         const Anisotropy& anisotropy) {
+    for (const auto& [model, range, sill, anisotropy] : variogram.structures()) {
         // Distances across the azimuth count `ratio` times.
         const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
         const double ratio = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
@@ -23,10 +24,7 @@ std::vector<CovariancePart> parts_of(const Variogram& variogram) {
         const double across = is_wave ? 1 : ratio;
         parts.push_back({model, x / range, y / range, across * y / range, -across * x / range,
                          sill / variogram.sill, is_wave ? ratio : 0});
-    };
-    add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy);
-    for (const NestedStructure& nested : variogram.further)
-        add(nested.model, nested.range, nested.sill, nested.anisotropy);
+    }
     return parts;
 }
 
@@ -48,6 +46,30 @@ std::array<double, 2> Covariance::scales_over(double baseline, std::int32_t shee
         return variance > kRedundantVariance ? 1 / std::sqrt(variance) : 0;
     };
     return {scale({baseline, 0}), scale({0, baseline})};
+}
+
+namespace {
+
+constexpr double kOfSmooth = 1.0 / 64;   // of the spacing
+constexpr double kOfRange = 1.0 / 1024;  // less leaves too few digits of differences
+
+bool is_rough(VariogramModel model) {
+    return model == VariogramModel::kSpherical || model == VariogramModel::kExponential;
+}
+
+}  // namespace
+
+double dip_baseline(const Variogram& variogram, double spacing) {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    bool rough = false;
+    for (const auto& [model, range, sill, anisotropy] : variogram.structures()) {
+        const double across = range / std::max(anisotropy.ratio, 1 / anisotropy.ratio);
+        shortest = std::min(shortest, across);
+        longest = std::max(longest, model == VariogramModel::kWave ? across : range);
+        rough = rough || (is_rough(model) && sill > 0);
+    }
+    const double baseline = std::min(spacing, shortest);
+    return rough ? baseline : std::max(kOfSmooth * baseline, kOfRange * longest);
 }
 
 }  // namespace realmodel::interpolation

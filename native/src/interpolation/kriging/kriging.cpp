@@ -3,20 +3,209 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
+#include <span>
+#include <vector>
 
-#include "interpolation/kriging/kriging_task.hpp"
+#include "interpolation/drift_basis.hpp"
+#include "interpolation/kriging/covariance.hpp"
+#include "interpolation/kriging/estimate.hpp"
+#include "interpolation/kriging/lane_kernels.hpp"
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
-#include "interpolation/kriging/unique_neighborhood.hpp"
+#include "interpolation/kriging/tiled_cholesky.hpp"
+#include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
-#include "spatial/hilbert_order.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = UniqueNeighborhood::kNodesAtOnce;
+constexpr Eigen::Index kNodesAtOnce = 64;        // right sides: matrix products are fast
 constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some tens of ms
+constexpr int kMostOthers = 200;  // from which a point is estimated that the factor cannot estimate
+
+/// What all ways of kriging need: the data, the nodes and room for the estimates.
+struct KrigingTask {
+    const LinearData& data;
+    const spatial::NearestPoints& tree;
+    const Covariance& covariance;
+    const KrigingOptions& options;
+    std::span<const Position> nodes;  ///< without any each point is left out and estimated instead
+    bool leaves_out;
+    double sill;
+    const Execution& execution;
+    Kriged& out;
+
+    std::size_t count() const { return leaves_out ? data.point_count() : nodes.size(); }
+    /// In local coordinates.
+    Position node(std::size_t i) const {
+        return leaves_out ? data.position(static_cast<std::int32_t>(i))
+                          : data.points().to_local(nodes[i]);
+    }
+    std::int32_t left_out(std::size_t i) const {
+        return leaves_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;
+    }
+    std::int32_t sheet(std::size_t i) const {
+        return leaves_out ? data.sheet(static_cast<std::int32_t>(i)) : options.sheets.asked;
+    }
+    /// The point of a sheet at a position, if there is one among the nearest points; else kNobody.
+    std::int32_t point_at_node(std::span<const spatial::Neighbor> nearest,
+                               std::int32_t sheet) const {
+        for (const spatial::Neighbor& near : nearest) {
+            if (near.squared_distance > 0 || !data.is_point(near.point)) break;
+            if (data.sheet(near.point) == sheet) return near.point;
+        }
+        return NeighborSearch::kNobody;
+    }
+    void set(std::size_t node, const Estimate& estimate) const {
+        out.z[node] = estimate.value;
+        out.variance[node] = estimate.variance * sill;
+    }
+};
+
+/// A single point that is left out: nothing is known of its value.
+Estimate unknown(double value) {
+    return {value, std::numeric_limits<double>::infinity()};
+}
+
+std::vector<Position> positions_of(const LinearData& data) {
+    std::vector<Position> positions;
+    for (std::size_t i = 0; i < data.size(); ++i)
+        positions.push_back(data.position(static_cast<std::int32_t>(i)));
+    return positions;
+}
+
+std::int32_t number(Eigen::Index datum) {
+    return static_cast<std::int32_t>(datum);
+}
+
+/// Kriging of every node from all data, whose covariances are factored once.
+class UniqueNeighborhood {
+public:
+    /// @param task          must outlive this
+    /// @param factor_share  the progress goes up to this
+    /// @throws Cancelled
+    UniqueNeighborhood(const KrigingTask& task, double factor_share);
+
+    /// What one thread works with.
+    struct UniqueScratch {
+        Eigen::MatrixXd u;
+        Eigen::VectorXd column;
+        std::vector<spatial::Neighbor> near;
+        NeighborKriging others;
+    };
+    UniqueScratch scratch() const {
+        return {{}, {}, {}, NeighborKriging(task_.data, task_.covariance, task_.options.drift)};
+    }
+
+    /// Estimates the nodes begin .. end - 1 of the task at once, at most kNodesAtOnce.
+    void krige(std::size_t begin, std::size_t end, UniqueScratch& scratch) const;
+
+    /// Estimates the points begin .. end - 1, each from the others.
+    void leave_out(std::size_t begin, std::size_t end, UniqueScratch& scratch) const;
+
+private:
+    const KrigingTask& task_;
+    Eigen::Index count_;
+    double base_;
+    DriftFrame frame_;
+    TiledCholesky factor_;
+    DriftBasis basis_;
+    Eigen::VectorXd t_;
+    DriftBasis::Coefficients qt_;
+};
+
+UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_share)
+    : task_(task),
+      count_(static_cast<Eigen::Index>(task.data.size())),
+      base_(task.data.points().values[0]),
+      frame_(positions_of(task.data), task.options.drift),
+      factor_(
+          count_,
+          [&](Eigen::Index i, Eigen::Index j) {
+              return i == j ? 1.0 : task.data.between(number(i), number(j), task.covariance);
+          },
+          kRedundantVariance, task.execution, factor_share) {
+    const Eigen::Index terms = drift_terms(task.options.drift);
+    Eigen::MatrixXd plain(count_, terms), given(count_, terms + 1);
+    for (Eigen::Index p = 0; p < count_; ++p) {
+        plain.row(p) = task.data.terms(number(p), frame_);
+        given.row(p).head(terms) = plain.row(p);
+        given(p, terms) = task.data.value(number(p), base_);
+        if (factor_.left_out(p)) plain.row(p).setZero();
+    }
+    factor_.solve(given, task.execution.progress);
+    basis_.make(plain, given.leftCols(terms));
+    t_ = given.col(terms);
+    qt_ = basis_.project(t_);
+}
+
+void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, UniqueScratch& scratch) const {
+    Eigen::MatrixXd& u = scratch.u;
+    // Always of one width, and columns at one alignment: sums are added in the same order then,
+    // whichever nodes are estimated together.
+    u.setZero(count_, kNodesAtOnce);
+    for (std::size_t i = begin; i < end; ++i) {
+        const Position node = task_.node(i);
+        const auto column = static_cast<Eigen::Index>(i - begin);
+        for (Eigen::Index p = 0; p < count_; ++p)
+            u(p, column) =
+                task_.data.with_height(node, number(p), task_.covariance, task_.sheet(i));
+        if (cancelled(task_.execution.progress)) return;
+    }
+    factor_.solve(u, task_.execution.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
+        const Position node = task_.node(i);
+        const std::int32_t sheet = task_.sheet(i);
+        task_.tree.find(node, task_.data.sheet_count(), scratch.near);
+        const std::int32_t at_node = task_.point_at_node(scratch.near, sheet);
+        if (at_node != NeighborSearch::kNobody) {
+            task_.set(i, {task_.data.points().values[at_node], 0});
+            continue;
+        }
+        Eigen::VectorXd& column = scratch.column;
+        column = u.col(static_cast<Eigen::Index>(i - begin));
+        const auto estimate = [&](double from) {
+            return universal_kriging(from, column.squaredNorm(), column.dot(t_), basis_,
+                                     task_.data.terms(node, sheet, frame_), basis_.project(column),
+                                     qt_);
+        };
+        task_.set(i, task_.data.has_sheets()
+                         ? in_heights(base_, task_.data.unit(sheet), estimate(0))
+                         : estimate(base_));
+    }
+}
+
+/// With B = C^-1 - C^-1 F (F^T C^-1 F)^-1 F^T C^-1 the error is (B z)_i / B_ii and its variance
+/// 1 / B_ii (Dubrule 1983); column i of L^-1 gives both.
+void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end,
+                                   UniqueScratch& scratch) const {
+    Eigen::MatrixXd& u = scratch.u;
+    u.setZero(count_, static_cast<Eigen::Index>(end - begin));
+    for (std::size_t i = begin; i < end; ++i)
+        u(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i - begin)) = 1;
+    factor_.solve(u, task_.execution.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
+        const auto column = u.col(static_cast<Eigen::Index>(i - begin));
+        const DriftBasis::Coefficients qu = basis_.project(column);
+        const double whole = column.squaredNorm(), b = whole - qu.squaredNorm();
+        const double value = task_.data.points().values[i];
+        const double unit = task_.data.unit(task_.sheet(i));
+        if (b > 1e-9 * whole) {
+            task_.set(i, {value - unit * (column.dot(t_) - qu.dot(qt_)) / b, unit * unit / b});
+            continue;
+        }
+        // The point alone determines a term of the drift, or others determine the point.
+        DataSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
+        search.find(task_.node(i), scratch.near, task_.left_out(i));
+        task_.set(i, scratch.near.empty()
+                         ? unknown(value)
+                         : scratch.others.at(task_.node(i), scratch.near, task_.sheet(i),
+                                             task_.execution.progress));
+    }
+}
 
 /// One system after another: neighbors in octants or within a radius, or more than the lanes take.
 void krige_one_by_one(const KrigingTask& task) {
@@ -26,7 +215,7 @@ void krige_one_by_one(const KrigingTask& task) {
                                        2 * task.data.dips_at_node());
     require_memory(thread_count(task.execution.threads) * n * (n + 8) * sizeof(double), n,
                    "kriging each node from its nearest", 16);
-    struct Scratch {
+    struct SingleScratch {
         NeighborKriging kriging;
         DataSearch search;
         std::vector<spatial::Neighbor> near;
@@ -34,20 +223,21 @@ void krige_one_by_one(const KrigingTask& task) {
     std::atomic<std::int64_t> alone{0};
     NodeLoop{task.count(), 256, task.execution, "kriging"}.over_nodes(
         [&] {
-            return Scratch{NeighborKriging(task.data, task.covariance, task.options.drift),
-                           DataSearch(task.data, task.tree, task.options.neighborhood),
-                           {}};
+            return SingleScratch{NeighborKriging(task.data, task.covariance, task.options.drift),
+                                 DataSearch(task.data, task.tree, task.options.neighborhood),
+                                 {}};
         },
-        [&](Scratch& own, std::size_t i) {
+        [&](SingleScratch& scratch, std::size_t i) {
             const Position node = task.node(i);
-            if (!own.search.find(node, own.near, task.left_out(i))) ++alone;
-            const std::int32_t sheet = task.sheet(i), there = task.point_there(own.near, sheet);
-            if (own.near.empty()) {
+            if (!scratch.search.find(node, scratch.near, task.left_out(i))) ++alone;
+            const std::int32_t sheet = task.sheet(i),
+                               at_node = task.point_at_node(scratch.near, sheet);
+            if (scratch.near.empty()) {
                 task.set(i, unknown(task.data.points().values[i]));
-            } else if (there != NeighborSearch::kNobody) {
-                task.set(i, {task.data.points().values[there], 0});
+            } else if (at_node != NeighborSearch::kNobody) {
+                task.set(i, {task.data.points().values[at_node], 0});
             } else {
-                task.set(i, own.kriging.at(node, own.near, sheet, task.execution.progress));
+                task.set(i, scratch.kriging.at(node, scratch.near, sheet, task.execution.progress));
             }
         });
     task.out.alone = alone;
@@ -65,20 +255,20 @@ void krige_in_lanes(const KrigingTask& task) {
     const std::size_t points = task.data.point_count() - (task.leaves_out ? 1 : 0);
     const auto wanted = static_cast<std::size_t>(task.options.neighborhood.neighbors);
     const std::size_t neighbors = std::min(wanted, points), count = task.count();
-    struct Scratch {
-        std::vector<LaneKriging::Node> nodes;
+    struct LaneScratch {
+        std::vector<LaneKriging::KrigingNode> nodes;
         LaneKriging lanes;
         NeighborKriging single;
         DataSearch search;
         std::vector<spatial::Neighbor> near;
     };
     const auto make = [&] {
-        return Scratch{{},
-                       LaneKriging(task.data, task.tree, task.covariance, neighbors,
-                                   task.leaves_out, lane_kernels().front(), task.options.drift),
-                       NeighborKriging(task.data, task.covariance, task.options.drift),
-                       DataSearch(task.data, task.tree, task.options.neighborhood),
-                       {}};
+        return LaneScratch{{},
+                           LaneKriging(task.data, task.tree, task.covariance, neighbors,
+                                       task.leaves_out, lane_kernels().front(), task.options.drift),
+                           NeighborKriging(task.data, task.covariance, task.options.drift),
+                           DataSearch(task.data, task.tree, task.options.neighborhood),
+                           {}};
     };
     std::vector<Position> positions;
     for (std::size_t first = 0; first < count; first += kNodesInOrder) {
@@ -93,19 +283,19 @@ void krige_in_lanes(const KrigingTask& task) {
         NodeLoop{here,           nodes_in_chunk(neighbors + 2 * task.data.dips_at_node()),
                  task.execution, "kriging",
                  share(first),   share(first + here)}
-            .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
-                own.nodes.clear();
+            .over_chunks(make, [&](LaneScratch& scratch, std::size_t begin, std::size_t end) {
+                scratch.nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
-                    own.nodes.push_back(
+                    scratch.nodes.push_back(
                         {positions[order[k]], order[k], task.left_out(first + order[k])});
                 }
-                own.lanes.krige(
-                    own.nodes,
+                scratch.lanes.krige(
+                    scratch.nodes,
                     [&](std::uint32_t i, const Estimate& found) { task.set(first + i, found); },
                     [&](std::uint32_t i) {
-                        own.search.find(positions[i], own.near, task.left_out(first + i));
-                        task.set(first + i,
-                                 own.single.at(positions[i], own.near, 0, task.execution.progress));
+                        scratch.search.find(positions[i], scratch.near, task.left_out(first + i));
+                        task.set(first + i, scratch.single.at(positions[i], scratch.near, 0,
+                                                              task.execution.progress));
                     });
             });
     }
@@ -121,14 +311,15 @@ void krige_from_all(const KrigingTask& task) {
     const double factor_share = factor_work / (factor_work + solve_work);
     const UniqueNeighborhood all(task, factor_share);
     NodeLoop{task.count(), kNodesAtOnce, task.execution, "kriging from all points", factor_share}
-        .over_chunks([&] { return all.scratch(); },
-                     [&](UniqueNeighborhood::Scratch& own, std::size_t begin, std::size_t end) {
-                         if (task.leaves_out) {
-                             all.leave_out(begin, end, own);
-                         } else {
-                             all.krige(begin, end, own);
-                         }
-                     });
+        .over_chunks(
+            [&] { return all.scratch(); },
+            [&](UniqueNeighborhood::UniqueScratch& scratch, std::size_t begin, std::size_t end) {
+                if (task.leaves_out) {
+                    all.leave_out(begin, end, scratch);
+                } else {
+                    all.krige(begin, end, scratch);
+                }
+            });
 }
 
 /// @param leaves_out  the points instead of nodes

@@ -106,7 +106,7 @@ void LaneKriging::prepare_covariances() {
 }
 
 /// Whether all lanes are full now.
-bool LaneKriging::add(const Node& node) {
+bool LaneKriging::add(const KrigingNode& node) {
     std::int32_t chosen[kMostNeighbors];
     assert(nearest_.size() >= points_);
     std::size_t count = 0;

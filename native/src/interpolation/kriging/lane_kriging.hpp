@@ -13,7 +13,7 @@
 #include "interpolation/linear_data.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "realmodel/interpolation/drift.hpp"
-#include "spatial/block_neighbors.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -38,7 +38,7 @@ class LaneKriging {
 public:
     static constexpr std::size_t kMostNeighbors = kMostLanePoints;
 
-    struct Node {
+    struct KrigingNode {
         Position position;                                ///< in local coordinates
         std::uint32_t number;                             ///< given back with the estimate
         std::int32_t left_out = NeighborSearch::kNobody;  ///< a point that is not used
@@ -54,7 +54,7 @@ public:
     /// Solves the systems of some nodes; set(number, estimate) gets each estimate, in any order.
     /// leave(number) gets nodes whose system is not well posed; never without a drift.
     template <class Set, class Leave>
-    void krige(std::span<const Node> nodes, Set&& set, Leave&& leave);
+    void krige(std::span<const KrigingNode> nodes, Set&& set, Leave&& leave);
 
 private:
     static constexpr std::size_t kMostInBlock = 64;
@@ -62,7 +62,7 @@ private:
     bool prepare(std::span<const Position> nodes);
     void find_candidates();
     void prepare_covariances();
-    bool add(const Node& node);
+    bool add(const KrigingNode& node);
     void covariances_with_nodes(double* covariances);
     void set_drift(double* terms);
     void solve();
@@ -95,7 +95,7 @@ private:
 };
 
 template <class Set, class Leave>
-void LaneKriging::krige(std::span<const Node> nodes, Set&& set, Leave&& leave) {
+void LaneKriging::krige(std::span<const KrigingNode> nodes, Set&& set, Leave&& leave) {
     while (!nodes.empty()) {
         std::size_t count = std::min(run_, nodes.size());
         positions_.clear();
@@ -105,7 +105,7 @@ void LaneKriging::krige(std::span<const Node> nodes, Set&& set, Leave&& leave) {
             count /= 2;
         run_ = std::min(2 * count, kMostInBlock);
         prepare_covariances();
-        for (const Node& node : nodes.first(count)) {
+        for (const KrigingNode& node : nodes.first(count)) {
             nearest_ = block_.nearest(node.position);
             if (node.left_out == NeighborSearch::kNobody && block_.squared_distance(0) == 0) {
                 const std::int32_t point = block_.candidates()[nearest_[0]];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/algorithms.hpp"
 #include "interpolation/node_loop.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -30,10 +31,11 @@ std::vector<spatial::Neighbor> nearest_among(std::span<const Position> among,
 }
 
 /// The nearest so far of each that is asked, no farther than a distance.
-class NearestSoFar {
+class NearestOfAsked {
 public:
     /// @param bounds  squared distances that `count` points do not exceed
-    NearestSoFar(const std::vector<Position>& asked, std::size_t count, std::vector<double> bounds)
+    NearestOfAsked(const std::vector<Position>& asked, std::size_t count,
+                   std::vector<double> bounds)
         : asked_(asked),
           count_(count),
           bounds_(std::move(bounds)),
@@ -93,20 +95,16 @@ std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
     count = std::min(count, positions.size);
     most = std::max(most, count);
     const std::vector<std::int32_t> part = even_part(positions.size, most);
-    std::vector<Position> among;
-    among.reserve(part.size());
-    for (const std::int32_t i : part)
-        among.push_back(positions.at(static_cast<std::size_t>(i)));
+    const auto at = [&](std::int32_t i) { return positions.at(static_cast<std::size_t>(i)); };
+    const std::vector<Position> among = transformed(part, at);
     std::vector<spatial::Neighbor> found =
         nearest_among(among, positions, asked, count, execution.threads);
     if (part.size() == positions.size) return found;
     std::vector<double> bounds;
-    std::vector<Position> places;
-    for (std::size_t k = 0; k < asked.size(); ++k) {
+    for (std::size_t k = 0; k < asked.size(); ++k)
         bounds.push_back(found[(k + 1) * count - 1].squared_distance);
-        places.push_back(positions.at(static_cast<std::size_t>(asked[k])));
-    }
-    NearestSoFar nearest(places, count, std::move(bounds));
+    const std::vector<Position> places = transformed(asked, at);
+    NearestOfAsked nearest(places, count, std::move(bounds));
     for (std::size_t i = 0; i < positions.size; ++i) {
         if (i % kBetweenChecks == 0 && execution.progress != nullptr) execution.progress->check();
         nearest.meet(positions.at(i), static_cast<std::int32_t>(i));

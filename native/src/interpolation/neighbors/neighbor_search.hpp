@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "interpolation/linear_data.hpp"
 #include "realmodel/interpolation/neighborhood.hpp"
 #include "spatial/nearest_points.hpp"
-#include "spatial/octant_search.hpp"
 
 namespace realmodel::interpolation {
 
@@ -42,6 +42,31 @@ private:
     double squared_radius_;
     std::vector<spatial::Neighbor> candidates_;
     std::optional<spatial::OctantSearch> rings_;  // where the tree would be slow
+};
+
+/// Finds the data of a neighborhood: the points as NeighborSearch does, then the differences of the
+/// nearest dips. One for each thread.
+class DataSearch {
+public:
+    DataSearch(const LinearData& data, const spatial::NearestPoints& tree,
+               const Neighborhood& neighborhood)
+        : data_(data),
+          points_(data.points(), tree, neighborhood),
+          squared_radius_(neighborhood.radius > 0 ? neighborhood.radius * neighborhood.radius
+                                                  : kNoRadius) {}
+
+    /// As NeighborSearch::find; `found` gets the numbers of data. Dips help nothing where there is
+    /// no point.
+    bool find(const Position& position, std::vector<spatial::Neighbor>& found,
+              std::int32_t left_out = NeighborSearch::kNobody);
+
+private:
+    static constexpr double kNoRadius = 1e300;  // squares of positions are smaller
+
+    const LinearData& data_;
+    NeighborSearch points_;
+    double squared_radius_;
+    std::vector<spatial::Neighbor> dips_;
 };
 
 }  // namespace realmodel::interpolation

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "interpolation/ties/data_range.hpp"
+#include "interpolation/ties/tie_system.hpp"
 #include "realmodel/interpolation/ties.hpp"
 #include "spatial/mesh_locator.hpp"
 

@@ -5,10 +5,205 @@
 #include <cfloat>
 #include <cmath>
 
-#include "base/keep_single.hpp"
-#include "spatial/point_bins.hpp"
+#include "base/algorithms.hpp"
+#include "base/vectors.hpp"
+#include "interpolation/node_loop.hpp"
+#include "realmodel/interpolation/ties.hpp"
+#include "spatial/mesh_locator.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::interpolation {
+
+namespace {
+
+constexpr std::size_t kOfBlock = 64;     // nodes, about: of larger blocks centers reach only some
+constexpr std::size_t kMostBlocks = 16;  // that a thread does in a row
+
+}  // namespace
+
+NodeBlocks::NodeBlocks(std::span<const Position> nodes, std::span<const double> sided,
+                       std::size_t faults)
+    : nodes_(nodes), sided_(sided), faults_(faults) {
+    const spatial::PlanTiles tiles(spatial::box_around(nodes), nodes.size() / kOfBlock + 1);
+    blocks_ = bucketize<std::uint32_t>(tiles.size(), [&](const auto& put) {
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            put(tiles.tile_at(nodes[i]), static_cast<std::uint32_t>(i));
+    });
+}
+
+NodeBlock NodeBlocks::operator[](std::size_t number) const {
+    const std::span<const std::uint32_t> numbers = blocks_[number];
+    const auto count = static_cast<Eigen::Index>(numbers.size());
+    NodeBlock block{numbers, Eigen::ArrayXd(count), Eigen::ArrayXd(count),
+                    Eigen::ArrayXXd(count, static_cast<Eigen::Index>(faults_)), spatial::kNoBox};
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const std::uint32_t i = numbers[static_cast<std::size_t>(k)];
+        const auto& [x, y] = nodes_[i];
+        block.x[k] = x;
+        block.y[k] = y;
+        block.box = block.box.united({x, y, x, y});
+        for (std::size_t fault = 0; fault < faults_; ++fault)
+            block.sided(k, static_cast<Eigen::Index>(fault)) = sided_[i * faults_ + fault];
+    }
+    return block;
+}
+
+KernelSum::KernelSum(std::span<const Position> positions, std::span<const double> sided,
+                     std::size_t faults, std::span<const double> coefficients, double radius)
+    : numbers_(that_count(coefficients)),
+      positions_(positions),
+      sided_(sided),
+      coefficients_(coefficients),
+      faults_(faults),
+      radius_(radius),
+      bins_(own(positions)) {}
+
+std::vector<std::int32_t> KernelSum::that_count(std::span<const double> coefficients) {
+    std::vector<std::int32_t> numbers;
+    for (std::size_t i = 0; i < coefficients.size(); ++i)
+        if (coefficients[i] != 0) numbers.push_back(static_cast<std::int32_t>(i));
+    return numbers;
+}
+
+std::vector<Position> KernelSum::own(std::span<const Position> positions) const {
+    return transformed(numbers_, [&](std::int32_t i) { return positions[i]; });
+}
+
+std::vector<std::size_t> KernelSum::near(const NodeBlock& block) const {
+    std::vector<std::size_t> found;
+    bins_.within(block.box.widened(radius_), [&](std::size_t number, const Position& p) {
+        const double dx = std::max({block.box.low_x - p[0], p[0] - block.box.high_x, 0.0}),
+                     dy = std::max({block.box.low_y - p[1], p[1] - block.box.high_y, 0.0});
+        if (dx * dx + dy * dy < radius_ * radius_)
+            found.push_back(static_cast<std::size_t>(numbers_[number]));
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+Eigen::ArrayXd KernelSum::at(const NodeBlock& block) const {
+    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(block.x.size());
+    Eigen::ArrayXd share(sum.size()), value(sum.size());
+    for (const std::size_t i : near(block)) {
+        const auto& [x, y] = positions_[i];
+        share = ((block.x - x).square() + (block.y - y).square()).sqrt() / radius_;
+        value = (1 - share).max(0).square().square() * (4 * share + 1);
+        for (std::size_t fault = 0; fault < faults_; ++fault)
+            value *=
+                1 + block.sided.col(static_cast<Eigen::Index>(fault)) * sided_[i * faults_ + fault];
+        sum += coefficients_[i] * value;
+    }
+    return sum;
+}
+
+std::vector<double> tied_heights(std::span<const double> heights, std::span<const Position> nodes,
+                                 std::span<const double> sided, const TieTerms& terms,
+                                 const Execution& execution) {
+    std::vector<double> z(heights.begin(), heights.end());
+    const std::size_t count = terms.positions.size();
+    if (count == 0) return z;
+    const std::size_t faults = terms.sided.size() / count;
+    std::vector<KernelSum> sums;
+    for (std::size_t level = 0; level < terms.radii.size(); ++level) {
+        const auto own = std::span(terms.coefficients).subspan(level * count, count);
+        if (std::all_of(own.begin(), own.end(), [](double c) { return c == 0; })) continue;
+        sums.emplace_back(terms.positions, terms.sided, faults, own, terms.radii[level]);
+    }
+    const NodeBlocks blocks(nodes, sided, faults);
+    const NodeLoop loop{blocks.size(), kMostBlocks, execution};
+    loop.over_nodes([] { return 0; },
+                    [&](int, std::size_t number) {
+                        const NodeBlock block = blocks[number];
+                        Eigen::ArrayXd correction = Eigen::ArrayXd::Zero(block.x.size());
+                        for (const KernelSum& sum : sums)
+                            correction += sum.at(block);
+                        for (std::size_t k = 0; k < block.numbers.size(); ++k)
+                            z[block.numbers[k]] += correction[static_cast<Eigen::Index>(k)];
+                    });
+    return z;
+}
+
+namespace {
+
+double mesh_area(const TiedSheets& sheets) {
+    double area = 0;
+    for (const auto& t : sheets.triangles)
+        area += twice_area(sheets.nodes[t[0]], sheets.nodes[t[1]], sheets.nodes[t[2]]);
+    return std::abs(area) / 2;
+}
+
+}  // namespace
+
+TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
+    : rows(data.places.size()), area(0) {
+    const std::size_t count = sheets.nodes.size();
+    const spatial::MeshLocator locator(sheets.nodes, sheets.triangles);
+    area = mesh_area(sheets);
+    faults = count > 0 ? sheets.weights.size() / count : 0;
+    std::vector<std::array<std::int64_t, 3>> keys(rows.size());
+    std::vector<std::int64_t> every;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto found = locator.find(data.places[i]);
+        if (!found) continue;
+        const auto& corners = sheets.triangles[static_cast<std::size_t>(found->triangle)];
+        const auto first =
+            static_cast<std::int64_t>(data.sheets[i]) * static_cast<std::int64_t>(count);
+        TieRow& row = rows[i];
+        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Position& p = sheets.nodes[corners[k]];
+            keys[i][k] = first + corners[k];
+            row.is_known =
+                row.is_known && !std::isnan(sheets.heights[static_cast<std::size_t>(keys[i][k])]);
+            row.shortest_edge =
+                std::min(row.shortest_edge, length(minus(p, sheets.nodes[corners[(k + 1) % 3]])));
+        }
+        if (row.is_known) every.insert(every.end(), keys[i].begin(), keys[i].end());
+    }
+    sort_unique(every);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (std::size_t k = 0; k < 3 && rows[i].is_known; ++k) {
+            const auto at = std::lower_bound(every.begin(), every.end(), keys[i][k]);
+            rows[i].corners[k] = static_cast<std::int32_t>(at - every.begin());
+        }
+    }
+    for (const std::int64_t key : every) {
+        const std::size_t sheet = static_cast<std::size_t>(key) / count,
+                          node = static_cast<std::size_t>(key) % count;
+        positions.push_back(sheets.nodes[node]);
+        heights.push_back(sheets.heights[static_cast<std::size_t>(key)]);
+        for (std::size_t fault = 0; fault < faults; ++fault)
+            sided.push_back(sheets.sides[sheet * faults + fault] *
+                            sheets.weights[fault * count + node]);
+    }
+}
+
+double TieRows::product(const TieRow& a, const TieRow& b, double radius) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (a.weights[i] == 0) continue;
+        double inner = 0;
+        for (std::size_t j = 0; j < 3; ++j)
+            inner += b.weights[j] * tie_kernel(center(a.corners[i]), center(b.corners[j]), radius);
+        sum += a.weights[i] * inner;
+    }
+    return sum;
+}
+
+std::vector<std::int32_t> nodes_around(std::span<const Position> nodes,
+                                       std::span<const std::array<std::int32_t, 3>> triangles,
+                                       std::span<const Position> places) {
+    const spatial::MeshLocator locator(nodes, triangles);
+    std::vector<std::int32_t> found;
+    for (const Position& place : places) {
+        if (const auto at = locator.find(place)) {
+            const auto& corners = triangles[static_cast<std::size_t>(at->triangle)];
+            found.insert(found.end(), corners.begin(), corners.end());
+        }
+    }
+    sort_unique(found);
+    return found;
+}
 
 namespace {
 

@@ -10,11 +10,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "base/keep_single.hpp"
+#include "base/algorithms.hpp"
 #include "interpolation/node_loop.hpp"
-#include "interpolation/ties/data_range.hpp"
-#include "interpolation/ties/tie_rows.hpp"
 #include "interpolation/ties/tie_system.hpp"
+#include "spatial/hash_grid.hpp"
 #include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
@@ -41,20 +40,17 @@ constexpr std::size_t kLookedAt = 32;  // data around an inequality
 /// Rows that are apart by a distance, or across a fault: those that come first are taken.
 class Thinning {
 public:
-    Thinning(const TieRows& rows, double distance) : rows_(rows), distance_(distance) {}
+    Thinning(const TieRows& rows, double distance)
+        : rows_(rows), distance_(distance), taken_at_(2 * distance) {}
 
     bool take(std::int32_t row) {
         const SheetNode own = center(row);
-        const auto [column, line] = cell(own.position);
-        for (std::int64_t dx = -1; dx <= 1; ++dx) {
-            for (std::int64_t dy = -1; dy <= 1; ++dy) {
-                const auto found = taken_.find(key(column + dx, line + dy));
-                if (found == taken_.end()) continue;
-                for (const std::int32_t other : found->second)
-                    if (tie_kernel(own, center(other), distance_) > 0) return false;
-            }
-        }
-        taken_[key(column, line)].push_back(row);
+        if (taken_at_.any(own.position, distance_, [&](std::size_t i) {
+                return tie_kernel(own, center(taken_[i]), distance_) > 0;
+            }))
+            return false;
+        taken_at_.add(own.position);
+        taken_.push_back(row);
         return true;
     }
 
@@ -65,18 +61,11 @@ private:
         const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
         return rows_.center(rows_.rows[row].corners[static_cast<std::size_t>(most)]);
     }
-    std::pair<std::int64_t, std::int64_t> cell(const Position& p) const {
-        return {static_cast<std::int64_t>(std::floor((p[0] - rows_.positions[0][0]) / distance_)),
-                static_cast<std::int64_t>(std::floor((p[1] - rows_.positions[0][1]) / distance_))};
-    }
-    static std::uint64_t key(std::int64_t column, std::int64_t line) {
-        return static_cast<std::uint64_t>(column) * 0x9E3779B97F4A7C15u ^
-               static_cast<std::uint64_t>(line) * 0xC2B2AE3D27D4EB4Fu;
-    }
 
     const TieRows& rows_;
     double distance_;
-    std::unordered_map<std::uint64_t, Members> taken_;
+    Members taken_;
+    spatial::HashGrid<2> taken_at_;
 };
 
 class Tying {
@@ -87,7 +76,7 @@ public:
           execution_(execution),
           centers_(rows.positions, rows.sided, rows.faults),
           z_(rows.heights) {
-        state_.assign(rows.rows.size(), State::kIdle);
+        state_.assign(rows.rows.size(), TieState::kIdle);
     }
 
     void run() {
@@ -95,7 +84,7 @@ public:
         if (wrong.empty()) return;
         for (std::size_t i = 0; i < rows_.rows.size(); ++i) {
             if (!rows_.rows[i].is_known || !rows_.rows[i].is_contact()) continue;
-            state_[i] = State::kActive;
+            state_[i] = TieState::kActive;
             active_.push_back(static_cast<std::int32_t>(i));
         }
         std::size_t count = active_.size();
@@ -114,7 +103,7 @@ public:
         if (little.empty()) return {};
         Tying found = *this;
         for (const std::int32_t row : little)
-            found.state_[row] = State::kIdle;
+            found.state_[row] = TieState::kIdle;
         if (!found.activate_some(found.beyond())) return {};
         found.settle(kMostCrowdedByLittle);
         for (std::size_t i = 0; i < z_.size(); ++i) {
@@ -140,7 +129,7 @@ public:
     }
 
 private:
-    enum class State : std::uint8_t { kIdle, kActive, kGivenUp };
+    enum class TieState : std::uint8_t { kIdle, kActive, kGivenUp };
 
     /// Meets active rows, and all that do not hold then, but for those that others leave too little
     /// room: less than `least` of the square of a row.
@@ -156,15 +145,12 @@ private:
     Members beyond() const {
         std::vector<std::pair<double, std::int32_t>> found;
         for (std::size_t i = 0; i < rows_.rows.size(); ++i) {
-            if (!rows_.rows[i].is_known || state_[i] != State::kIdle) continue;
+            if (!rows_.rows[i].is_known || state_[i] != TieState::kIdle) continue;
             const double by = std::abs(missing(i));
             if (by > tolerance_) found.emplace_back(-by, static_cast<std::int32_t>(i));
         }
         std::sort(found.begin(), found.end());
-        Members numbers;
-        for (const auto& each : found)
-            numbers.push_back(each.second);
-        return numbers;
+        return transformed(found, &std::pair<double, std::int32_t>::second);
     }
 
     double range_of_data() const {
@@ -181,7 +167,7 @@ private:
     Members given_up_by(double most) const {
         Members found;
         for (std::size_t i = 0; i < state_.size(); ++i) {
-            const bool is_given_up = state_[i] == State::kGivenUp && !rows_.rows[i].is_contact();
+            const bool is_given_up = state_[i] == TieState::kGivenUp && !rows_.rows[i].is_contact();
             if (is_given_up && std::abs(missing(i)) <= most)
                 found.push_back(static_cast<std::int32_t>(i));
         }
@@ -194,7 +180,7 @@ private:
         Thinning apart(rows_, spacing_ / 2);
         for (const std::int32_t row : wrong) {
             if (!apart.take(row)) continue;
-            state_[row] = State::kActive;
+            state_[row] = TieState::kActive;
             target_[row] = missing(static_cast<std::size_t>(row)) > 0 ? rows_.rows[row].lower
                                                                       : rows_.rows[row].upper;
             active_.push_back(row);
@@ -235,7 +221,7 @@ private:
             if (unneeded.empty()) return;
             for (const std::int32_t at : unneeded) {
                 const std::int32_t row = active_[at];
-                state_[row] = State::kIdle;
+                state_[row] = TieState::kIdle;
                 target_.erase(row);
                 ++releases_[row];
             }
@@ -343,8 +329,10 @@ private:
             victims.push_back(that_yields(system, members, at));
         sort_unique(victims);
         for (const std::int32_t victim : victims)
-            state_[members[victim]] = State::kGivenUp;
-        const auto is_given_up = [&](std::int32_t row) { return state_[row] == State::kGivenUp; };
+            state_[members[victim]] = TieState::kGivenUp;
+        const auto is_given_up = [&](std::int32_t row) {
+            return state_[row] == TieState::kGivenUp;
+        };
         std::erase_if(members, is_given_up);
         std::erase_if(active_, is_given_up);
     }
@@ -413,7 +401,7 @@ private:
     Execution execution_;
     NodeBlocks centers_;
     std::vector<double> z_;  // at the centers, corrected
-    std::vector<State> state_;
+    std::vector<TieState> state_;
     Members active_;
     std::unordered_map<std::int32_t, double> target_;  // of active inequalities
     std::unordered_map<std::int32_t, int> releases_;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/keep_single.hpp"
-#include "exact/orient2d.hpp"
+#include "base/algorithms.hpp"
+#include "exact/orientation.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
 
@@ -82,10 +82,7 @@ std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> po
                                        std::span<const std::array<double, 2>> nodes,
                                        const Execution& execution) {
     require_finite_nodes(nodes);
-    std::vector<Position> positions;
-    positions.reserve(points.size());
-    for (const auto& [x, y, z] : points)
-        positions.push_back({x, y});
+    auto positions = transformed(points, [](const auto& p) { return Position{p[0], p[1]}; });
     require_finite_nodes(positions);
     const ConvexHull hull(std::move(positions));
     std::vector<std::uint8_t> outside(nodes.size());

@@ -1,20 +1,299 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/interpolation/triangulated.hpp"
 
+#include "exact/cgal_kernel.hpp"
+// CGAL
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
+#include "base/algorithms.hpp"
+#include "base/vectors.hpp"
+#include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
-#include "interpolation/triangulation/part_check.hpp"
-#include "interpolation/triangulation/point_triangulation.hpp"
 #include "realmodel/base/elementary.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/interpolation/convex_hull.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
+
+constexpr double kSlack = 1e-6;  // of the size of a circle, for rounding
+constexpr double kFlat = 1e-7;   // of the squared side: of flatter triangles circles are rounding
+constexpr double kOfOrigin = 4e-16;  // what coordinates relative to the origin may be off by
+
+/// The border of the hull of data points.
+class HullBorder {
+public:
+    /// Edges counterclockwise, in any order.
+    void add(const Position& from, double from_value, const Position& to, double to_value) {
+        edges_.push_back({from, to, from_value, to_value});
+    }
+    /// Value at the nearest place of the border; of places equally near that of the edge that
+    /// begins at the lexicographically least position.
+    double nearest_value(const Position& position) const;
+
+private:
+    struct ValuedEdge {
+        Position from, to;
+        double from_value, to_value;
+    };
+    std::vector<ValuedEdge> edges_;
+};
+
+/// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers
+/// of their points. Several threads may ask at once.
+class PointTriangulation {
+public:
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
+    using Delaunay =
+        CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
+    using Face = Delaunay::Face_handle;
+
+    PointTriangulation(const DataPoints& data, Progress* progress);
+
+    const Delaunay& delaunay() const { return delaunay_; }
+
+    /// A triangle at the point nearest to a position: where the search for it begins, so that what
+    /// is found on ties depends on the position alone. No triangle where the points lie in one
+    /// line.
+    Face near(const Position& position, std::vector<spatial::Neighbor>& found) const;
+
+    /// The corners of a triangle counterclockwise from the one with the least number: it does not
+    /// matter then in which order points were inserted.
+    std::array<std::int32_t, 3> corners(Face face) const;
+
+    /// Value at a position inside `face`, linear between its corners.
+    double linear(const Position& position, Face face) const;
+
+    const HullBorder& border() const { return border_; }
+
+private:
+    void add_border(std::int32_t a, std::int32_t b) {
+        border_.add(data_.local[a], data_.values[a], data_.local[b], data_.values[b]);
+    }
+
+    const DataPoints& data_;
+    spatial::NearestPoints tree_;
+    Delaunay delaunay_;
+    std::vector<Delaunay::Vertex_handle> vertices_;  // by point
+    HullBorder border_;                              // of points in one line all edges
+};
+
+PointTriangulation::PointTriangulation(const DataPoints& data, Progress* progress)
+    : data_(data), tree_(data.local), vertices_(data.local.size()) {
+    std::vector<Kernel::Point_2> points;
+    for (const auto& [x, y] : data.local)
+        points.emplace_back(x, y);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    using PointOf = CGAL::Pointer_property_map<Kernel::Point_2>::const_type;
+    CGAL::spatial_sort(order.begin(), order.end(),
+                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PointOf>(points.data()));
+    Face last;
+    std::size_t inserted = 0;
+    for (const std::size_t point : order) {
+        if (++inserted % 1024 == 0 && progress != nullptr) progress->check();
+        const Delaunay::Vertex_handle vertex = delaunay_.insert(points[point], last);
+        vertex->info() = static_cast<std::int32_t>(point);
+        vertices_[point] = vertex;
+        last = vertex->face();
+    }
+    if (delaunay_.dimension() == 2) {
+        auto face = delaunay_.incident_faces(delaunay_.infinite_vertex());
+        const auto first = face;
+        do {
+            const int i = face->index(delaunay_.infinite_vertex());
+            add_border(face->vertex(Delaunay::cw(i))->info(),
+                       face->vertex(Delaunay::ccw(i))->info());
+        } while (++face != first);
+    } else if (delaunay_.dimension() == 1) {
+        for (auto edge = delaunay_.finite_edges_begin(); edge != delaunay_.finite_edges_end();
+             ++edge) {
+            add_border(edge->first->vertex(0)->info(), edge->first->vertex(1)->info());
+        }
+    } else {
+        const std::int32_t only = delaunay_.finite_vertices_begin()->info();
+        add_border(only, only);
+    }
+}
+
+PointTriangulation::Face PointTriangulation::near(const Position& position,
+                                                  std::vector<spatial::Neighbor>& found) const {
+    if (delaunay_.dimension() < 2) return {};
+    tree_.find(position, 1, found);
+    return vertices_[found[0].point]->face();
+}
+
+std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
+    std::array<std::int32_t, 3> out{};
+    for (int k = 0; k < 3; ++k)
+        out[k] = face->vertex(k)->info();
+    std::rotate(out.begin(), std::min_element(out.begin(), out.end()), out.end());
+    return out;
+}
+
+double PointTriangulation::linear(const Position& position, Face face) const {
+    std::array<double, 3> x{}, y{}, z{};
+    const std::array<std::int32_t, 3> points = corners(face);
+    for (int k = 0; k < 3; ++k) {
+        const auto point = points[k];
+        x[k] = data_.local[point][0] - position[0];
+        y[k] = data_.local[point][1] - position[1];
+        z[k] = data_.values[point];
+        if (x[k] == 0 && y[k] == 0) return z[k];
+    }
+    const double a = x[1] * y[2] - x[2] * y[1], b = x[2] * y[0] - x[0] * y[2],
+                 c = x[0] * y[1] - x[1] * y[0];
+    const double area = a + b + c;
+    // A triangle so thin that its area is lost to rounding: its nearest corner will do.
+    if (!(area > 0)) {
+        std::size_t nearest = 0;
+        for (std::size_t k = 1; k < 3; ++k) {
+            if (elementary::hypot(x[k], y[k]) < elementary::hypot(x[nearest], y[nearest]))
+                nearest = k;
+        }
+        return z[nearest];
+    }
+    const double wb = std::clamp(b / area, 0.0, 1.0), wc = std::clamp(c / area, 0.0, 1.0);
+    return z[0] + wb * (z[1] - z[0]) + wc * (z[2] - z[0]);
+}
+
+double HullBorder::nearest_value(const Position& position) const {
+    double least = std::numeric_limits<double>::infinity(), value = 0;
+    const ValuedEdge* nearest = nullptr;
+    for (const ValuedEdge& edge : edges_) {
+        const Position& from = edge.from;
+        const double t = nearest_share(from, edge.to, position);
+        const Position off = moved(minus(position, from), -t, minus(edge.to, from));
+        const double squared = dot(off, off);
+        const bool is_first = squared == least && nearest != nullptr && from < nearest->from;
+        if (!(squared < least) && !is_first) continue;
+        least = squared;
+        nearest = &edge;
+        value = t == 1 ? edge.to_value : edge.from_value + t * (edge.to_value - edge.from_value);
+    }
+    return value;
+}
+
+/// Tells of circles whether a part of some points has all points that may lie in them. Positions
+/// are local coordinates.
+class PartCheck {
+public:
+    PartCheck(const DataPoints& data, const PointsAround& around);
+
+    /// Whether a node lies in the hull of all points, its border included. Exact.
+    bool in_hull(const Position& node) const { return hull_.contains(node); }
+    const HullBorder& border() const { return border_; }
+    /// Whether the part is the whole.
+    bool is_whole() const { return is_whole_; }
+
+    /// Whether two points are next to each other on the border of the hull.
+    bool is_hull_edge(const Position& a, const Position& b) const;
+
+    /// Whether the part has all points in the circle through p and two points, or, of an edge of
+    /// the hull, on the side of the edge where p is.
+    bool has_all_in_circle(const Position& p, const Position& a, const Position& b) const;
+
+private:
+    bool has_all_in(const spatial::PlanBox& box) const;
+
+    ConvexHull hull_;
+    HullBorder border_;
+    std::vector<std::pair<Position, std::size_t>> place_on_border_;  // ascending
+    spatial::PlanBox all_, window_;
+    bool is_whole_;
+};
+
+std::vector<Position> local_positions(const DataPoints& data,
+                                      std::span<const std::array<double, 3>> points) {
+    return transformed(points, [&](const auto& p) { return data.to_local({p[0], p[1]}); });
+}
+
+PartCheck::PartCheck(const DataPoints& data, const PointsAround& around)
+    : hull_(local_positions(data, around.border)), is_whole_(around.is_whole) {
+    const std::vector<Position> places = local_positions(data, around.border);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::size_t next = (i + 1) % places.size();
+        border_.add(places[i], around.border[i][2], places[next], around.border[next][2]);
+        place_on_border_.emplace_back(places[i], i);
+    }
+    std::sort(place_on_border_.begin(), place_on_border_.end());
+    const double x = data.origin[0], y = data.origin[1];
+    const double off = kOfOrigin * std::max(std::abs(x), std::abs(y));
+    const auto local_box = [&](const std::array<double, 4>& box) {
+        return spatial::PlanBox{box[0] - x, box[1] - y, box[2] - x, box[3] - y};
+    };
+    all_ = local_box(around.all).widened(2 * off);
+    window_ = local_box(around.window).widened(-2 * off);
+}
+
+bool PartCheck::is_hull_edge(const Position& a, const Position& b) const {
+    const auto place = [&](const Position& p) {
+        const auto found = std::lower_bound(place_on_border_.begin(), place_on_border_.end(),
+                                            std::pair(p, std::size_t{0}));
+        const bool is_there = found != place_on_border_.end() && found->first == p;
+        return is_there ? found->second : place_on_border_.size();
+    };
+    const std::size_t count = place_on_border_.size(), i = place(a), j = place(b);
+    if (i == count || j == count) return false;
+    return (i + 1) % count == j || (j + 1) % count == i;
+}
+
+bool PartCheck::has_all_in(const spatial::PlanBox& box) const {
+    return std::max(box.low_x, all_.low_x) >= window_.low_x &&
+           std::max(box.low_y, all_.low_y) >= window_.low_y &&
+           std::min(box.high_x, all_.high_x) <= window_.high_x &&
+           std::min(box.high_y, all_.high_y) <= window_.high_y;
+}
+
+bool PartCheck::has_all_in_circle(const Position& p, const Position& a, const Position& b) const {
+    if (is_whole_) return true;
+    const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1];
+    const double cross = ax * by - ay * bx, dot = ax * bx + ay * by;
+    const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
+    const double ux = bx - ax, uy = by - ay, side = std::sqrt(ux * ux + uy * uy);
+    if (dot <= 0 && is_hull_edge(a, b)) {
+        // Less than half a circle: it reaches from the edge as high as the tangent of half the arc
+        // tells, and is nowhere wider.
+        const double high =
+            0.5 * std::abs(cross) / (std::sqrt(aa) * std::sqrt(bb) - dot) * (1 + kSlack);
+        const double off_x = std::abs(uy) * high, off_y = std::abs(ux) * high;
+        const spatial::PlanBox box{std::min(a[0], b[0]) - off_x, std::min(a[1], b[1]) - off_y,
+                                   std::max(a[0], b[0]) + off_x, std::max(a[1], b[1]) + off_y};
+        return has_all_in(box.widened(kSlack * side));
+    }
+    if (!(std::abs(cross) > kFlat * std::max({aa, bb, side * side}))) return false;
+    const double x = (by * aa - ay * bb) / (2 * cross), y = (ax * bb - bx * aa) / (2 * cross);
+    const double radius = std::sqrt(x * x + y * y) * (1 + kSlack);
+    const double middle_x = p[0] + x, middle_y = p[1] + y;
+    // What of the circle is in the box of all points.
+    const auto beyond = [](double at, double low, double high) {
+        return std::max({low - at, at - high, 0.0});
+    };
+    const auto half = [&](double off) {
+        return std::sqrt(std::max(radius * radius - off * off, 0.0));
+    };
+    const double half_x = half(beyond(middle_y, all_.low_y, all_.high_y)) + kSlack * radius;
+    const double half_y = half(beyond(middle_x, all_.low_x, all_.high_x)) + kSlack * radius;
+    return has_all_in({middle_x - half_x, middle_y - half_y, middle_x + half_x, middle_y + half_y});
+}
 
 using Face = PointTriangulation::Face;
 using Delaunay = PointTriangulation::Delaunay;
@@ -28,7 +307,7 @@ constexpr double kAreasAgree = 1e-7;
 
 /// What a value follows from. check: whether a part of the points suffices; null where there are
 /// all.
-struct Source {
+struct ValueSource {
     const DataPoints& data;
     const PointTriangulation& triangulation;
     const PartCheck* check;
@@ -50,14 +329,14 @@ struct Source {
 /// Where a node is. face: a finite triangle; on an edge between two, the one whose other corner has
 /// the lower number: it does not matter then in which order points were inserted. from, to: the
 /// numbers of the ends of the edge, ascending.
-struct Place {
+struct NodeLocation {
     Face face, other;  ///< other: of an edge
     bool is_on_edge = false, is_on_hull = false;
     std::int32_t from = 0, to = 0;
 };
 
-Place place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face face, int at) {
-    Place place;
+NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face face, int at) {
+    NodeLocation place;
     place.face = face;
     if (kind == Delaunay::FACE) return place;
     place.is_on_edge = true;
@@ -74,7 +353,7 @@ Place place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face face, 
 }
 
 /// Whether triangles that a value on a place follows from are those of all points.
-bool suffices(const Source& source, const Place& place) {
+bool suffices(const ValueSource& source, const NodeLocation& place) {
     if (source.check == nullptr || source.check->is_whole()) return true;
     if (place.is_on_hull)
         return source.check->is_hull_edge(source.data.local[place.from],
@@ -85,12 +364,12 @@ bool suffices(const Source& source, const Place& place) {
 }
 
 /// A value, and whether the points suffice for it.
-struct Found {
+struct PartValue {
     double value;
     bool is_certain;
 };
 
-Found linear(const Source& source, const Position& node, const Place& place) {
+PartValue linear(const ValueSource& source, const Position& node, const NodeLocation& place) {
     return {source.triangulation.linear(node, place.face), suffices(source, place)};
 }
 
@@ -105,7 +384,7 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
     const PointTriangulation triangulation(data, execution.progress);
     std::optional<PartCheck> check;
     if (around != nullptr) check.emplace(data, *around);
-    const Source source{data, triangulation, check ? &*check : nullptr};
+    const ValueSource source{data, triangulation, check ? &*check : nullptr};
     PartValues out{std::vector<double>(nodes.size()), std::vector<std::uint8_t>(nodes.size(), 1)};
     const NodeLoop loop{nodes.size(), 256, execution, text};
     loop.over_nodes(
@@ -125,8 +404,8 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
             if (kind == Delaunay::VERTEX) {
                 out.z[i] = data.values[face->vertex(at)->info()];
             } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
-                const Place place = place_of(triangulation.delaunay(), kind, face, at);
-                const Found here = value(source, node, place);
+                const NodeLocation place = place_of(triangulation.delaunay(), kind, face, at);
+                const PartValue here = value(source, node, place);
                 out.z[i] = here.value;
                 out.certain[i] = here.is_certain ? 1 : 0;
             } else {
@@ -151,7 +430,7 @@ bool has_no_center(const Point& node, const Edge& edge) {
 using Weights = std::vector<std::pair<std::int32_t, double>>;  // by number of the point
 
 /// On an edge of the hull only its ends count.
-void add_weights_on_hull(const Source& source, const Position& node, const Place& place,
+void add_weights_on_hull(const ValueSource& source, const Position& node, const NodeLocation& place,
                          Weights& weights) {
     const Position &from = source.data.local[place.from], &to = source.data.local[place.to];
     const std::size_t axis = from[0] != to[0] ? 0 : 1;
@@ -165,7 +444,7 @@ void add_weights_on_hull(const Source& source, const Position& node, const Place
 /// Their digits depend on the points alone: circles that go are taken from their corners in order,
 /// and the hole begins at its point with the lowest number.
 /// @return false where there are none: the node is as near to the border as rounding
-bool add_weights(const Source& source, const Point& node, std::vector<Edge>& hole,
+bool add_weights(const ValueSource& source, const Point& node, std::vector<Edge>& hole,
                  Weights& weights) {
     if (std::ranges::any_of(hole, [&](const Edge& edge) { return has_no_center(node, edge); }))
         return false;
@@ -209,7 +488,7 @@ bool add_weights(const Source& source, const Point& node, std::vector<Edge>& hol
 }
 
 /// Sibson's coordinates, checked: their weighted mean must give the node back.
-Found natural(const Source& source, const Position& node, const Place& place) {
+PartValue natural(const ValueSource& source, const Position& node, const NodeLocation& place) {
     thread_local Weights weights;
     thread_local std::vector<Edge> hole;
     weights.clear();
@@ -239,7 +518,7 @@ Found natural(const Source& source, const Position& node, const Place& place) {
         reach += weight * elementary::hypot(dx, dy);
     }
     if (!(sum > 0) || !std::isfinite(sum) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
-        const Found plain = linear(source, node, place);
+        const PartValue plain = linear(source, node, place);
         return {plain.value, plain.is_certain && is_certain};
     }
     return {base + z / sum, is_certain};

@@ -2,9 +2,11 @@
 #include "interpolation/variogram/leave_one_out.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "interpolation/kriging/lane_kernels.hpp"
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/neighbors/nearest_of_some.hpp"
@@ -170,11 +172,11 @@ std::vector<PredictionErrors> LeaveOneOut::errors(std::span<const Covariance> al
     if (alike.empty()) return out;
     const NodeLoop loop{all, points_in_chunk(neighbors_), {execution_.threads, nullptr}};
     loop.over_chunks([&] { return PredictionLanes(data_, alike, neighbors_); },
-                     [&](PredictionLanes& own, std::size_t begin, std::size_t end) {
+                     [&](PredictionLanes& lanes, std::size_t begin, std::size_t end) {
                          for (std::size_t k = begin; k < end; k += kLanes) {
                              const std::size_t count = std::min<std::size_t>(kLanes, end - k);
-                             own.solve(std::span(left_out_).subspan(k, count),
-                                       others_.data() + k * neighbors_, k, out);
+                             lanes.solve(std::span(left_out_).subspan(k, count),
+                                         others_.data() + k * neighbors_, k, out);
                          }
                      });
     if (execution_.progress != nullptr) execution_.progress->check();
@@ -185,7 +187,7 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
     if (drift == Drift::kConstant) return std::move(errors({&covariance, 1}).front());
     const std::size_t count = left_out_.size();
     PredictionErrors out{std::vector<double>(count), std::vector<double>(count)};
-    struct Scratch {
+    struct LeaveOneOutScratch {
         NeighborKriging kriging;
         std::vector<spatial::Neighbor> near;
     };
@@ -193,19 +195,81 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
     const NodeLoop loop{count, kChunk, execution_, nullptr, 0, 0};
     loop.over_nodes(
         [&] {
-            return Scratch{NeighborKriging(points, covariance, drift),
-                           std::vector<spatial::Neighbor>(neighbors_)};
+            return LeaveOneOutScratch{NeighborKriging(points, covariance, drift),
+                                      std::vector<spatial::Neighbor>(neighbors_)};
         },
-        [&](Scratch& own, std::size_t k) {
+        [&](LeaveOneOutScratch& scratch, std::size_t k) {
             const std::int32_t point = left_out_[k];
             for (std::size_t i = 0; i < neighbors_; ++i)
-                own.near[i].point = others_[k * neighbors_ + i];
+                scratch.near[i].point = others_[k * neighbors_ + i];
             const Estimate found =
-                own.kriging.at(data_.local[point], own.near, 0, execution_.progress);
+                scratch.kriging.at(data_.local[point], scratch.near, 0, execution_.progress);
             out.errors[k] = found.value - data_.values[point];
             out.variances[k] = found.variance;
         });
     return out;
+}
+
+namespace {
+
+constexpr double kOutlying = 20;      // deviations: larger errors count as this one
+constexpr double kWithinTwo = 0.95;   // share of errors within two deviations where they are honest
+constexpr double kSurely = 2;         // standard errors of a mean difference of squares
+constexpr double kWorthwhile = 0.03;  // of the mean square: less is not worth another variogram
+
+}  // namespace
+
+double quantile(std::vector<double> values, double share) {
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+CappedSquare::CappedSquare(std::span<const double> errors) {
+    std::vector<double> sizes;
+    double squares = 0;
+    for (const double error : errors) {
+        sizes.push_back(std::abs(error));
+        squares += error * error;
+    }
+    const double deviation = 1.4826 * quantile(std::move(sizes), 0.5);
+    const double limit =
+        std::max(kOutlying * deviation, std::sqrt(squares / static_cast<double>(errors.size())));
+    most_ = limit * limit;
+}
+
+double CappedSquare::operator()(std::span<const double> errors) const {
+    double sum = 0;
+    for (const double error : errors)
+        sum += std::min(error * error, most_);
+    return sum / static_cast<double>(errors.size());
+}
+
+bool CappedSquare::surely_less(std::span<const double> errors,
+                               std::span<const double> others) const {
+    const auto count = static_cast<double>(errors.size());
+    double all = 0, sum = 0, squares = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const double other = std::min(others[i] * others[i], most_);
+        const double less = other - std::min(errors[i] * errors[i], most_);
+        all += other;
+        sum += less;
+        squares += less * less;
+    }
+    const double mean = sum / count;
+    const double deviation = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
+    return mean > kSurely * deviation && sum > kWorthwhile * all;
+}
+
+double honest_sill(const PredictionErrors& found) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < found.errors.size(); ++i) {
+        // Where neighbors nearly coincide the variance is rounding: it must not decide.
+        const double variance = std::max(found.variances[i], 1e-9);
+        ratios.push_back(found.errors[i] * found.errors[i] / variance);
+    }
+    return quantile(std::move(ratios), kWithinTwo) / 4;
 }
 
 }  // namespace realmodel::interpolation

@@ -9,12 +9,13 @@
 #include <tuple>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/vectors.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/linear_data.hpp"
 #include "realmodel/base/elementary.hpp"
-#include "spatial/hilbert_order.hpp"
+#include "spatial/plan_tiles.hpp"
 
 namespace realmodel::interpolation {
 
@@ -32,9 +33,7 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
                                       std::span<const std::int32_t> sheets, std::size_t most) {
     std::vector<std::int32_t> part(points.size());
     std::iota(part.begin(), part.end(), 0);
-    std::vector<Position> plan(points.size());
-    for (std::size_t i = 0; i < plan.size(); ++i)
-        plan[i] = {points[i][0], points[i][1]};
+    const auto plan = transformed(points, [](const auto& p) { return Position{p[0], p[1]}; });
     // Whole numbers with their bits reversed: the first ones are spread evenly, however many.
     std::vector<std::uint32_t> turn(points.size());
     std::uint32_t rank = 0;
@@ -47,34 +46,22 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
     }
     const auto sheet = [&](std::int32_t i) { return sheets.empty() ? 0 : sheets[i]; };
     std::ranges::sort(part, {}, [&](std::int32_t i) { return std::tuple(sheet(i), turn[i], i); });
-    std::vector<std::size_t> sizes;  // of the sheets with points, in the order of these
-    for (std::size_t k = 0; k < part.size(); ++k) {
-        if (k == 0 || sheet(part[k]) != sheet(part[k - 1])) sizes.push_back(0);
-        ++sizes.back();
-    }
-    std::vector<std::size_t> ascending = sizes;
-    std::sort(ascending.begin(), ascending.end());
+    std::vector<std::size_t> sizes;  // of the sheets with points
+    for (const auto of_sheet : groups_of(part, sheet))
+        sizes.push_back(of_sheet.size());
+    std::sort(sizes.begin(), sizes.end());
     std::size_t left = most, quota = 0;
-    for (std::size_t k = 0; k < ascending.size(); ++k) {
-        quota = std::max<std::size_t>(left / (ascending.size() - k), 1);
-        left -= std::min(left, std::min(quota, ascending[k]));
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+        quota = std::max<std::size_t>(left / (sizes.size() - k), 1);
+        left -= std::min(left, std::min(quota, sizes[k]));
     }
     std::vector<std::int32_t> kept;
-    auto first = part.begin();
-    for (const std::size_t size : sizes) {
-        kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(std::min(size, quota)));
-        first += static_cast<std::ptrdiff_t>(size);
+    for (const auto of_sheet : groups_of(part, sheet)) {
+        const auto first = of_sheet.first(std::min(of_sheet.size(), quota));
+        kept.insert(kept.end(), first.begin(), first.end());
     }
     std::sort(kept.begin(), kept.end());
     return kept;
-}
-
-template <class Value>
-std::vector<Value> some_of(std::span<const Value> all, std::span<const std::int32_t> numbers) {
-    std::vector<Value> found;
-    for (const std::int32_t number : numbers)
-        found.push_back(all[number]);
-    return found;
 }
 
 /// A part of points on sheets, as Likelihood takes them.
@@ -83,8 +70,11 @@ DataPoints some_points(std::span<const std::array<double, 3>> points,
     DataPoints all = prepare_points(points, sheets);
     if (points.size() <= Likelihood::kMostPoints) return all;
     const std::vector<std::int32_t> part = spread_part(points, sheets, Likelihood::kMostPoints);
-    return prepare_points(some_of(points, part),
-                          sheets.empty() ? std::vector<std::int32_t>{} : some_of(sheets, part));
+    std::vector<std::int32_t> sheets_of_part;
+    if (!sheets.empty())
+        sheets_of_part = transformed(part, [&](std::int32_t i) { return sheets[i]; });
+    return prepare_points(transformed(part, [&](std::int32_t i) { return points[i]; }),
+                          sheets_of_part);
 }
 
 /// Whether all variances of data, given those before them, are as large as `least`.
@@ -183,24 +173,24 @@ Eigen::MatrixXd Likelihood::drift_of(const LinearData& data) const {
     return drift;
 }
 
-double Likelihood::Found::sill() const {
+double Likelihood::LikelihoodTerms::sill() const {
     return std::max(squares / static_cast<double>(free), least_sill);
 }
 
-double Likelihood::Found::logarithm() const {
+double Likelihood::LikelihoodTerms::logarithm() const {
     const auto count = static_cast<double>(free);
     const bool is_likeliest = sill() == squares / count;
     const double beyond = is_likeliest ? 0 : squares / sill() - count;
     return density - 0.5 * (count * elementary::log(sill()) + beyond);
 }
 
-void Likelihood::Found::add(const Found& other) {
+void Likelihood::LikelihoodTerms::add(const LikelihoodTerms& other) {
     density += other.density;
     squares += other.squares;
     free += other.free;
 }
 
-std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
+std::optional<Likelihood::LikelihoodTerms> Likelihood::of(const CovarianceModel& shape) const {
     const Variogram& field = shape.variogram;
     Sheets sheets{
         points_.sheets, of_dips_, {}, {field.model, field.range, 1, 0, field.anisotropy, {}}};
@@ -243,7 +233,7 @@ std::optional<Likelihood::Found> Likelihood::of(const Shape& shape) const {
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    Found found{sum, values.squaredNorm(), free_, {}, 0};
+    LikelihoodTerms found{sum, values.squaredNorm(), free_, {}, 0};
     if (!std::isfinite(found.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
         found.constants.push_back(column < 0 ? 0 : coefficients(column));

@@ -45,11 +45,11 @@ public:
     std::size_t points() const { return points_.local.size(); }
 
     /// What is asked how likely it is.
-    struct Shape {
+    struct CovarianceModel {
         Variogram variogram;   ///< with the sill 1, of which the nugget is a share
         double thickness = 0;  ///< the variance of each thickness between sheets
     };
-    struct Found {
+    struct LikelihoodTerms {
         double density;                 ///< its logarithm with the sill 1, but for the squares
         double squares;                 ///< of what shape and drift do not explain
         std::size_t free;               ///< as of free()
@@ -61,10 +61,10 @@ public:
         /// How likely they are with this sill.
         double logarithm() const;
         /// Of data that do not depend on these, with the same sill.
-        void add(const Found& other);
+        void add(const LikelihoodTerms& other);
     };
     /// @return none where the data are one another's consequences with it, up to rounding
-    std::optional<Found> of(const Shape& shape) const;
+    std::optional<LikelihoodTerms> of(const CovarianceModel& shape) const;
 
 private:
     /// The terms of the drift: a row for each datum. Those of one surface are its frame's; sheets

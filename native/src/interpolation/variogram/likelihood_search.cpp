@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/likelihood.hpp"
-#include "interpolation/variogram/weighted_fit.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -66,7 +66,7 @@ double between(double first, double last, int k, int steps) {
 
 class LikelihoodSearch {
 public:
-    using Shape = Likelihood::Shape;
+    using CovarianceModel = Likelihood::CovarianceModel;
 
     /// @param parts  data that do not depend on one another; they need not be of one place
     /// @param error  the variance of the errors of their heights: a nugget is no less
@@ -83,9 +83,9 @@ public:
     }
 
     /// Whether a shape is more likely than the best by more than so much; then it is the best.
-    bool attempt(const Shape& shape, double gain = 0) {
+    bool attempt(const CovarianceModel& shape, double gain = 0) {
         if (progress_ != nullptr) progress_->check();
-        const std::optional<Likelihood::Found> found = together(shape);
+        const std::optional<Likelihood::LikelihoodTerms> found = together(shape);
         if (!found || (best_ && !(found->logarithm() > best_->logarithm() + gain))) return false;
         best_ = found;
         shape_ = shape;
@@ -130,10 +130,10 @@ public:
     }
 
     void nuggets() {
-        const Shape plain = shape_;
+        const CovarianceModel plain = shape_;
         const double needed = best_->logarithm() + kOfNugget;
         for (const double nugget : kNuggets) {
-            Shape shape = plain;
+            CovarianceModel shape = plain;
             shape.variogram.nugget = nugget;
             attempt(shape, std::max(needed - best_->logarithm(), 0.0));
         }
@@ -149,7 +149,7 @@ public:
             for (int k = 0; k < kWaves; ++k) {
                 const double length = diagonal_ * between(kShortestWave, kLongestWave, k, kWaves);
                 for (const double share : kWaveShares) {
-                    Shape shape{rest, shape_.thickness};
+                    CovarianceModel shape{rest, shape_.thickness};
                     shape.variogram.further = {{VariogramModel::kWave,
                                                 range,
                                                 share * (1 - nugget),
@@ -165,65 +165,52 @@ public:
 
     /// As refine, the wave and the range of the first structure.
     void refine_wave() {
-        double step = 0.35;
-        for (int round = 0; round < 24 && step > 0.01; ++round) {
-            const double before = best_->logarithm();
-            for (const double up : {1.0, -1.0}) {
-                const double by = up * step;
-                attempt_changed([&](Shape& shape) { stretch(shape.variogram.range, by); });
-                attempt_changed([&](Shape& shape) {  // the length alone
-                    shape.variogram.further[0].anisotropy.ratio *= elementary::exp(by / 4);
-                });
-                attempt_changed(
-                    [&](Shape& shape) { turn(shape.variogram.further[0].anisotropy, by); });
-                attempt_changed([&](Shape& shape) {  // the range alone
-                    NestedStructure& wave = shape.variogram.further[0];
-                    const double before_it = wave.range;
-                    stretch(wave.range, 2 * by);
-                    wave.anisotropy.ratio *= wave.range / before_it;
-                });
-                attempt_changed([&](Shape& shape) {  // odds of the share
-                    const double whole = 1 - shape.variogram.nugget;
-                    double& sill = shape.variogram.further[0].sill;
-                    const double odds = sill / (whole - sill) * elementary::exp(4 * by);
-                    sill = whole * std::min(odds / (1 + odds), kMostOfWave);
-                });
-            }
-            if (best_->logarithm() - before < kLittle) step /= 2;
-        }
+        in_shorter_steps(0.01, [&](double by) {
+            attempt_changed([&](CovarianceModel& shape) { stretch(shape.variogram.range, by); });
+            attempt_changed([&](CovarianceModel& shape) {  // the length alone
+                shape.variogram.further[0].anisotropy.ratio *= elementary::exp(by / 4);
+            });
+            attempt_changed(
+                [&](CovarianceModel& shape) { turn(shape.variogram.further[0].anisotropy, by); });
+            attempt_changed([&](CovarianceModel& shape) {  // the range alone
+                NestedStructure& wave = shape.variogram.further[0];
+                const double before = wave.range;
+                stretch(wave.range, 2 * by);
+                wave.anisotropy.ratio *= wave.range / before;
+            });
+            attempt_changed([&](CovarianceModel& shape) {  // odds of the share
+                const double whole = 1 - shape.variogram.nugget;
+                double& sill = shape.variogram.further[0].sill;
+                const double odds = sill / (whole - sill) * elementary::exp(4 * by);
+                sill = whole * std::min(odds / (1 + odds), kMostOfWave);
+            });
+        });
     }
 
     /// By steps that get shorter.
     void refine(bool turns) {
-        double step = 0.35;
-        for (int round = 0; round < 24 && step > 0.02; ++round) {
-            const double before = best_->logarithm();
-            for (const double up : {1.0, -1.0}) {
-                const double by = up * step;
-                attempt_changed([&](Shape& shape) { stretch(shape.variogram.range, by); });
-                if (has_sheets_) {
-                    attempt_changed([&](Shape& shape) {
-                        shape.thickness =
-                            std::clamp(shape.thickness * elementary::exp(4 * by), kThicknesses[0],
-                                       *(std::end(kThicknesses) - 1));
-                    });
-                }
-                if (error_ > 0) {
-                    attempt_changed([&](Shape& shape) {
-                        double& nugget = shape.variogram.nugget;
-                        nugget = std::clamp(nugget * elementary::exp(4 * by), kNuggetsOfErrors[0],
-                                            kMostOfErrors);
-                    });
-                }
-                if (!turns) continue;
-                attempt_changed([&](Shape& shape) {
-                    double& ratio = shape.variogram.anisotropy.ratio;
-                    ratio = std::clamp(ratio * elementary::exp(by), 1.0, kMostAnisotropic);
+        in_shorter_steps(0.02, [&](double by) {
+            attempt_changed([&](CovarianceModel& shape) { stretch(shape.variogram.range, by); });
+            if (has_sheets_) {
+                attempt_changed([&](CovarianceModel& shape) {
+                    shape.thickness = std::clamp(shape.thickness * elementary::exp(4 * by),
+                                                 kThicknesses[0], *(std::end(kThicknesses) - 1));
                 });
-                attempt_changed([&](Shape& shape) { turn(shape.variogram.anisotropy, by); });
             }
-            if (best_->logarithm() - before < kLittle) step /= 2;
-        }
+            if (error_ > 0) {
+                attempt_changed([&](CovarianceModel& shape) {
+                    double& nugget = shape.variogram.nugget;
+                    nugget = std::clamp(nugget * elementary::exp(4 * by), kNuggetsOfErrors[0],
+                                        kMostOfErrors);
+                });
+            }
+            if (!turns) return;
+            attempt_changed([&](CovarianceModel& shape) {
+                double& ratio = shape.variogram.anisotropy.ratio;
+                ratio = std::clamp(ratio * elementary::exp(by), 1.0, kMostAnisotropic);
+            });
+            attempt_changed([&](CovarianceModel& shape) { turn(shape.variogram.anisotropy, by); });
+        });
     }
 
     void thicknesses_of(const Variogram& given) {
@@ -237,7 +224,7 @@ public:
 
     /// Of some of the data alone, with the shape that was found for all.
     double sill_of(const Likelihood& part) const {
-        std::optional<Likelihood::Found> own =
+        std::optional<Likelihood::LikelihoodTerms> own =
             part.free() < kFewestFree ? std::nullopt : part.of(shape_);
         if (!own || !(own->squares > 0)) return best_->sill();
         own->least_sill = best_->least_sill;
@@ -273,10 +260,10 @@ public:
     }
 
 private:
-    std::optional<Likelihood::Found> together(const Shape& shape) const {
-        std::optional<Likelihood::Found> all;
+    std::optional<Likelihood::LikelihoodTerms> together(const CovarianceModel& shape) const {
+        std::optional<Likelihood::LikelihoodTerms> all;
         for (const Likelihood& part : parts_) {
-            std::optional<Likelihood::Found> found = part.of(shape);
+            std::optional<Likelihood::LikelihoodTerms> found = part.of(shape);
             if (!found) return std::nullopt;
             if (all) {
                 all->add(*found);
@@ -289,9 +276,21 @@ private:
         return all;
     }
 
+    /// Calls attempt_step with steps up and down, which get shorter where these gain little.
+    template <class Attempt>
+    void in_shorter_steps(double last, const Attempt& attempt_step) {
+        double step = 0.35;
+        for (int round = 0; round < 24 && step > last; ++round) {
+            const double before = best_->logarithm();
+            attempt_step(step);
+            attempt_step(-step);
+            if (best_->logarithm() - before < kLittle) step /= 2;
+        }
+    }
+
     template <class Change>
     void attempt_changed(const Change& change) {
-        Shape shape = shape_;
+        CovarianceModel shape = shape_;
         change(shape);
         attempt(shape);
     }
@@ -321,8 +320,8 @@ private:
     bool has_sheets_;
     double diagonal_ = 0;   // the longest of the parts
     std::size_t free_ = 0;  // of all of them
-    std::optional<Likelihood::Found> best_;
-    Shape shape_;
+    std::optional<Likelihood::LikelihoodTerms> best_;
+    CovarianceModel shape_;
     double thickness_ = 0;  // of sheets, from which a search begins
 };
 
@@ -373,7 +372,7 @@ std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double
             const double range = likelihood.diagonal() * between(kShortest, kLongest, k, kRanges);
             for (const double nugget : kLikelyNuggets) {
                 const Variogram shape{model, range, 1, nugget, anisotropy, {}};
-                const std::optional<Likelihood::Found> found = likelihood.of({shape});
+                const std::optional<Likelihood::LikelihoodTerms> found = likelihood.of({shape});
                 if (!found || !(found->squares > 0)) continue;
                 const double free = static_cast<double>(found->free);
                 const double density = found->density - free / 2 * elementary::log(found->squares);

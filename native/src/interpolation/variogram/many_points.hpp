@@ -10,6 +10,7 @@
 #include "interpolation/data_points.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/neighbors/nearest_of_some.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel::interpolation {
@@ -78,5 +79,16 @@ private:
 /// Where a number is among numbers that ManyPoints::kept gave of `size` points.
 std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size,
                          std::int32_t number);
+
+/// How far others should be from a point that is left out, so that it is predicted from as far as
+/// the places between the points are, where points are clustered: contacts along the lines of a
+/// map, picks along sections. Twice the spacing that so many points would have evenly in their
+/// convex hull; 0 where they are not clustered. They are where the mean distance to the nearest
+/// other is below half of that expected of random ones (Clark and Evans 1954, "Distance to nearest
+/// neighbor as a measure of spatial relationships in populations", Ecology 35). Errors at the
+/// distances of predictions: Mila et al. 2022, "Nearest neighbour distance matching leave-one-out
+/// cross-validation", Methods in Ecology and Evolution 13.
+/// @throws Cancelled
+double buffer_of_clusters(const ManyPoints& points, const Execution& execution);
 
 }  // namespace realmodel::interpolation

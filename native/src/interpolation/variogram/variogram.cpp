@@ -78,6 +78,12 @@ double Variogram::first_sill() const {
     return left;
 }
 
+std::vector<NestedStructure> Variogram::structures() const {
+    std::vector<NestedStructure> all{{model, range, first_sill(), anisotropy}};
+    all.insert(all.end(), further.begin(), further.end());
+    return all;
+}
+
 void check_variogram(const Variogram& variogram) {
     const auto require = [](bool right, const std::string& what) {
         if (!right) throw InputError("variogram", what);

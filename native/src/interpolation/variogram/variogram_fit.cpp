@@ -8,12 +8,10 @@
 #include <utility>
 
 #include "interpolation/drift_basis.hpp"
-#include "interpolation/variogram/anisotropy_search.hpp"
-#include "interpolation/variogram/capped_square.hpp"
-#include "interpolation/variogram/clustering.hpp"
 #include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
 #include "interpolation/variogram/likelihood.hpp"
+#include "interpolation/variogram/many_points.hpp"
 #include "interpolation/variogram/variogram_search.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
@@ -38,9 +36,9 @@ constexpr double kHardlyWorse = 1.002;  // of mean squares, for the sake of hone
 constexpr double kLeastScale = 0.25;
 
 /// The choice among models, ranges, nuggets and anisotropies by points left out.
-class Choice {
+class ModelSelection {
 public:
-    Choice(const ManyPoints& all, const FitOptions& options, const Execution& execution)
+    ModelSelection(const ManyPoints& all, const FitOptions& options, const Execution& execution)
         : all_(all),
           options_(options),
           execution_(execution),
@@ -55,7 +53,7 @@ public:
     void make(FittedVariogram& out) {
         const bool finds =
             options_.finds_anisotropy && all_.size() >= kLeastForAnisotropy && spread_in_plan(all_);
-        std::vector<Candidate> all = search(out, kRisingModels, 0, finds ? 0.35 : 0.7);
+        std::vector<VariogramCandidate> all = search(out, kRisingModels, 0, finds ? 0.35 : 0.7);
         if (all.empty()) return;
         if (finds) {
             const CurveFit best = best_of(all).fit;
@@ -67,11 +65,11 @@ public:
             }
         }
         const Anisotropy& anisotropy = out.variogram.anisotropy;
-        const Candidate chosen = last_choice(std::move(all), anisotropy);
+        const VariogramCandidate chosen = last_choice(std::move(all), anisotropy);
         report(0.85);
         const VariogramSearch by_all(points_, out.experimental, anisotropy, extent(anisotropy),
                                      square_of_);
-        const Candidate best = by_all.refined(chosen);
+        const VariogramCandidate best = by_all.refined(chosen);
         report(0.95);
         out.variogram = variogram_of(best.fit, out.variogram.anisotropy);
         make_honest(out, best.square);
@@ -88,12 +86,13 @@ private:
         return all_.diagonal(IsotropicSpace(anisotropy));
     }
 
-    std::vector<Candidate> search(const FittedVariogram& about,
-                                  std::span<const VariogramModel> models, double from, double to) {
+    std::vector<VariogramCandidate> search(const FittedVariogram& about,
+                                           std::span<const VariogramModel> models, double from,
+                                           double to) {
         const Anisotropy& anisotropy = about.variogram.anisotropy;
         VariogramSearch search(few_, about.experimental, anisotropy, extent(anisotropy),
                                square_of_);
-        std::vector<Candidate> all =
+        std::vector<VariogramCandidate> all =
             search.run(models, [&](double share) { report(from + share * (to - from)); });
         keep_agreeing(all);
         return all;
@@ -108,22 +107,23 @@ private:
 
     /// By all the points, among the best by a part of them. Of equally good ones one without a
     /// rough part, and of these the one that fits the experimental values best.
-    Candidate last_choice(std::vector<Candidate> all, const Anisotropy& anisotropy) const {
-        std::ranges::stable_sort(all, {}, &Candidate::square);
+    VariogramCandidate last_choice(std::vector<VariogramCandidate> all,
+                                   const Anisotropy& anisotropy) const {
+        std::ranges::stable_sort(all, {}, &VariogramCandidate::square);
         const double enough = kNearlyBest * all.front().square;
         while (all.size() > 1 && (all.size() > kFinalists || all.back().square > enough))
             all.pop_back();
         double least = std::numeric_limits<double>::infinity();
-        for (Candidate& candidate : all) {
+        for (VariogramCandidate& candidate : all) {
             const Covariance covariance(variogram_of(candidate.fit, anisotropy));
             candidate.square = (*square_of_)(points_.errors(covariance).errors);
             least = std::min(least, candidate.square);
         }
-        const auto rank = [](const Candidate& candidate) {
+        const auto rank = [](const VariogramCandidate& candidate) {
             return std::pair(candidate.fit.curve.rough_share > 0, candidate.fit.misfit);
         };
-        const Candidate* best = nullptr;
-        for (const Candidate& candidate : all) {
+        const VariogramCandidate* best = nullptr;
+        for (const VariogramCandidate& candidate : all) {
             if (candidate.square > kAsGood * least) continue;
             if (best == nullptr || rank(candidate) < rank(*best)) best = &candidate;
         }
@@ -180,15 +180,12 @@ private:
     /// those do that contribute most at this distance.
     static double growth(const Variogram& variogram, double distance) {
         double open = 0, powers = 0;
-        const auto add = [&](VariogramModel model, double range, double sill) {
-            const double power = growth(model);
-            const double part = sill * elementary::pow(distance / range, power);
+        for (const NestedStructure& nested : variogram.structures()) {
+            const double power = growth(nested.model);
+            const double part = nested.sill * elementary::pow(distance / nested.range, power);
             open += part;
             powers += part * power;
-        };
-        add(variogram.model, variogram.range, variogram.first_sill());
-        for (const NestedStructure& part : variogram.further)
-            add(part.model, part.range, part.sill);
+        }
         return open > 0 && std::isfinite(powers) ? powers / open : growth(variogram.model);
     }
 
@@ -259,7 +256,7 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
         }
     }
     if (all.size() < 3 || e.lags.size() < 2 || !varies) return out;
-    Choice(all, options, execution).make(out);
+    ModelSelection(all, options, execution).make(out);
     return out;
 }
 

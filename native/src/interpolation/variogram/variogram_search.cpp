@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "realmodel/base/elementary.hpp"
@@ -54,7 +55,7 @@ bool usable(const CurveFit& fit) {
 }
 
 /// The numbers of a variogram that are changed to refine it, and by how much.
-struct Step {
+struct RefinementStep {
     double CurveFit::*nugget;
     double VariogramCurve::*curve;
     double times;
@@ -68,32 +69,32 @@ struct Step {
     }
 };
 
-constexpr Step kSteps[] = {{nullptr, &VariogramCurve::rough_share, 1.8},
-                           {nullptr, &VariogramCurve::range, 1.4},
-                           {nullptr, &VariogramCurve::rough_range, 1.6},
-                           {&CurveFit::nugget, nullptr, 2}};
+constexpr RefinementStep kSteps[] = {{nullptr, &VariogramCurve::rough_share, 1.8},
+                                     {nullptr, &VariogramCurve::range, 1.4},
+                                     {nullptr, &VariogramCurve::rough_range, 1.6},
+                                     {&CurveFit::nugget, nullptr, 2}};
 constexpr double kMostRough = 0.6;  // share of the rougher part
 
 }  // namespace
 
-bool Candidate::contradicts() const {
+bool VariogramCandidate::contradicts() const {
     return !(std::abs(elementary::log(sill / fit.sill())) < elementary::log(kContradicting));
 }
 
-void keep_agreeing(std::vector<Candidate>& candidates) {
-    if (std::ranges::all_of(candidates, &Candidate::contradicts)) return;
-    std::erase_if(candidates, std::mem_fn(&Candidate::contradicts));
+void keep_agreeing(std::vector<VariogramCandidate>& candidates) {
+    if (std::ranges::all_of(candidates, &VariogramCandidate::contradicts)) return;
+    std::erase_if(candidates, std::mem_fn(&VariogramCandidate::contradicts));
 }
 
-const Candidate& best_of(const std::vector<Candidate>& candidates) {
-    return *std::ranges::min_element(candidates, {}, &Candidate::square);
+const VariogramCandidate& best_of(const std::vector<VariogramCandidate>& candidates) {
+    return *std::ranges::min_element(candidates, {}, &VariogramCandidate::square);
 }
 
-std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates) {
+std::vector<VariogramModel> hopeful_models(const std::vector<VariogramCandidate>& candidates) {
     const double enough = kHopeful * best_of(candidates).square;
     std::vector<VariogramModel> out;
     for (const VariogramModel model : kRisingModels) {
-        const auto is_good = [&](const Candidate& candidate) {
+        const auto is_good = [&](const VariogramCandidate& candidate) {
             return candidate.fit.curve.model == model && candidate.square <= enough;
         };
         if (std::any_of(candidates.begin(), candidates.end(), is_good)) out.push_back(model);
@@ -109,34 +110,35 @@ std::optional<CurveFit> VariogramSearch::with_sill(const VariogramCurve& curve,
     return fit;
 }
 
-Candidate VariogramSearch::judged(const CurveFit& fit, const PredictionErrors& found) const {
+VariogramCandidate VariogramSearch::judged(const CurveFit& fit,
+                                           const PredictionErrors& found) const {
     return {fit, honest_sill(found), (*square_of_)(found.errors)};
 }
 
-std::optional<Candidate> VariogramSearch::candidate(const VariogramCurve& curve,
-                                                    double nugget) const {
+std::optional<VariogramCandidate> VariogramSearch::candidate(const VariogramCurve& curve,
+                                                             double nugget) const {
     const std::optional<CurveFit> fit = with_sill(curve, nugget);
     if (!fit) return std::nullopt;
     return judged(*fit, points_.errors(Covariance(variogram_of(*fit, anisotropy_))));
 }
 
-Candidate VariogramSearch::refined(const Candidate& start) const {
-    Candidate best = start;
+VariogramCandidate VariogramSearch::refined(const VariogramCandidate& start) const {
+    VariogramCandidate best = start;
     const double longest = std::max(longest_, start.fit.curve.range);
     const double by_chance =
         std::max(kChanceShare, kChancePoints / static_cast<double>(points_.size()));
-    const auto better_by = [&](const Step& step, bool up) {
+    const auto better_by = [&](const RefinementStep& step, bool up) {
         CurveFit changed = best.fit;
         step.change(changed, up);
         const VariogramCurve& curve = changed.curve;
         if (curve.range > longest || curve.rough_share > kMostRough) return false;
-        const std::optional<Candidate> found = candidate(curve, changed.nugget);
+        const std::optional<VariogramCandidate> found = candidate(curve, changed.nugget);
         if (!found || found->contradicts()) return false;
         if (!(found->square < (1 - by_chance) * best.square)) return false;
         best = *found;
         return true;
     };
-    for (const Step& step : kSteps) {
+    for (const RefinementStep& step : kSteps) {
         if (!step.applies_to(best.fit)) continue;
         for (const bool up : {true, false}) {
             if (!better_by(step, up)) continue;
@@ -177,8 +179,8 @@ void VariogramSearch::start(std::span<const VariogramModel> models) {
         all_[i].square = (*square_of_)(errors[i]);
 }
 
-std::vector<Candidate> VariogramSearch::run(std::span<const VariogramModel> models,
-                                            const std::function<void(double)>& report) {
+std::vector<VariogramCandidate> VariogramSearch::run(std::span<const VariogramModel> models,
+                                                     const std::function<void(double)>& report) {
     start(models);
     report(0.2);
     if (all_.empty()) return {};
@@ -186,8 +188,8 @@ std::vector<Candidate> VariogramSearch::run(std::span<const VariogramModel> mode
     const double enough = kHopeless * best_of(all_).square;
     double done = 0;
     for (const VariogramModel model : models) {
-        const Candidate* const start = best_with(model);
-        if (start != nullptr && start->square <= enough) vary(Candidate(*start));
+        const VariogramCandidate* const start = best_with(model);
+        if (start != nullptr && start->square <= enough) vary(VariogramCandidate(*start));
         report(0.2 + 0.5 * ++done / count);
     }
     done = 0;
@@ -199,9 +201,9 @@ std::vector<Candidate> VariogramSearch::run(std::span<const VariogramModel> mode
 }
 
 /// The best of a model so far.
-const Candidate* VariogramSearch::best_with(VariogramModel model) const {
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : all_) {
+const VariogramCandidate* VariogramSearch::best_with(VariogramModel model) const {
+    const VariogramCandidate* best = nullptr;
+    for (const VariogramCandidate& candidate : all_) {
         if (candidate.fit.curve.model != model) continue;
         if (best == nullptr || candidate.square < best->square) best = &candidate;
     }
@@ -230,7 +232,7 @@ void VariogramSearch::attempt(const VariogramCurve& curve, std::span<const doubl
 }
 
 /// Nuggets, then ranges, then nuggets again.
-void VariogramSearch::vary(const Candidate& start) {
+void VariogramSearch::vary(const VariogramCandidate& start) {
     const VariogramModel model = start.fit.curve.model;
     const double longest = std::max(start.fit.curve.range, longest_);
     std::vector<double> nuggets;
@@ -252,7 +254,7 @@ void VariogramSearch::vary(const Candidate& start) {
 /// A rougher part instead of the nugget, then beside it, and other ranges with it.
 void VariogramSearch::roughen(VariogramModel model) {
     const std::vector<RougherPart> parts = parts_for(model);
-    const Candidate* const plain = best_with(model);
+    const VariogramCandidate* const plain = best_with(model);
     if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square)
         return;
     const CurveFit start = plain->fit;
@@ -278,6 +280,87 @@ void VariogramSearch::roughen(VariogramModel model) {
         const double around[] = {0.55 * best.curve.rough_share, 1.8 * best.curve.rough_share};
         attempt(best.curve, {&best.nugget, 1}, around, longest);
     }
+}
+
+namespace {
+
+constexpr double kLargestRatio = 4;
+constexpr double kFirstRatios[] = {1.4, 2.2};
+constexpr int kDirections = 6;
+constexpr double kFirstStep = 0.25, kLastStep = 0.03;  // of the logarithm of the ratio
+constexpr double kLeastSpread = 0.05;                  // across, of that along
+
+/// The logarithm of the ratio as length, twice the azimuth as direction: continuous, also where the
+/// azimuth passes 180 degrees and where there is no anisotropy.
+using Vector = std::array<double, 2>;
+
+Anisotropy anisotropy_of(const Vector& v) {
+    const double length = std::min(elementary::hypot(v[0], v[1]), elementary::log(kLargestRatio));
+    double azimuth = elementary::atan2(v[1], v[0]) * 90 / std::numbers::pi;
+    if (azimuth < 0) azimuth += 180;
+    return {elementary::exp(length), length > 0 ? azimuth : 0};
+}
+
+}  // namespace
+
+CurveFit stretched(CurveFit fit, const Anisotropy& anisotropy) {
+    fit.curve.range *= std::sqrt(anisotropy.ratio);
+    return fit;
+}
+
+Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
+                           const CappedSquare& square_of) {
+    const auto square = [&](const Vector& v) {
+        const Anisotropy anisotropy = anisotropy_of(v);
+        const Variogram variogram = variogram_of(stretched(fit, anisotropy), anisotropy);
+        return square_of(points.errors(Covariance(variogram)).errors);
+    };
+    Vector best{0, 0};
+    double least = square(best);
+    const auto attempt = [&](const Vector& v) {
+        const double found = square(v);
+        if (!(found < least)) return false;
+        least = found;
+        best = v;
+        return true;
+    };
+    for (const double ratio : kFirstRatios) {
+        for (int k = 0; k < kDirections; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kDirections;
+            attempt({elementary::log(ratio) * elementary::cos(angle),
+                     elementary::log(ratio) * elementary::sin(angle)});
+        }
+    }
+    // Steps along the axes, shorter where none is better (Hooke and Jeeves 1961, the plain part).
+    for (double step = kFirstStep; step > kLastStep;) {
+        bool better = false;
+        for (const Vector& side : {Vector{1, 0}, Vector{0, 1}, Vector{-1, 0}, Vector{0, -1}}) {
+            const Vector v{best[0] + step * side[0], best[1] + step * side[1]};
+            if (elementary::hypot(v[0], v[1]) <= elementary::log(kLargestRatio))
+                better = attempt(v) || better;
+        }
+        if (!better) step /= 2;
+    }
+    return anisotropy_of(best);
+}
+
+bool spread_in_plan(const ManyPoints& points) {
+    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    const auto count = static_cast<double>(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto [px, py] = points.local(i);
+        x += px / count;
+        y += py / count;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto [px, py] = points.local(i);
+        xx += (px - x) * (px - x);
+        xy += (px - x) * (py - y);
+        yy += (py - y) * (py - y);
+    }
+    // Eigenvalues of the matrix of second moments: squares of the spreads along and across.
+    const double half = (xx + yy) / 2, apart = elementary::hypot((xx - yy) / 2, xy);
+    return half - apart > kLeastSpread * kLeastSpread * (half + apart);
 }
 
 }  // namespace realmodel::interpolation

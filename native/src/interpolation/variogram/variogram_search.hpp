@@ -6,14 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "interpolation/variogram/capped_square.hpp"
+#include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
-#include "interpolation/variogram/weighted_fit.hpp"
 
 namespace realmodel::interpolation {
 
 /// A variogram, and how well kriging with it predicts points that are left out.
-struct Candidate {
+struct VariogramCandidate {
     CurveFit fit;
     double sill = 0;    ///< with which the variances are honest
     double square = 0;  ///< mean square of the errors
@@ -24,14 +23,14 @@ struct Candidate {
 };
 
 /// Removes those that contradict, unless all do.
-void keep_agreeing(std::vector<Candidate>& candidates);
+void keep_agreeing(std::vector<VariogramCandidate>& candidates);
 
 /// The one of the least mean square.
 /// @param candidates  at least one
-const Candidate& best_of(const std::vector<Candidate>& candidates);
+const VariogramCandidate& best_of(const std::vector<VariogramCandidate>& candidates);
 
 /// Models that predict points nearly as well as the best.
-std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates);
+std::vector<VariogramModel> hopeful_models(const std::vector<VariogramCandidate>& candidates);
 
 /// The search for the variogram with which points that are left out are predicted best: curves
 /// fitted to experimental values, and others around them.
@@ -50,34 +49,46 @@ public:
 
     /// All candidates of these models; empty where none fits at all.
     /// @param report  gets the share that is done; throws to stop
-    std::vector<Candidate> run(std::span<const VariogramModel> models,
-                               const std::function<void(double)>& report);
+    std::vector<VariogramCandidate> run(std::span<const VariogramModel> models,
+                                        const std::function<void(double)>& report);
 
     /// Changes the ranges, the rougher part and the nugget of a variogram by steps, as long as the
     /// prediction improves by more than chance.
     /// @param start  its mean square is that of these points
-    Candidate refined(const Candidate& start) const;
+    VariogramCandidate refined(const VariogramCandidate& start) const;
 
 private:
     void start(std::span<const VariogramModel> models);
     std::optional<CurveFit> with_sill(const VariogramCurve& curve, double nugget) const;
-    Candidate judged(const CurveFit& fit, const PredictionErrors& found) const;
-    std::optional<Candidate> candidate(const VariogramCurve& curve, double nugget) const;
+    VariogramCandidate judged(const CurveFit& fit, const PredictionErrors& found) const;
+    std::optional<VariogramCandidate> candidate(const VariogramCurve& curve, double nugget) const;
     void attempt(const VariogramCurve& curve, std::span<const double> nuggets,
                  std::span<const double> rough_shares, double longest);
     void attempt(const VariogramCurve& curve, double nugget, double longest) {
         attempt(curve, {&nugget, 1}, {&curve.rough_share, 1}, longest);
     }
-    void vary(const Candidate& start);
+    void vary(const VariogramCandidate& start);
     void roughen(VariogramModel model);
-    const Candidate* best_with(VariogramModel model) const;
+    const VariogramCandidate* best_with(VariogramModel model) const;
 
     const LeaveOneOut& points_;
     const ExperimentalVariogram& e_;
     const Anisotropy& anisotropy_;
     double longest_;
     std::optional<CappedSquare>& square_of_;
-    std::vector<Candidate> all_;
+    std::vector<VariogramCandidate> all_;
 };
+
+/// A fit's range under an anisotropy: the area within it stays the same.
+CurveFit stretched(CurveFit fit, const Anisotropy& anisotropy);
+
+/// Ratio and azimuth of the least mean square with this fit, stretched; of ratio 1 where none is
+/// better than none. Ratios up to four are tried: beyond, the nearest points in plan would no more
+/// be those that matter most.
+Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
+                           const CappedSquare& square_of);
+
+/// Whether positions spread in two directions, so that an anisotropy shows.
+bool spread_in_plan(const ManyPoints& points);
 
 }  // namespace realmodel::interpolation

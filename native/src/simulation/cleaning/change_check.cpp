@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/cleaning/change_check.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "base/keep_single.hpp"
+#include "base/algorithms.hpp"
 #include "base/vectors.hpp"
+#include "simulation/cleaning/editable_complex.hpp"
 
 namespace realmodel::simulation {
 
@@ -61,7 +60,7 @@ bool ChangeCheck::join_equal_faces(Change& change, std::int32_t vertex) {
     const auto add = [&](std::int32_t face) {
         const Loop loop = loop_of(change, face);
         if (!contains(loop, vertex)) return;
-        Entry entry{{loop.size(), 0}, face};
+        KeyedFace entry{{loop.size(), 0}, face};
         for (const std::int32_t v : loop) {
             const auto word = (static_cast<std::uint64_t>(v) + 1) * 0x9E3779B97F4A7C15u;
             entry.key[0] += word ^ (word >> 31);
@@ -70,20 +69,17 @@ bool ChangeCheck::join_equal_faces(Change& change, std::int32_t vertex) {
         entries_.push_back(entry);
     };
     for_faces_after(change, vertex, add);
-    std::ranges::stable_sort(entries_, {}, &Entry::key);
+    std::ranges::stable_sort(entries_, {}, &KeyedFace::key);
     std::vector<std::int32_t> equal;
-    for (std::size_t i = 0; i < entries_.size(); i += equal.size()) {
-        equal.assign(1, entries_[i].face);
-        for (std::size_t j = i + 1; j < entries_.size() && entries_[j].key == entries_[i].key; ++j)
-            equal.push_back(entries_[j].face);
-        const std::size_t count = equal.size();
+    for (const auto group : groups_of(entries_, &KeyedFace::key)) {
+        if (group.size() == 1) continue;
+        equal = transformed(group, &KeyedFace::face);
         while (equal.size() > 1) {
             if (!join_pair(change, equal)) return false;
         }
-        equal.resize(count);
     }
     // faces that were joined with another have no cells any more
-    std::erase_if(change.added, [](const Change::Face& face) { return face.cells[0] < 0; });
+    std::erase_if(change.added, [](const Change::AddedFace& face) { return face.cells[0] < 0; });
     return true;
 }
 
@@ -141,7 +137,7 @@ bool ChangeCheck::join_pair(Change& change, std::vector<std::int32_t>& equal) co
 
 /// Sets the shapes of the added faces; false where one turns over.
 bool ChangeCheck::keeps_faces(Change& change) const {
-    for (Change::Face& face : change.added) {
+    for (Change::AddedFace& face : change.added) {
         face.shape = complex_.shape_of(change.loop(face));
         if (!face.is_joined && !(dot(face.shape.area, complex_.shape(face.origin).area) > 0))
             return false;
@@ -161,25 +157,20 @@ bool ChangeCheck::keeps_cells(const Change& change) {
     }
     std::sort(beside_.begin(), beside_.end());
     block_change_.clear();
-    for (std::size_t i = 0; i < beside_.size();) {
-        std::size_t end = i;
-        while (end < beside_.size() && beside_[end].cell == beside_[i].cell)
-            ++end;
-        const std::span<const Beside> own(beside_.data() + i, end - i);
-        if (!keeps_cell(change, beside_[i].cell, own)) return false;
-        i = end;
+    for (const auto of_cell : groups_of(beside_, &Beside::cell)) {
+        if (!keeps_cell(change, of_cell[0].cell, of_cell)) return false;
     }
     std::sort(block_change_.begin(), block_change_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    double total = 0, block = 0;
+    double total = 0;
     volume_change_ = 0;
-    for (std::size_t i = 0; i < block_change_.size(); ++i) {
-        block += block_change_[i].second;
-        total += block_change_[i].second;
-        if (i + 1 == block_change_.size() || block_change_[i + 1].first != block_change_[i].first) {
-            volume_change_ += std::abs(block);
-            block = 0;
+    for (const auto of_block : groups_of(block_change_, &BlockChange::first)) {
+        double sum = 0;
+        for (const auto& [block, change_of_cell] : of_block) {
+            sum += change_of_cell;
+            total += change_of_cell;
         }
+        volume_change_ += std::abs(sum);
     }
     volume_change_ += 2 * std::abs(total);
     return true;
@@ -303,12 +294,8 @@ bool ChangeCheck::keeps_edges(const Change& change, std::int32_t vertex) {
     };
     for_faces_after(change, vertex, add);
     std::ranges::stable_sort(around_, {}, &Around::vertex);
-    for (std::size_t i = 0; i < around_.size();) {
-        std::size_t end = i + 1;
-        while (end < around_.size() && around_[end].vertex == around_[i].vertex)
-            ++end;
-        if (!is_round({around_.data() + i, end - i})) return false;
-        i = end;
+    for (const auto around_edge : groups_of(around_, &Around::vertex)) {
+        if (!is_round(around_edge)) return false;
     }
     return true;
 }

@@ -6,10 +6,9 @@
 #include <queue>
 #include <tuple>
 
-#include "base/keep_single.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
-#include "simulation/cleaning/change_check.hpp"
 #include "simulation/cleaning/editable_complex.hpp"
 
 namespace realmodel::simulation {
@@ -54,12 +53,12 @@ public:
     }
 
 private:
-    struct Edge {
+    struct ShortEdge {
         double length;
         std::int32_t from, to;
-        auto operator<=>(const Edge&) const = default;
+        auto operator<=>(const ShortEdge&) const = default;
     };
-    using EdgeQueue = std::priority_queue<Edge, std::vector<Edge>, std::greater<>>;
+    using EdgeQueue = std::priority_queue<ShortEdge, std::vector<ShortEdge>, std::greater<>>;
     struct ThinCell {
         double width;
         std::int32_t cell;
@@ -68,7 +67,7 @@ private:
 
     /// Adds the short edges of a loop, or only those at one of its corners.
     void list_edges_of(std::span<const std::int32_t> loop, std::int32_t only,
-                       std::vector<Edge>& listed) const {
+                       std::vector<ShortEdge>& listed) const {
         std::int32_t from = loop.back();
         for (const std::int32_t to : loop) {
             const auto [low, high] = unordered(from, to);
@@ -80,8 +79,8 @@ private:
     }
 
     /// All short edges, each once.
-    std::vector<Edge> short_edges() const {
-        std::vector<Edge> found;
+    std::vector<ShortEdge> short_edges() const {
+        std::vector<ShortEdge> found;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
             if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, found);
         }
@@ -102,10 +101,10 @@ private:
     }
 
     void join_short_edges() {
-        Edge last{-1, -1, -1};
+        ShortEdge last{-1, -1, -1};
         for (std::size_t round = 0; !queue_.empty(); ++round) {
             poll(progress_, round);
-            const Edge edge = queue_.top();
+            const ShortEdge edge = queue_.top();
             queue_.pop();
             if (edge == last) continue;
             last = edge;
@@ -114,7 +113,7 @@ private:
     }
 
     /// Joins one end with the other, whichever changes volumes less.
-    void join(const Edge& edge) {
+    void join(const ShortEdge& edge) {
         const bool forward = moves(edge.from, edge.to, change_);
         const double cost = check_.volume_change();
         const bool backward = moves(edge.to, edge.from, other_);
@@ -174,7 +173,7 @@ private:
         for (const std::int32_t f : complex_.vertex_faces(vertex))
             list_edges_of(complex_.corners(f), vertex, fresh_edges_);
         sort_unique(fresh_edges_);
-        for (const Edge& edge : fresh_edges_)
+        for (const ShortEdge& edge : fresh_edges_)
             queue_.push(edge);
     }
 
@@ -326,34 +325,34 @@ private:
         return false;
     }
 
-    struct Neighbor {
+    struct NeighborCell {
         double area = 0;
         std::int32_t cell = -1;
         bool has_fault = false;
     };
 
     void join_with_neighbor(std::int32_t cell) {
-        std::vector<Neighbor> neighbors;
+        std::vector<NeighborCell> neighbors;
         for (const std::int32_t f : complex_.cell_faces(cell)) {
             const auto [a, b] = complex_.cells(f);
             const std::int32_t other = a == cell ? b : a;
             if (other < 0) continue;
             auto own = std::find_if(neighbors.begin(), neighbors.end(),
-                                    [&](const Neighbor& n) { return n.cell == other; });
+                                    [&](const NeighborCell& n) { return n.cell == other; });
             if (own == neighbors.end()) own = neighbors.insert(own, {0, other, false});
             own->area += length(complex_.shape(f).area);
             own->has_fault = own->has_fault || check_.is_fault(complex_.surface(f));
         }
         double most = 0;
-        for (const Neighbor& n : neighbors)
+        for (const NeighborCell& n : neighbors)
             most = std::max(most, n.area);
         // of neighbors across its flat sides one of the same block loses nothing
-        const auto rank = [&](const Neighbor& n) {
+        const auto rank = [&](const NeighborCell& n) {
             const bool is_own = complex_.block(n.cell) == complex_.block(cell);
             return std::tuple(!(is_own && n.area > most / 2), -n.area, n.cell);
         };
         std::ranges::sort(neighbors, {}, rank);
-        for (const Neighbor& n : neighbors) {
+        for (const NeighborCell& n : neighbors) {
             if (n.has_fault || n.area < most / 4) continue;
             change_.clear();
             change_.tested.push_back(n.cell);
@@ -375,7 +374,7 @@ private:
     double tolerance_;
     Progress* progress_;
     std::vector<double> moved_;  // how far what was joined in each vertex has moved
-    std::vector<Edge> fresh_edges_;
+    std::vector<ShortEdge> fresh_edges_;
     EdgeQueue queue_;  // short edges, the shortest first; some are gone since, or twice there
     Change change_, other_;
     std::vector<std::int32_t> loop_, beside_edge_, kept_cells_;

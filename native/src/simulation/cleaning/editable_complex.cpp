@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
@@ -221,7 +221,7 @@ void EditableComplex::apply(const Change& change) {
         touch(cells(f));
         remove(f);
     }
-    for (const Change::Face& face : change.added) {
+    for (const Change::AddedFace& face : change.added) {
         std::int32_t f = face.origin;
         if (has_face(f)) {
             f = corners_.add_list();

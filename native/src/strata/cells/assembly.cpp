@@ -2,8 +2,9 @@
 #include "strata/cells/assembly.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <array>
 
+#include "base/algorithms.hpp"
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/memory.hpp"
 
@@ -30,7 +31,7 @@ public:
                 first_corner_[begin / kFacesCopied] =
                     static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
             });
-        corners_ = count_before(first_corner_);
+        corners_ = exclusive_scan(first_corner_);
     }
 
     std::size_t corners() const { return corners_; }
@@ -112,10 +113,10 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
         first_wall.push_back(batch.sizes.size());
         first_corner.push_back(batch.vertices.size());
     }
-    const std::size_t face_count = faces.size() + count_before(first_wall);
+    const std::size_t face_count = faces.size() + exclusive_scan(first_wall);
     const SurfaceFaces surface_faces(faces, conformed, execution);
     const std::size_t corners_of_faces = surface_faces.corners();
-    complex.face_vertices.resize(corners_of_faces + count_before(first_corner));
+    complex.face_vertices.resize(corners_of_faces + exclusive_scan(first_corner));
     complex.face_offsets.resize(face_count + 1);
     complex.face_offsets[face_count] = static_cast<std::int64_t>(complex.face_vertices.size());
     complex.face_cells.resize(face_count);
@@ -132,6 +133,37 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
         walls[batch] = {};
     });
     return complex;
+}
+
+bool are_closed(const CellComplex& complex) {
+    struct CellEdgeUse {
+        std::array<std::int32_t, 3> key;  ///< cell and edge, the lower vertex first
+        std::int32_t direction;
+    };
+    std::vector<CellEdgeUse> uses;
+    for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
+        const std::int64_t begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
+        for (std::int64_t i = begin; i < end; ++i) {
+            const std::int32_t a = complex.face_vertices[static_cast<std::size_t>(i)];
+            const std::int64_t next = i + 1 < end ? i + 1 : begin;
+            const std::int32_t b = complex.face_vertices[static_cast<std::size_t>(next)];
+            for (std::size_t side = 0; side < 2; ++side) {
+                const std::int32_t cell = complex.face_cells[f][side];
+                if (cell < 0) continue;
+                const bool ahead = (a < b) == (side == 0);
+                uses.push_back({{cell, std::min(a, b), std::max(a, b)}, ahead ? 1 : -1});
+            }
+        }
+    }
+    std::sort(uses.begin(), uses.end(),
+              [](const CellEdgeUse& a, const CellEdgeUse& b) { return a.key < b.key; });
+    for (const auto of_edge : groups_of(uses, &CellEdgeUse::key)) {
+        std::int32_t sum = 0;
+        for (const CellEdgeUse& use : of_edge)
+            sum += use.direction;
+        if (sum != 0) return false;
+    }
+    return true;
 }
 
 }  // namespace realmodel::strata

@@ -14,4 +14,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
                      ConformedFaces conformed, std::vector<WallBatch> walls,
                      Array<std::int32_t> cell_block, const Execution& execution);
 
+/// Whether the faces of every cell use each of its edges as often in one direction as in the other.
+bool are_closed(const CellComplex& complex);
+
 }  // namespace realmodel::strata

@@ -2,17 +2,18 @@
 #include "strata/cells/cell_building.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "realmodel/base/errors.hpp"
 #include "strata/cells/assembly.hpp"
-#include "strata/cells/closedness.hpp"
+#include "strata/cells/block_cells.hpp"
 #include "strata/cells/distinct_positions.hpp"
-#include "strata/cells/node_cells.hpp"
-#include "strata/cells/plan_offsets.hpp"
-#include "strata/cells/whole_faces.hpp"
+#include "strata/cells/exact_positions.hpp"
+#include "strata/conform/collinear_edges.hpp"
 #include "strata/conform/walls.hpp"
 #include "strata/steps.hpp"
 
@@ -29,14 +30,17 @@ struct Conformed {
     double done = 0;                    ///< of the work
 };
 
-/// Repeats the steps until no two columns cross in height between the vertices of a line; the
-/// second round is the last one.
+/// Two are enough (docs/dev/algorithm.md, "Why two rounds are enough"): beyond this many the
+/// argument or the code is wrong.
+constexpr int kMostRounds = 8;
+
+/// Repeats the steps until no two columns cross in height between the vertices of a line.
 Conformed conform(exact::PlanArrangement& geometry, Construction& construction,
                   const BlockLinks* blocks, const Execution& execution) {
     FaceList& faces = construction.faces;
     Conformed c;
     c.done = kOverlayDone;
-    for (int round = 0;; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
         const auto next = [&](double of_round, const char* text) {
             // a second round, where there is one, shares what is left
             const double share = of_round * (1.0 - kOverlayDone) * (round == 0 ? 0.5 : 0.25);
@@ -65,6 +69,9 @@ Conformed conform(exact::PlanArrangement& geometry, Construction& construction,
             faces.polygons.points = points_of_corners(c.plan_vertices, c.conformed, execution);
         c.crossings.insert(c.crossings.end(), c.walls.missing.begin(), c.walls.missing.end());
     }
+    const exact::Point& at = geometry.point(c.crossings.back().point);
+    throw InternalError("columns that cross in height have a vertex there in the next round",
+                        std::array{at.x, at.y, 0.0});
 }
 
 /// Names the cells that rounding left without a volume.

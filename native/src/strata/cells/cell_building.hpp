@@ -4,11 +4,20 @@
 #include <optional>
 #include <vector>
 
-#include "strata/cells/built_cells.hpp"
+#include "realmodel/strata/stack.hpp"
+#include "strata/cells/volumes.hpp"
 #include "strata/overlay/border_edges.hpp"
-#include "strata/overlay/sheet_links.hpp"
+#include "strata/overlay/envelope.hpp"
+#include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
+
+/// What steps after the overlay make.
+struct BuiltCells {
+    CellComplex complex;
+    std::vector<BorderVertex> border;  ///< of a tile
+    Array<PlanOffset> offsets;         ///< of the first vertices; those of others are 0
+};
 
 /// What is known besides of nodes that become the cells of blocks.
 struct BlockLinks {

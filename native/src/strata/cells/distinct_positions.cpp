@@ -2,13 +2,14 @@
 #include "strata/cells/distinct_positions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "base/keep_single.hpp"
-#include "base/lists.hpp"
-#include "base/ulp.hpp"
+#include "base/algorithms.hpp"
+#include "base/floating_point.hpp"
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {
 
@@ -63,7 +64,9 @@ private:
     template <class Allowed>
     void move(std::size_t vertex, const Allowed& allowed) {
         const PlanPosition from = at(vertex);
-        for (int reach = 1;; ++reach) {
+        // at each reach there is a position that may be allowed; no more of them can be taken
+        const std::size_t most = plan_vertices_.size() + taken_.size() + 1;
+        for (int reach = 1; std::cmp_less_equal(reach, most); ++reach) {
             for (int x = -reach; x <= reach; ++x) {
                 for (int y = -reach; y <= reach; ++y) {
                     if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
@@ -78,6 +81,8 @@ private:
                 }
             }
         }
+        throw InternalError("beside a plan vertex there is a free position that it may move to",
+                            std::array{from[0], from[1], 0.0});
     }
 
     const exact::PlanArrangement& geometry_;

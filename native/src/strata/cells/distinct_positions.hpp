@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "strata/cells/tile_border.hpp"
+#include "strata/cells/exact_positions.hpp"
 #include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
@@ -23,7 +23,7 @@ struct FlatCell {
 /// @param border  nothing unless this is a tile
 /// @return the cells that are flat still, after some rounds or because nothing of them may move
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
-                                    const PlanVertices& places, ConformedFaces& conformed,
+                                    const PlanVertices& plan_vertices, ConformedFaces& conformed,
                                     const TileBorder* border, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -3,21 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "base/corrected_sum.hpp"
+#include "base/floating_point.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
+#include "base/vectors.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/strata/cell_volumes.hpp"
 
 namespace realmodel::strata {
 
 namespace {
 
 /// The area of a face in plan, and the volume between the face and the height of its first corner.
-struct Projection {
+struct FaceProjection {
     double area = 0, volume = 0;
 };
 
-Projection project(const CellComplex& complex, std::size_t face,
-                   std::span<const PlanOffset> offsets) {
+FaceProjection project(const CellComplex& complex, std::size_t face,
+                       std::span<const PlanOffset> offsets) {
     const auto corner = [&](std::int64_t i) -> const std::array<double, 3>& {
         return complex
             .vertices[static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)])];
@@ -39,7 +45,7 @@ Projection project(const CellComplex& complex, std::size_t face,
         return std::array{at[0] - origin[0] + (moved[0] - off[0]),
                           at[1] - origin[1] + (moved[1] - off[1]), at[2] - origin[2]};
     };
-    Projection sum;
+    FaceProjection sum;
     auto [x, y, z] = from_origin(begin + 1);
     for (std::int64_t i = begin + 2; i < end; ++i) {
         const auto [u, v, w] = from_origin(i);
@@ -62,7 +68,7 @@ struct BlockSum {
     double anchor = 0, largest = -1;  // of no face yet
     CorrectedSum volume, area;
 
-    void add(const Projection& face, double height, double sign) {
+    void add(const FaceProjection& face, double height, double sign) {
         see_from(height, std::abs(face.area));
         volume.add(sign * (face.volume + face.area * (height - anchor)));
         area.add(sign * face.area);
@@ -104,7 +110,7 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
         for (std::size_t f = begin; f < end; ++f) {
             const auto [inside, outside] = complex.face_cells[f];
             if (outside >= 0 && block_of(inside) == block_of(outside)) continue;
-            const Projection below = project(complex, f, offsets);
+            const FaceProjection below = project(complex, f, offsets);
             const auto first = static_cast<std::size_t>(complex.face_offsets[f]);
             const double height =
                 complex.vertices[static_cast<std::size_t>(complex.face_vertices[first])][2];
@@ -120,6 +126,69 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
         result.push_back(sum.volume.value());
     }
     return result;
+}
+
+namespace {
+
+[[noreturn]] void refuse(std::size_t face, const char* what) {
+    throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
+                     {static_cast<std::int64_t>(face)});
+}
+
+}  // namespace
+
+std::vector<double> cell_volumes(std::span<const Vec3> vertices,
+                                 std::span<const std::int64_t> face_offsets,
+                                 std::span<const std::int32_t> face_vertices,
+                                 std::span<const std::array<std::int32_t, 2>> face_cells,
+                                 std::size_t cells, const Execution& execution) {
+    const std::size_t faces = face_cells.size();
+    if (face_offsets.size() != faces + 1) refuse(faces, "more or fewer offsets than faces");
+    const auto loop_of = [&](std::size_t f) {
+        const std::int64_t begin = face_offsets[f], end = face_offsets[f + 1];
+        if (begin < 0 || begin >= end || end > static_cast<std::int64_t>(face_vertices.size()))
+            refuse(f, "corners that do not exist");
+        return face_vertices.subspan(static_cast<std::size_t>(begin),
+                                     static_cast<std::size_t>(end - begin));
+    };
+    std::vector<std::int32_t> origin(cells, -1);  // a corner of each cell
+    for (std::size_t f = 0; f < faces; ++f) {
+        poll(execution.progress, f);
+        const auto loop = loop_of(f);
+        for (const std::int32_t v : loop) {
+            if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())
+                refuse(f, "a vertex that does not exist");
+        }
+        for (const std::int32_t cell : face_cells[f]) {
+            if (cell < -1 || cell >= static_cast<std::int64_t>(cells))
+                refuse(f, "a cell that does not exist");
+            if (cell >= 0 && origin[static_cast<std::size_t>(cell)] < 0)
+                origin[static_cast<std::size_t>(cell)] = loop[0];
+        }
+    }
+    // the shares of the faces on several threads; then in order, so that sums do not depend on them
+    std::vector<std::array<double, 2>> share(faces);
+    parallel_each(faces, execution, [&](std::size_t f) {
+        const auto loop = loop_of(f);
+        const auto at = [&](std::size_t i) -> const Vec3& { return vertices[index(loop[i])]; };
+        const Vec3 area = polygon_normal(loop.size(), at);  // twice as long
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t cell = face_cells[f][side];
+            if (cell < 0) continue;
+            const Vec3& o = vertices[index(origin[index(cell)])];
+            const double volume = dot(minus(at(0), o), area) / 6;
+            share[f][side] = side == 0 ? volume : -volume;
+        }
+    });
+    std::vector<double> volume(cells, 0.0);
+    for (std::size_t f = 0; f < faces; ++f) {
+        poll(execution.progress, f);
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t cell = face_cells[f][side];
+            if (cell >= 0) volume[static_cast<std::size_t>(cell)] += share[f][side];
+        }
+    }
+    return volume;
 }
 
 }  // namespace realmodel::strata

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <span>
+#include <vector>
 
 #include "realmodel/base/execution.hpp"
-#include "strata/cells/built_cells.hpp"
+#include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {
+
+/// By how much what is exact differs in x and y from its rounded position.
+using PlanOffset = std::array<float, 2>;
 
 /// Volume of every block: what lies beneath the faces that bound it from above, less what lies
 /// beneath those that bound it from below. Heights are counted from a corner of each cell, so that

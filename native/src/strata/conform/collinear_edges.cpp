@@ -2,18 +2,341 @@
 #include "strata/conform/collinear_edges.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
+#include <cstdint>
 #include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "base/parallel_counts.hpp"
-#include "strata/conform/collinear_lines.hpp"
-#include "strata/conform/line_buckets.hpp"
+#include "strata/conform/plan_vertices.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanArrangement;
 
 namespace {
+
+constexpr std::size_t kEdges = 1 << 14;         // in a bucket: they fit the cache of a core
+constexpr std::size_t kMostEdges = 2000000000;  // so that plan vertices on lines can be numbered
+constexpr std::size_t kFacesSorted = 1 << 15,
+                      kMostFaceChunks = 64;  // sorted into buckets at a time
+
+/// The edges of faces in buckets of as many lines each, so that those of a bucket fit the cache:
+/// they are put in order by lines, with their ends, when it is their turn. Half of the buckets are
+/// filled at a time, as all edges would take nearly as much memory as the faces.
+class LineBuckets {
+public:
+    /// @throws InputError kind too_large, where edges cannot be numbered
+    LineBuckets(const FaceList& faces, const CollinearLines& lines) : faces_(faces), lines_(lines) {
+        const std::size_t edges = faces.polygons.lines.size();
+        check_total(edges, kMostEdges);
+        const std::size_t of_line =
+            edges / std::max<std::size_t>(lines.representative.size(), 1) + 1;
+        together_ = std::bit_floor(std::max<std::size_t>(kEdges / of_line, 1));
+    }
+
+    std::size_t size() const { return (lines_.representative.size() + together_ - 1) / together_; }
+    std::size_t first_line(std::size_t bucket) const {
+        return std::min(bucket * together_, lines_.representative.size());
+    }
+    /// Fills some buckets, and empties all others.
+    void fill(std::size_t begin, std::size_t end, const Execution& execution) {
+        edges_ = {};
+        first_filled_ = begin;
+        const std::uint32_t* const offsets = faces_.polygons.offsets.begin();
+        const std::size_t first = first_line(begin), count = first_line(end) - first;
+        const int shift = std::countr_zero(together_);
+        const std::size_t chunks =
+            std::clamp<std::size_t>(faces_.size() / kFacesSorted, 1, kMostFaceChunks);
+        const auto produce = [&](std::size_t chunk, const auto& put) {
+            const std::size_t past_last = faces_.size() * (chunk + 1) / chunks;
+            for (std::size_t f = faces_.size() * chunk / chunks; f < past_last; ++f) {
+                for (std::uint32_t c = offsets[f]; c < offsets[f + 1]; ++c) {
+                    const std::size_t line = joined_line(c) - first;  // huge, where before
+                    if (line < count) put(line >> shift, FaceEdge{c, static_cast<std::int32_t>(f)});
+                }
+            }
+        };
+        edges_ = bucketize_in_order<FaceEdge>(end - begin, chunks, produce, execution, 0.1);
+    }
+    /// The edges of a bucket that is filled by its lines; their ends are plan vertices.
+    Buckets<LineEdge> by_lines(std::size_t bucket, const PlanVertices& plan_vertices) const {
+        const std::uint32_t* const offsets = faces_.polygons.offsets.begin();
+        const PointId* const points = faces_.polygons.points.begin();
+        const PlanVertexId* const of_point = plan_vertices.of_point.begin();
+        const std::size_t first = first_line(bucket);
+        const std::span<const FaceEdge> edges = edges_[bucket - first_filled_];
+        const auto produce = [&](const auto& put) {
+            for (const FaceEdge& edge : edges) {
+                prefetch_edge(&edge, edges.data() + edges.size());
+                const std::size_t face = index(edge.face);
+                const std::size_t next =
+                    edge.corner + 1 < offsets[face + 1] ? edge.corner + 1 : offsets[face];
+                put(joined_line(edge.corner) - first,
+                    LineEdge{of_point[index(points[edge.corner])], of_point[index(points[next])],
+                             edge.corner, edge.face});
+            }
+        };
+        return bucketize<LineEdge>(first_line(bucket + 1) - first, produce);
+    }
+
+private:
+    struct FaceEdge {
+        std::uint32_t corner;  ///< that it leaves
+        std::int32_t face;
+    };
+    /// Of the edge that leaves a corner.
+    std::size_t joined_line(std::size_t corner) const {
+        return static_cast<std::size_t>(lines_.of_line[index(faces_.polygons.lines[corner].id())]);
+    }
+    /// Asks for what will be read of the edges after one, and for what matching will want to know.
+    [[gnu::always_inline]] void prefetch_edge(const FaceEdge* edge, const FaceEdge* end) const {
+        const FaceEdge& far = edge[std::min<std::ptrdiff_t>(32, end - edge - 1)];
+        const std::size_t face = index(far.face);
+        prefetch(&faces_.polygons.points[far.corner]);
+        prefetch(&faces_.polygons.lines[far.corner]);
+        prefetch(&faces_.polygons.offsets[face]);
+        prefetch(&faces_.plane[face]);
+        prefetch(&faces_.above[face]);
+        prefetch(&faces_.below[face]);
+    }
+
+    const FaceList& faces_;
+    const CollinearLines& lines_;
+    std::size_t together_;  ///< lines in a bucket
+    std::size_t first_filled_ = 0;
+    Buckets<FaceEdge> edges_;  ///< of those that are filled
+};
+
+/// Finds the matches of one line after another.
+class EdgeMatching {
+public:
+    EdgeMatching(const exact::PlanArrangement& geometry, const FaceList& faces,
+                 const Array<std::uint8_t>* cell_is_thick)
+        : geometry_(geometry), faces_(faces), cell_is_thick_(cell_is_thick) {}
+
+    /// Matches the edges of a line.
+    /// @param edges  with their ends counted along the line, or plan vertices whose numbers rise
+    /// along it
+    /// @param line  the plan line that carries the edges
+    /// @return whether all match and the walls between them follow from that; then thin() and
+    ///     add_walls() are of this line
+    bool match_all(std::span<const LineEdge> edges, LineId line) {
+        same_ = {kNone, kNone};
+        thin_.clear();
+        bounds_.clear();
+        beneath_.clear();
+        if (!find_matches(edges, line)) return false;
+        sort_bounds();
+        return find_walls();
+    }
+
+    struct EdgePair {
+        const LineEdge *left, *right;
+    };
+    /// The matches beside which a cell, or what was left out, is not thick.
+    const std::vector<EdgePair>& thin() const { return thin_; }
+    /// Adds the walls of the line matched last.
+    void add_walls(MatchedEdges& to) const {
+        for (const WallBounds& wall : walls_) {
+            const std::uint64_t cells = bounds_[wall.above].cells;
+            to.walls.push_back({{static_cast<std::int32_t>(cells >> 32),
+                                 static_cast<std::int32_t>(cells & 0xffffffff)},
+                                static_cast<std::uint32_t>(wall.above_end - wall.above),
+                                static_cast<std::uint32_t>(wall.beneath_end - wall.beneath)});
+            const auto add_corners = [&](std::size_t begin, std::size_t end) {
+                assert(begin < end);
+                for (std::size_t i = begin; i < end; ++i)
+                    to.corners.push_back(bounds_[i].edge->begin);
+                to.corners.push_back(end_corner(*bounds_[end - 1].edge));
+            };
+            add_corners(wall.above, wall.above_end);
+            add_corners(wall.beneath, wall.beneath_end);
+        }
+    }
+
+private:
+    /// An edge by its ends, in order along the line, and its side.
+    struct SidedEdge {
+        std::uint64_t ends_and_side;
+        const LineEdge* edge;
+
+        std::uint64_t ends() const { return ends_and_side >> 1; }
+        bool is_right() const { return (ends_and_side & 1) != 0; }
+    };
+    /// The name of the line in space that an edge is on: the input edge above the plan line, or the
+    /// plane of its face.
+    using Name = exact::EdgeOrPlane;
+    /// A pair that bounds a wall between two cells.
+    struct Bound {
+        std::uint64_t cells;        ///< left and right of the line
+        std::uint64_t plan_vertex;  ///< whether the wall stands on it, and where it begins
+        const LineEdge* edge;       ///< the left one
+
+        bool is_beneath() const { return plan_vertex >> 32 != 0; }
+    };
+    /// Bounds of one wall, as ranges of bounds_.
+    struct WallBounds {
+        std::size_t above, beneath, above_end, beneath_end;
+    };
+
+    PlaneId plane_of(const LineEdge& edge) const {
+        return faces_.plane[static_cast<std::size_t>(edge.face)];
+    }
+    Name name(const LineEdge& edge, const exact::Line& line) const {
+        const PlaneId plane = plane_of(edge);
+        const Name first = geometry_.plane(plane).above(line);
+        if (first.is_edge()) return first;
+        // several edges in a row are one line, each on a line of its own
+        const auto own = faces_.polygons.lines[edge.begin].id();
+        const Name second = geometry_.plane(plane).above(geometry_.line(own));
+        return second.is_edge() ? second : Name(plane);
+    }
+    bool find_matches(std::span<const LineEdge> edges, LineId line_id) {
+        segments_.resize(edges.size());
+        SidedEdge* next = segments_.begin();
+        for (const LineEdge& edge : edges) {
+            const bool is_right = edge.from > edge.to;
+            const auto [low, high] =
+                is_right ? std::pair(edge.to, edge.from) : std::pair(edge.from, edge.to);
+            *next++ = {packed_pair(low, high) << 1 | (is_right ? 1 : 0), &edge};
+        }
+        std::sort(segments_.begin(), segments_.end(), [](const SidedEdge& a, const SidedEdge& b) {
+            return a.ends_and_side < b.ends_and_side;
+        });
+        const exact::Line& line = geometry_.line(line_id);
+        for (SidedEdge *begin = segments_.begin(), *const last = segments_.end(); begin != last;) {
+            if (begin->is_right() || begin + 1 == last) return false;
+            if (begin[1].ends_and_side == begin->ends_and_side + 1) {  // one edge on each side
+                if (!are_one_line(*begin->edge, *begin[1].edge, line)) return false;
+                add({begin->edge, begin[1].edge});
+                begin += 2;
+                continue;
+            }
+            const auto right =
+                std::find_if(begin, last, [](const SidedEdge& s) { return s.is_right(); });
+            const auto count = static_cast<std::size_t>(right - begin);
+            if (static_cast<std::size_t>(last - right) < count ||
+                right[count - 1].ends_and_side != begin->ends_and_side + 1 ||
+                begin[count - 1].ends() != begin->ends() ||
+                !match({begin, count}, {right, count}, line))
+                return false;
+            begin = right + count;
+        }
+        return true;
+    }
+    /// Whether two edges of the same ends are one segment in space.
+    bool are_one_line(const LineEdge& left, const LineEdge& right, const exact::Line& line) {
+        const std::array planes{plane_of(left), plane_of(right)};
+        if (planes[0] == planes[1] || planes == same_) return true;
+        const Name of_left = name(left, line);
+        if (of_left != name(right, line)) return false;
+        // Segments that follow each other mostly lie between the same two triangles.
+        if (of_left == geometry_.plane(planes[0]).above(line)) same_ = planes;
+        return true;
+    }
+    /// Matches several edges of the same ends.
+    bool match(std::span<SidedEdge> left, std::span<SidedEdge> right, const exact::Line& line) {
+        const auto find_names = [&](std::span<SidedEdge> segments, auto& names) {
+            names.clear();
+            for (const SidedEdge& s : segments)
+                names.emplace_back(name(*s.edge, line), s.edge);
+            std::sort(names.begin(), names.end(),
+                      [](const auto& a, const auto& b) { return a.first < b.first; });
+        };
+        find_names(left, left_names_);
+        find_names(right, right_names_);
+        for (std::size_t i = 0; i < left_names_.size(); ++i) {
+            const Name& known = left_names_[i].first;
+            if (known != right_names_[i].first) return false;
+            if (i > 0 && known == left_names_[i - 1].first) return false;  // which is whose?
+            add({left_names_[i].second, right_names_[i].second});
+        }
+        return true;
+    }
+    /// Adds a match, and what walls it bounds. A face is known to be as high as no other where it
+    /// lies between thick cells, or those and the outside.
+    void add(const EdgePair& pair) {
+        const std::size_t left = index(pair.left->face), right = index(pair.right->face);
+        const std::array above{faces_.above[left], faces_.above[right]};
+        const std::array below{faces_.below[left], faces_.below[right]};
+        const auto is_thick = [&](std::int32_t cell) {
+            return cell < 0 ? cell == kOutsideCell : (*cell_is_thick_)[index(cell)] != 0;
+        };
+        if (!is_thick(above[0]) || !is_thick(above[1]) || !is_thick(below[0]) ||
+            !is_thick(below[1]))
+            thin_.push_back(pair);
+        if (above[0] != above[1]) add_bound(above, 1, *pair.left);
+        if (below[0] != below[1]) add_bound(below, 0, *pair.left);
+    }
+    void add_bound(const std::array<std::int32_t, 2>& nodes, std::int32_t is_beneath,
+                   const LineEdge& left) {
+        const std::array cells{cell_of(nodes[0]), cell_of(nodes[1])};
+        if (cells[0] == cells[1]) return;
+        (is_beneath != 0 ? beneath_ : bounds_)
+            .push_back(
+                {packed_pair(cells[0], cells[1]), packed_pair(is_beneath, left.from), &left});
+    }
+    void sort_bounds() {
+        bounds_.append(beneath_.begin(), beneath_.end());
+        const auto differs = [&](const Bound& bound) { return bound.cells != bounds_[0].cells; };
+        if (std::none_of(bounds_.begin(), bounds_.end(), differs)) return;  // found along the line
+        std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) {
+            return a.cells != b.cells ? a.cells < b.cells : a.plan_vertex < b.plan_vertex;
+        });
+    }
+    /// Bounds that follow each other without a gap are those of one wall; above and beneath there
+    /// must be the same segments.
+    bool find_walls() {
+        walls_.clear();
+        const auto end_of_segments = [&](std::size_t i, std::size_t end) {
+            for (++i; i < end && bounds_[i].edge->from == bounds_[i - 1].edge->to;)
+                ++i;
+            return i;
+        };
+        for (std::size_t begin = 0, end = 0; begin < bounds_.size(); begin = end) {
+            std::size_t beneath = begin;
+            for (end = begin; end < bounds_.size() && bounds_[end].cells == bounds_[begin].cells;
+                 ++end)
+                beneath += bounds_[end].is_beneath() ? 0 : 1;
+            const std::size_t last_above = beneath;
+            for (std::size_t above = begin; above < last_above || beneath < end;) {
+                if (above == last_above || beneath == end) return false;
+                const WallBounds wall{above, beneath, end_of_segments(above, last_above),
+                                      end_of_segments(beneath, end)};
+                if (bounds_[wall.above].edge->from != bounds_[wall.beneath].edge->from ||
+                    bounds_[wall.above_end - 1].edge->to != bounds_[wall.beneath_end - 1].edge->to)
+                    return false;
+                walls_.push_back(wall);
+                above = wall.above_end;
+                beneath = wall.beneath_end;
+            }
+        }
+        return true;
+    }
+    std::uint32_t end_corner(const LineEdge& edge) const {
+        const auto& offsets = faces_.polygons.offsets;
+        const auto face = static_cast<std::size_t>(edge.face);
+        return edge.begin + 1 < offsets[face + 1] ? edge.begin + 1 : offsets[face];
+    }
+
+    const exact::PlanArrangement& geometry_;
+    const FaceList& faces_;
+    const Array<std::uint8_t>* cell_is_thick_;
+    Array<SidedEdge> segments_;
+    /// Planes that meet above the plan line.
+    std::array<PlaneId, 2> same_{kNone, kNone};
+    std::vector<std::pair<Name, const LineEdge*>> left_names_, right_names_;
+    std::vector<EdgePair> thin_;
+    Array<Bound> bounds_, beneath_;
+    std::vector<WallBounds> walls_;
+};
 
 /// The plan vertices on one line, put in order. Rounded coordinates keep the order of plan vertices
 /// along a line, and exact ones decide where they are equal.
@@ -32,7 +355,7 @@ public:
     [[gnu::always_inline]] std::int32_t add(PlanVertexId plan_vertex) {
         // Most lines have a handful of plan vertices, each the end of several edges, and the last
         // ones are met again soonest.
-        for (std::size_t i = added_.size(), least = i > kFew ? i - kFew : 0; i > least; --i) {
+        for (std::size_t i = added_.size(), least = i > kRecent ? i - kRecent : 0; i > least; --i) {
             if (added_[i - 1] == plan_vertex) return static_cast<std::int32_t>(i - 1);
         }
         added_.push_back(plan_vertex);
@@ -72,7 +395,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kFew = 16;
+    static constexpr std::size_t kRecent = 16;
 
     PlanVertexId added(std::int32_t i) const { return added_[static_cast<std::size_t>(i)]; }
     PointId point(PlanVertexId plan_vertex) const {
@@ -139,9 +462,9 @@ void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result,
         first_line.push_back(some.representative.size());
         first_edge.push_back(some.edges.size());
     }
-    result.representative = Array<LineId>(count_before(first_line));
+    result.representative = Array<LineId>(exclusive_scan(first_line));
     result.edge_offsets = Array<std::uint32_t>(result.size() + 1);
-    result.edges = Array<LineEdge>(count_before(first_edge));
+    result.edges = Array<LineEdge>(exclusive_scan(first_edge));
     result.edge_offsets[result.size()] = static_cast<std::uint32_t>(result.edges.size());
     parallel_chunks(kept.size(), execution, [&](std::size_t i) {
         std::size_t line = first_line[i], edge = first_edge[i];

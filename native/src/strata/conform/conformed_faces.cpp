@@ -2,13 +2,14 @@
 #include "strata/conform/conformed_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/parallel_counts.hpp"
-#include "strata/conform/vertex_heights.hpp"
 
 namespace realmodel::strata {
 
@@ -16,8 +17,216 @@ using exact::PlanArrangement;
 
 namespace {
 
+constexpr std::size_t kLinearSearch = 24;  // up to here looking through all is quickest
+
+}  // namespace
+
+CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners,
+                             const Execution& execution)
+    : corners_(corners) {
+    const std::size_t blocks = corners / kBlock + 1;  // the number of corners itself has one, too
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        for (const PassedVertices::PassingEdge& edge : passed[chunk].edges)
+            put(edge.corner / kBlock, Passing{edge.corner, edge.count});
+    };
+    passing_ = sorted_in_buckets<Passing>(blocks, passed.size(), produce, execution);
+    entry_of_block_ = Array<std::uint32_t>(blocks + 1);
+    parallel_each(blocks, execution, [&](std::size_t block) {
+        std::size_t entries = std::min(kBlock, corners - block * kBlock);
+        for (const Passing& passing : passing_[block])
+            entries += passing.vertices;
+        entry_of_block_[block] = static_cast<std::uint32_t>(entries);
+    });
+    running_totals(entry_of_block_, UINT32_MAX, execution);
+}
+
+void VertexHeights::find(PointId point, std::span<std::int32_t> planes) {
+    if (find_single(point, planes)) return;
+    find_distinct(point, planes);
+    rank_levels(point);
+    if (!tentative_.empty()) settle_tentative(point);
+    separate();
+    for (std::int32_t& code : planes) {
+        const PlaneId plane = plane_of(code);
+        if (!is_tentative(code)) {
+            code = rank_of(plane);
+            continue;
+        }
+        const auto at = std::find_if(tentative_.begin(), tentative_.end(),
+                                     [&](const LeveledPlane& p) { return p.plane == plane; });
+        code = at->level < 0 ? -1 : levels_[static_cast<std::size_t>(at->level)].rank;
+    }
+}
+
+/// Where what the plan vertex is made of tells that all planes are equally high, as on most plan
+/// vertices, there is nothing to put in order.
+/// @return whether that is so, and all is done
+bool VertexHeights::find_single(PointId point, std::span<std::int32_t> planes) {
+    if (planes.empty() || is_tentative(planes[0])) return false;
+    const PlaneId first = plane_of(planes[0]);
+    HeightLevel level{scope_.height_name(first, point), first, 0.0, 0};
+    std::array known{planes[0], planes[0]};
+    for (const std::int32_t code : planes.subspan(1)) {
+        if (code == known[0] || code == known[1]) continue;
+        if (is_tentative(code)) return false;
+        const PlaneId plane = plane_of(code);
+        if (scope_.height_name(plane, point) != level.name) return false;
+        known = {code, known[0]};
+        level.plane = std::min(level.plane, plane);
+    }
+    std::optional<exact::NearPoint> near;
+    heights_.assign(1, rounded(level, point, near));
+    std::fill(planes.begin(), planes.end(), 0);
+    return true;
+}
+
+std::int32_t VertexHeights::rank_of(PlaneId plane) const {
+    const auto at =
+        planes_.size() <= kLinearSearch
+            ? std::find_if(planes_.begin(), planes_.end(),
+                           [&](const LeveledPlane& p) { return p.plane == plane; })
+            : std::lower_bound(planes_.begin(), planes_.end(), plane,
+                               [](const LeveledPlane& p, PlaneId q) { return p.plane < q; });
+    return levels_[static_cast<std::size_t>(at->level)].rank;
+}
+
+void VertexHeights::find_distinct(PointId point, std::span<const std::int32_t> planes) {
+    planes_.clear();
+    tentative_.clear();
+    levels_.clear();
+    for (const std::int32_t code : planes) {
+        std::vector<LeveledPlane>& kind = is_tentative(code) ? tentative_ : planes_;
+        const PlaneId plane = plane_of(code);
+        const std::size_t near =
+            is_tentative(code) ? kind.size() : std::min(kind.size(), kLinearSearch);
+        bool known = false;
+        for (std::size_t i = 0; i < near && !known; ++i)
+            known = kind[i].plane == plane;
+        if (!known) kind.push_back({plane, -1});
+    }
+    // The order in which planes come is left to chance where threads share the work.
+    const auto in_order = [](const LeveledPlane& a, const LeveledPlane& b) {
+        return a.plane < b.plane;
+    };
+    std::sort(planes_.begin(), planes_.end(), in_order);
+    std::sort(tentative_.begin(), tentative_.end(), in_order);
+    if (planes_.size() > kLinearSearch) {
+        const auto same = [](const LeveledPlane& a, const LeveledPlane& b) {
+            return a.plane == b.plane;
+        };
+        planes_.erase(std::unique(planes_.begin(), planes_.end(), same), planes_.end());
+    }
+    for (LeveledPlane& plane : planes_)
+        plane.level = level_of(point, plane.plane);
+}
+
+/// Whether a plane is as high as one of some levels, or so near that this would have to be asked
+/// exactly. There is room between what takes up a vertex here and what passes by.
+bool VertexHeights::is_near(PointId id, PlaneId plane, std::span<const HeightLevel> levels) const {
+    const exact::PlanArrangement& geometry = scope_.shared();
+    const exact::SpaceVertex& corner = geometry.space(geometry.plane(plane).corner[0]);
+    const exact::Point &from = geometry.point(corner.plan), &to = geometry.point(id);
+    const exact::PlaneFilter& gradient = geometry.plane_filter(plane);
+    const double dx = to.x - from.x, dy = to.y - from.y;
+    const double rise_x = gradient.gx * dx, rise_y = gradient.gy * dy;
+    const double z = corner.z + rise_x + rise_y;
+    const double size = std::abs(corner.z) + std::abs(rise_x) + std::abs(rise_y);
+    const double error = gradient.error_x * std::abs(dx) + gradient.error_y * std::abs(dy) +
+                         (std::abs(gradient.gx) + std::abs(gradient.gy)) * to.error() +
+                         exact::kPlaneHeight * size + exact::kTermUnderflow;
+    return std::any_of(levels.begin(), levels.end(), [&](const HeightLevel& level) {
+        const double margin =
+            exact::kFarTimes * error + geometry.clear_height(size + std::abs(level.z));
+        return !(std::abs(z - level.z) > margin);
+    });
+}
+
+/// Gives tentative planes the level that they take up, if there is one. A plane that counts after
+/// all may be near to the next, so they are asked until none is.
+void VertexHeights::settle_tentative(PointId point) {
+    for (bool again = true; again;) {
+        again = false;
+        const std::size_t known = levels_.size();
+        for (LeveledPlane& plane : tentative_) {
+            if (plane.level >= 0 || !is_near(point, plane.plane, {levels_.data(), known})) continue;
+            plane.level = level_of(point, plane.plane);
+            again = true;
+        }
+        if (levels_.size() > known) rank_levels(point);
+    }
+}
+
+std::int32_t VertexHeights::level_of(PointId point, PlaneId plane) {
+    const auto name = scope_.height_name(plane, point);
+    for (std::size_t i = 0; i < std::min(levels_.size(), kLinearSearch); ++i) {
+        if (levels_[i].name == name) return static_cast<std::int32_t>(i);
+    }
+    levels_.push_back({name, plane, 0.0, 0});
+    return static_cast<std::int32_t>(levels_.size()) - 1;
+}
+
+/// @param near  where the point lies, found for the first level that asks for it
+double VertexHeights::rounded(const HeightLevel& level, PointId point,
+                              std::optional<exact::NearPoint>& near) {
+    if (level.name.is_edge() && level.name.from() == level.name.to())
+        return scope_.shared().space(level.name.from()).z;
+    if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) return *z;
+    if (!near) near = scope_.approximate(point);
+    return scope_.rounded_height(level.plane, level.name, point, *near);
+}
+
+void VertexHeights::rank_levels(PointId point) {
+    std::optional<exact::NearPoint> near;
+    for (HeightLevel& level : levels_)
+        level.z = rounded(level, point, near);
+    const auto level = [&](std::int32_t i) -> HeightLevel& {
+        return levels_[static_cast<std::size_t>(i)];
+    };
+    const auto lower = [&](std::int32_t i, std::int32_t j) {
+        const HeightLevel &a = level(i), &b = level(j);
+        if (a.z != b.z) return a.z < b.z;
+        return i != j && scope_.compare_heights(b.plane, a.plane, point) > 0;
+    };
+    order_.resize(levels_.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    std::sort(order_.begin(), order_.end(), lower);  // equally high ones have one rank in any order
+    heights_.clear();
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        if (i == 0 || lower(order_[i - 1], order_[i])) heights_.push_back(level(order_[i]).z);
+        level(order_[i]).rank = static_cast<std::int32_t>(heights_.size()) - 1;
+    }
+}
+
+/// Whether a height is known to be a double: that of an input vertex, of a level edge or plane.
+bool VertexHeights::is_double(std::size_t rank) const {
+    const auto& geometry = scope_.shared();
+    const auto z = [&](exact::SpaceId s) { return geometry.space(s).z; };
+    return std::any_of(levels_.begin(), levels_.end(), [&](const HeightLevel& level) {
+        if (level.rank != static_cast<std::int32_t>(rank)) return false;
+        if (level.name.is_edge()) return z(level.name.from()) == z(level.name.to());
+        const auto& corner = geometry.plane(level.plane).corner;
+        return z(corner[0]) == z(corner[1]) && z(corner[1]) == z(corner[2]);
+    });
+}
+
+void VertexHeights::separate() {
+    for (std::size_t i = 1; i < heights_.size(); ++i) {
+        if (heights_[i] > heights_[i - 1]) continue;
+        std::size_t low = i;  // from here to i all are different
+        if (is_double(i)) {
+            for (; low > 0 && heights_[low - 1] >= heights_[low] && !is_double(low - 1); --low)
+                heights_[low - 1] = std::nextafter(heights_[low], -HUGE_VAL);
+        }
+        // up with all that is left no room below
+        for (; low > 0 && low <= i && heights_[low] <= heights_[low - 1]; ++low)
+            heights_[low] = std::nextafter(heights_[low - 1], HUGE_VAL);
+    }
+}
+
+namespace {
+
 constexpr std::size_t kFaces = 1 << 10, kEntries = 1 << 15,
-                      kTogether = ConformedFaces::kVerticesTogether;  // at a time
+                      kGrain = ConformedFaces::kVertexGrain;  // at a time
 
 /// The plan vertices that faces pass, entry by entry; their complement where they are passed
 /// tentatively.
@@ -35,7 +244,7 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
     parallel_chunks(collinear.passed.size(), execution, [&](std::size_t chunk) {
         const PassedVertices& passed = collinear.passed[chunk];
         auto next = passed.vertices.begin();
-        for (const PassedVertices::Edge& edge : passed.edges) {
+        for (const PassedVertices::PassingEdge& edge : passed.edges) {
             PlanVertexId* to = plan_vertex.begin() + conformed.entries.first(edge.corner);
             for (std::uint32_t n = edge.count; n > 0; --n, ++next)
                 *++to = edge.is_tentative != 0 ? ~*next : *next;
@@ -85,7 +294,7 @@ public:
     void run() {
         find_runs();
         conformed_.vertex_offsets = Array<std::int32_t>(plan_vertices_.size() + 1);
-        conformed_.heights.resize((plan_vertices_.size() + kTogether - 1) / kTogether);
+        conformed_.heights.resize((plan_vertices_.size() + kGrain - 1) / kGrain);
         const std::size_t heights = conformed_.heights.size();
         const std::size_t ranges = std::clamp<std::size_t>(heights / kLeast, 1, kMostRanges);
         for (std::size_t r = ranges; r-- > 0;) {
@@ -98,7 +307,7 @@ public:
     }
 
 private:
-    /// How many ranges of plan vertices at most, and how much of kTogether is in one at least.
+    /// How many ranges of plan vertices at most, and how much of kGrain is in one at least.
     static constexpr std::size_t kMostRanges = 8, kLeast = 32, kMostChunks = 64;
     /// What vertices are counted down from, and what an entry has that takes up none.
     static constexpr std::int32_t kEnd = INT32_MAX, kNoVertex = ~kEnd;
@@ -108,9 +317,9 @@ private:
         std::size_t lowest = SIZE_MAX, highest = 0;
     };
     /// An entry on a plan vertex.
-    struct Entry {
+    struct VertexEntry {
         std::uint32_t number;
-        std::uint32_t plan_vertex;  ///< of kTogether; then where its plane is among theirs
+        std::uint32_t plan_vertex;  ///< of kGrain; then where its plane is among theirs
         std::int32_t value;         ///< code of its plane; then its vertex of theirs, or -1
     };
 
@@ -134,9 +343,9 @@ private:
         });
     }
 
-    /// The entries on `count` times kTogether plan vertices, by kTogether of these.
-    Buckets<Entry> entries_on(std::size_t count) const {
-        const std::size_t first = first_ * kTogether, size = count * kTogether;
+    /// The entries on `count` times kGrain plan vertices, by kGrain of these.
+    Buckets<VertexEntry> entries_on(std::size_t count) const {
+        const std::size_t first = first_ * kGrain, size = count * kGrain;
         const std::size_t chunks = std::min(runs_.size(), kMostChunks);
         const auto produce = [&](std::size_t chunk, const auto& put) {
             for (std::size_t r = runs_.size() * chunk / chunks;
@@ -145,7 +354,7 @@ private:
                     put_entries(r, first, size, put);
             }
         };
-        return bucketize_in_order<Entry>(count, chunks, produce, execution_, share_);
+        return bucketize_in_order<VertexEntry>(count, chunks, produce, execution_, share_);
     }
     template <class Put>
     void put_entries(std::size_t run, std::size_t first, std::size_t size, const Put& put) const {
@@ -157,50 +366,50 @@ private:
             for (const std::uint32_t end = first_entry(f + 1); e < end; ++e) {
                 const std::size_t p = plan_vertex(values[e]) - first;  // huge, where before
                 if (p >= size) continue;
-                put(p / kTogether, Entry{e, static_cast<std::uint32_t>(p % kTogether),
-                                         code_of(planes[f], values[e] < 0)});
+                put(p / kGrain, VertexEntry{e, static_cast<std::uint32_t>(p % kGrain),
+                                            code_of(planes[f], values[e] < 0)});
             }
         }
     }
 
-    /// Finds the heights on kTogether plan vertices, and which of them entries have.
-    void find_heights(std::size_t number, std::span<Entry> entries) {
-        const std::size_t first = number * kTogether,
-                          count = std::min(kTogether, plan_vertices_.size() - first);
+    /// Finds the heights on kGrain plan vertices, and which of them entries have.
+    void find_heights(std::size_t number, std::span<VertexEntry> entries) {
+        const std::size_t first = number * kGrain,
+                          count = std::min(kGrain, plan_vertices_.size() - first);
         std::vector<std::uint32_t> ends(count + 1);  // the beginnings, until they are filled
-        for (const Entry& entry : entries)
+        for (const VertexEntry& entry : entries)
             ++ends[entry.plan_vertex + 1];
         for (std::size_t p = 1; p <= count; ++p)
             ends[p] += ends[p - 1];
         std::vector<std::int32_t> planes(entries.size());
-        for (Entry& entry : entries) {
+        for (VertexEntry& entry : entries) {
             const std::uint32_t at = ends[entry.plan_vertex]++;
             planes[at] = entry.value;
             entry.plan_vertex = at;
         }
-        VertexHeights heights_there(geometry_);
+        VertexHeights finder(geometry_);
         std::vector<double> all;
-        all.reserve(2 * kTogether);
+        all.reserve(2 * kGrain);
         std::size_t begin = 0;
         for (std::size_t p = 0; p < count; begin = ends[p++]) {
             prefetch_points(geometry_, plan_vertices_, first + p);
-            const std::span<std::int32_t> there(&planes[begin], ends[p] - begin);
-            heights_there.find(plan_vertices_.representative[first + p], there);
+            const std::span<std::int32_t> on_vertex(&planes[begin], ends[p] - begin);
+            finder.find(plan_vertices_.representative[first + p], on_vertex);
             const auto before = static_cast<std::int32_t>(all.size());
             conformed_.vertex_offsets[first + p] = before;
-            for (std::int32_t& rank : there)
+            for (std::int32_t& rank : on_vertex)
                 rank += rank < 0 ? 0 : before;
-            const auto& found = heights_there.heights();
+            const auto& found = finder.heights();
             all.insert(all.end(), found.begin(), found.end());
         }
-        for (Entry& entry : entries)
+        for (VertexEntry& entry : entries)
             entry.value = planes[entry.plan_vertex];
         conformed_.heights[number].assign(all.begin(), all.end());  // without room for more
     }
 
-    /// Numbers the vertices of `count` times kTogether plan vertices.
+    /// Numbers the vertices of `count` times kGrain plan vertices.
     void number_vertices(std::size_t count) {
-        Buckets<Entry> on = entries_on(count);
+        Buckets<VertexEntry> on = entries_on(count);
         parallel_chunks(
             count, execution_, [&](std::size_t i) { find_heights(first_ + i, on[i]); }, 2 * share_);
         std::vector<std::int32_t> before(count);
@@ -215,10 +424,10 @@ private:
             [&](std::size_t i) {
                 std::int32_t* const vertices = conformed_.vertices.begin();
                 const std::int32_t own = before[i];
-                for (const Entry& entry : on[i])
+                for (const VertexEntry& entry : on[i])
                     vertices[entry.number] = entry.value < 0 ? kNoVertex : own + entry.value;
-                const std::size_t begin = (first_ + i) * kTogether;
-                for (std::size_t p = begin; p < std::min(begin + kTogether, plan_vertices_.size());
+                const std::size_t begin = (first_ + i) * kGrain;
+                for (std::size_t p = begin; p < std::min(begin + kGrain, plan_vertices_.size());
                      ++p)
                     conformed_.vertex_offsets[p] += before[i];
             },
@@ -243,7 +452,7 @@ private:
     ConformedFaces& conformed_;
     Execution execution_;
     std::vector<Run> runs_;
-    std::size_t first_ = 0;     ///< of the range of plan vertices: which kTogether begin it
+    std::size_t first_ = 0;     ///< of the range of plan vertices: which kGrain begin it
     std::int32_t next_ = kEnd;  ///< the number given last
     double share_ = 0;          ///< of the progress, of a loop over a range
 };
@@ -268,22 +477,18 @@ void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
 /// The vertices that the left edge of a pair took up, for the right one.
 void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conformed,
                            const Execution& execution) {
-    std::vector<std::vector<InsertedVertex>> found(collinear.matched.size());
-    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
+    const auto find = [&](std::size_t chunk, std::size_t, auto& found) {
         for (const MatchedPair& pair : collinear.matched[chunk].passing) {
             const std::uint32_t first = conformed.entries.first(pair.left) + 1;
             for (std::uint32_t e = conformed.entries.first(pair.left + 1); e-- > first;) {
                 if (conformed.vertices[e] >= 0)
-                    found[chunk].push_back(
-                        {conformed.entries.first(pair.right), conformed.vertices[e]});
+                    found.push_back({conformed.entries.first(pair.right), conformed.vertices[e]});
             }
         }
-    });
-    for (const auto& some : found)
-        conformed.inserted.insert(conformed.inserted.end(), some.begin(), some.end());
-    std::stable_sort(
-        conformed.inserted.begin(), conformed.inserted.end(),
-        [](const InsertedVertex& a, const InsertedVertex& b) { return a.entry < b.entry; });
+    };
+    conformed.inserted =
+        found_in_ranges<InsertedVertex>(collinear.matched.size(), 1, execution, find);
+    std::ranges::stable_sort(conformed.inserted, {}, &InsertedVertex::entry);
 }
 
 }  // namespace
@@ -325,8 +530,8 @@ void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& con
     conformed.positions.resize(
         static_cast<std::size_t>(conformed.vertex_offsets[plan_vertices.size()]));
     parallel_ranges(
-        plan_vertices.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
-            auto& heights = conformed.heights[begin / kTogether];
+        plan_vertices.size(), kGrain, execution, [&](std::size_t begin, std::size_t end) {
+            auto& heights = conformed.heights[begin / kGrain];
             auto z = heights.begin();
             for (std::size_t p = begin; p < end; ++p) {
                 const auto [x, y] = plan_vertices.position[p];

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <tuple>
 
-#include "base/bucket_sort.hpp"
+#include "base/algorithms.hpp"
 #include "base/parallel_counts.hpp"
+#include "base/parallel_sort.hpp"
 
 namespace realmodel::strata {
 
@@ -65,7 +67,8 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
                              const std::vector<ExtraPoint>& extra, const Execution& execution) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
     const auto& points = faces.polygons.points;
-    parallel_each(points.size(), execution, [&](std::size_t c) { mark(used[index(points[c])]); });
+    parallel_each(points.size(), execution,
+                  [&](std::size_t c) { atomic_set(used[index(points[c])]); });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;
     const XRange range = range_of_vertices(geometry, used, execution);
@@ -103,39 +106,69 @@ void for_each_position(const Array<Rounded>& points, std::size_t begin, std::siz
     }
 }
 
+/// The first points of different positions that round to one.
+class FirstPoints {
+public:
+    FirstPoints(const PlanArrangement& geometry, const Array<Rounded>& points)
+        : scope_(geometry), points_(points) {}
+
+    void clear() { first_.clear(); }
+    /// How many positions there are.
+    std::size_t size() const { return first_.size(); }
+    /// The first point in the position of one, which may be itself.
+    std::uint32_t of(std::uint32_t point) {
+        const auto in_order = [&](std::uint32_t i, std::uint32_t j) { return is_before(i, j); };
+        // A few are asked one by one; more are put in order, or each would be asked about all.
+        const bool are_few = first_.size() < kLinearSearch;
+        const auto at =
+            are_few ? std::ranges::find_if(first_,
+                                           [&](std::uint32_t other) {
+                                               return scope_.same_place(id(point), id(other));
+                                           })
+                    : std::ranges::lower_bound(first_, point, in_order);
+        if (at != first_.end() && (are_few || !is_before(point, *at))) return *at;
+        first_.insert(at, point);
+        if (first_.size() == kLinearSearch) std::ranges::sort(first_, in_order);
+        return point;
+    }
+
+private:
+    static constexpr std::size_t kLinearSearch = 16;
+
+    PointId id(std::uint32_t point) const { return points_[point].point; }
+    bool is_before(std::uint32_t i, std::uint32_t j) {
+        const int x = scope_.compare(0, id(i), id(j));
+        return x != 0 ? x > 0 : scope_.compare(1, id(i), id(j)) > 0;
+    }
+
+    LocalArrangement scope_;
+    const Array<Rounded>& points_;
+    std::vector<std::uint32_t> first_;  ///< from kLinearSearch on in order of position
+};
+
 /// Finds which points are in the same position. Rounded coordinates are the same for every way to
 /// name a point, so only points with equal ones can be; among those the exact test decides.
 /// @param before  how many positions begin in each range of kVerticesAtOnce points
 /// @return for each point, the first one in its position
-Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Array<Rounded>& points,
-                                      std::vector<std::size_t>& before,
-                                      const Execution& execution) {
-    Array<std::uint32_t> first_there(points.size());
+Array<std::uint32_t> find_first_in_position(const PlanArrangement& geometry,
+                                            const Array<Rounded>& points,
+                                            std::vector<std::size_t>& before,
+                                            const Execution& execution) {
+    Array<std::uint32_t> first_in_position(points.size());
     before.assign((points.size() + kVerticesAtOnce - 1) / kVerticesAtOnce, 0);
-    const auto find_among = [&](LocalArrangement& scope, std::size_t begin, std::size_t end) {
-        std::size_t positions = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            first_there[i] = static_cast<std::uint32_t>(i);
-            for (std::size_t j = begin; j < i; ++j) {
-                if (first_there[j] == j && scope.same_place(points[i].point, points[j].point)) {
-                    first_there[i] = static_cast<std::uint32_t>(j);
-                    break;
-                }
-            }
-            positions += first_there[i] == i;
-        }
-        return positions;
-    };
     parallel_ranges(points.size(), kVerticesAtOnce, execution,
                     [&](std::size_t range_begin, std::size_t range_end) {
-                        LocalArrangement scope(geometry);
+                        FirstPoints first(geometry, points);
                         for_each_position(points, range_begin, range_end,
                                           [&](std::size_t begin, std::size_t end) {
-                                              before[range_begin / kVerticesAtOnce] +=
-                                                  find_among(scope, begin, end);
+                                              first.clear();
+                                              for (std::size_t i = begin; i < end; ++i)
+                                                  first_in_position[i] =
+                                                      first.of(static_cast<std::uint32_t>(i));
+                                              before[range_begin / kVerticesAtOnce] += first.size();
                                           });
                     });
-    return first_there;
+    return first_in_position;
 }
 
 /// Room for so many plan vertices, none of which is set.
@@ -156,8 +189,8 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
                                 const std::vector<ExtraPoint>& extra, const Execution& execution) {
     const Array<Rounded> points = points_in_use(geometry, faces, extra, execution);
     std::vector<std::size_t> before;
-    const auto first_there = find_first_there(geometry, points, before, execution);
-    const std::size_t count = count_before(before);
+    const auto first_in_position = find_first_in_position(geometry, points, before, execution);
+    const std::size_t count = exclusive_scan(before);
     PlanVertices vertices = empty_vertices(count, geometry.point_count(), execution);
     std::vector<std::vector<PlanVertexId>> coincident(before.size());
     const auto of_point = [&](std::size_t i) -> PlanVertexId& {
@@ -171,8 +204,8 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
                             points, range_begin, range_end,
                             [&](std::size_t begin, std::size_t end) {
                                 for (std::size_t i = begin; i < end; ++i) {
-                                    if (first_there[i] != i) {
-                                        of_point(i) = of_point(first_there[i]);
+                                    if (first_in_position[i] != i) {
+                                        of_point(i) = of_point(first_in_position[i]);
                                         continue;
                                     }
                                     of_point(i) = static_cast<PlanVertexId>(next);
@@ -188,8 +221,7 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
                             });
                         assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
                     });
-    for (const auto& some : coincident)
-        vertices.coincident.insert(vertices.coincident.end(), some.begin(), some.end());
+    vertices.coincident = concatenated(coincident);
     return vertices;
 }
 
@@ -200,6 +232,121 @@ void set_plan_positions(const PlanArrangement& geometry, PlanVertices& plan_vert
         const auto& point = geometry.point(plan_vertices.representative[p]);
         plan_vertices.position[p] = {point.x, point.y};
     });
+}
+
+namespace {
+
+constexpr std::size_t kLinesAtOnce = 1 << 13, kMostLineChunks = 64;
+
+/// A line with a number that is equal for lines that run through the same plan vertices, and hardly
+/// ever for others.
+struct KeyedLine {
+    std::uint64_t key;
+    LineId line;
+};
+
+/// A line and the lowest one that runs through the same plan vertices.
+struct Follower {
+    LineId line, leader;
+};
+
+std::uint64_t mixed(const std::array<double, 3>& key) {
+    std::uint64_t h = 0;
+    for (const double part : key) {
+        h = (h ^ std::bit_cast<std::uint64_t>(part + 0.0)) * 0x9E3779B97F4A7C15u;  // -0 is 0
+        h ^= h >> 29;
+    }
+    return h * 0xBF58476D1CE4E5B9u;
+}
+
+Array<KeyedLine> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
+                              const Execution& execution) {
+    auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
+    const auto& of_edges = faces.polygons.lines;
+    parallel_each(of_edges.size(), execution,
+                  [&](std::size_t c) { atomic_set(used[index(of_edges[c].id())]); });
+    Array<KeyedLine> lines;
+    number_in_order(
+        used.size(), execution, [&](std::size_t l) { return used[l] != 0; },
+        [&](std::size_t count) { lines = Array<KeyedLine>(count); },
+        [&](std::size_t l, std::size_t number) { lines[number].line = static_cast<LineId>(l); });
+    parallel_ranges(lines.size(), kLinesAtOnce, execution, [&](std::size_t begin, std::size_t end) {
+        LocalArrangement scope(geometry);
+        for (std::size_t i = begin; i < end; ++i)
+            lines[i].key = mixed(scope.line_key(lines[i].line));
+    });
+    return lines;
+}
+
+/// The lines that run where a lower one does; rounded slope and offset are equal for them, and
+/// among lines with equal ones the exact test decides.
+std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<KeyedLine> lines,
+                                     const Execution& execution) {
+    const auto in_order = [](const KeyedLine& a, const KeyedLine& b) {
+        return std::tie(a.key, a.line) < std::tie(b.key, b.line);
+    };
+    // Keys are spread evenly.
+    const auto share = [](const KeyedLine& line) {
+        return static_cast<double>(line.key) * 0x1p-64;
+    };
+    {
+        const std::size_t chunks =
+            std::clamp<std::size_t>(lines.size() / kLinesAtOnce, 1, kMostLineChunks);
+        const auto produce = [&](std::size_t chunk, const auto& take) {
+            const std::size_t end = lines.size() * (chunk + 1) / chunks;
+            for (std::size_t i = lines.size() * chunk / chunks; i < end; ++i)
+                take(lines[i]);
+        };
+        lines = BucketSort<KeyedLine, decltype(share), decltype(in_order)>(share, in_order)
+                    .sorted(chunks, lines.size(), produce, execution);
+    }
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Follower>& followers) {
+        LocalArrangement scope(geometry);
+        std::vector<LineId> leaders;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i > 0 && lines[i].key == lines[i - 1].key) continue;  // not the first of a group
+            leaders.assign(1, lines[i].line);
+            for (std::size_t j = i + 1; j < lines.size() && lines[j].key == lines[i].key; ++j) {
+                const LineId line = lines[j].line;
+                const auto leader = std::find_if(leaders.begin(), leaders.end(), [&](LineId other) {
+                    return scope.same_line(line, other);
+                });
+                if (leader == leaders.end()) {
+                    leaders.push_back(line);
+                } else {
+                    followers.push_back({line, *leader});
+                }
+            }
+        }
+    };
+    return found_in_ranges<Follower>(lines.size(), kLinesAtOnce, execution, find);
+}
+
+}  // namespace
+
+CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces,
+                          const Execution& execution) {
+    Array<KeyedLine> lines = lines_in_use(geometry, faces, execution);
+    CollinearLines joined;
+    joined.of_line = Array<std::int32_t>(geometry.line_count());
+    std::fill(joined.of_line.begin(), joined.of_line.end(), -1);
+    for (const KeyedLine& line : lines)
+        joined.of_line[index(line.line)] = 0;
+    const auto followers = find_followers(geometry, std::move(lines), execution);
+    for (const Follower& follower : followers)
+        joined.of_line[index(follower.line)] = -1;
+
+    number_in_order(
+        joined.of_line.size(), execution, [&](std::size_t l) { return joined.of_line[l] >= 0; },
+        [&](std::size_t count) { joined.representative = Array<LineId>(count); },
+        [&](std::size_t l, std::size_t number) {
+            joined.of_line[l] = static_cast<std::int32_t>(number);
+            joined.representative[number] = static_cast<LineId>(l);
+        });
+    for (const Follower& follower : followers) {
+        joined.of_line[index(follower.line)] = joined.of_line[index(follower.leader)];
+    }
+    return joined;
 }
 
 }  // namespace realmodel::strata

@@ -2,14 +2,195 @@
 #include "strata/overlay/block_envelope.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <numeric>
 
+#include "base/algorithms.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel_counts.hpp"
-#include "strata/tiling/triangle_outlines.hpp"
+#include "realmodel/base/errors.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanArrangement;
+
+namespace {
+
+/// Finds what of a surface lies beneath some positions.
+class SheetLinks {
+public:
+    SheetLinks(PlanArrangement& geometry, const WholeTriangleFilter& filter,
+               const BlockTiling& tiling, const CoveredFacets& covered, const Envelope& parts,
+               const Execution& execution)
+        : geometry_(geometry),
+          filter_(filter),
+          tiling_(tiling),
+          covered_(covered),
+          parts_(parts),
+          execution_(execution),
+          scope_(geometry),
+          clipper_(scope_) {}
+
+    /// A covered facet, whose link is to be found.
+    void add(std::int32_t node) {
+        const auto i = static_cast<std::size_t>(node - covered_.first_node);
+        const auto point = [&](const Corner& corner) -> const exact::Point& {
+            return geometry_.point(corner.point);
+        };
+        const auto middle =
+            i < covered_.wholes.size()
+                ? middle_of(geometry_, covered_.wholes[i])
+                : middle_of(parts_.outlines[covered_.parts[i - covered_.wholes.size()]], point);
+        searched_.push_back({tiles().tile_at(middle), middle, node, kNothing});
+    }
+
+    /// Calls link(node, triangle) with what lies beneath each facet.
+    template <class Link>
+    void find(const Link& link) {
+        if (searched_.empty()) return;
+        sort_by_tile();
+        // The middle of a convex outline is inside it, so a triangle that it is in for certain
+        // shares an area with the outline. The exact test is for the few middles near an edge.
+        const auto near = found_in_each<std::pair<std::uint32_t, std::int32_t>>(
+            tiling_.whole.size(), execution_, [&](std::size_t t, auto& found) {
+                if (filter_.surface[t] == HeightRelation::kBelow) look(t, found);
+            });
+        for (const auto& [s, t] : near) {
+            if (searched_[s].beneath == kNothing && lies_over(searched_[s].node, t))
+                searched_[s].beneath = t;
+        }
+        const auto triangles = static_cast<std::int32_t>(tiling_.whole.size());
+        for (Searched& s : searched_) {
+            // where rounding put a middle into a tile that nothing beneath it meets
+            for (std::int32_t t = 0; t < triangles && s.beneath == kNothing; ++t) {
+                if (filter_.surface[static_cast<std::size_t>(t)] == HeightRelation::kBelow &&
+                    lies_over(s.node, t))
+                    s.beneath = t;
+            }
+            if (s.beneath == kNothing) refuse(s);
+            link(s.node, s.beneath);
+        }
+    }
+
+private:
+    static constexpr std::int32_t kNothing = -1;
+    struct Searched {
+        std::size_t tile;
+        std::array<double, 2> middle;
+        std::int32_t node;
+        std::int32_t beneath;  ///< a triangle of the surface that lies there
+    };
+
+    const PlanTiles& tiles() const { return filter_.tiles(); }
+
+    [[noreturn]] void refuse(const Searched& s) const {
+        const auto i = static_cast<std::size_t>(s.node - covered_.first_node);
+        const PlaneId plane = i < covered_.wholes.size()
+                                  ? covered_.wholes[i]
+                                  : parts_.plane[covered_.parts[i - covered_.wholes.size()]];
+        throw InternalError(
+            "a triangle of the surface lies beneath each facet that it is sorted below",
+            std::array{s.middle[0], s.middle[1], heights_of(geometry_, plane).low});
+    }
+    /// Most tiles have none, and that is asked of bytes.
+    void sort_by_tile() {
+        first_.assign(tiles().size() + 1, 0);
+        is_searched_.assign(tiles().size(), 0);
+        for (const Searched& s : searched_) {
+            ++first_[s.tile + 1];
+            is_searched_[s.tile] = 1;
+        }
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        std::stable_sort(searched_.begin(), searched_.end(),
+                         [](const Searched& a, const Searched& b) { return a.tile < b.tile; });
+    }
+
+    /// Looks which middles lie in a triangle; those near its border go to `near`.
+    void look(std::size_t t, std::vector<std::pair<std::uint32_t, std::int32_t>>& near) {
+        const auto number = static_cast<std::int32_t>(t);
+        const PlanTriangle& triangle = geometry_.plane(tiling_.whole[t]).plan;
+        tiles().for_each(filter_.surface_at[t].span, [&](std::size_t tile) {
+            if (is_searched_[tile] == 0) return;
+            for (auto s = first_[tile]; s < first_[tile + 1]; ++s) {
+                const int side = side_of_border(geometry_, triangle, searched_[s].middle);
+                if (side == 0) near.emplace_back(s, number);
+                // a position is well inside one triangle at the most
+                if (side > 0) searched_[s].beneath = number;
+            }
+        });
+    }
+
+    bool lies_over(std::int32_t node, std::int32_t triangle) {
+        const auto outline_of = [&](PlaneId plane) {
+            return triangle_outline(geometry_, geometry_.plane(plane).plan);
+        };
+        const auto below = outline_of(tiling_.whole[static_cast<std::size_t>(triangle)]);
+        const auto i = static_cast<std::size_t>(node - covered_.first_node);
+        if (i < covered_.wholes.size())
+            return clipper_.overlap(outline_of(covered_.wholes[i]), below);
+        return clipper_.overlap(parts_.outlines[covered_.parts[i - covered_.wholes.size()]], below);
+    }
+
+    PlanArrangement& geometry_;
+    const WholeTriangleFilter& filter_;
+    const BlockTiling& tiling_;
+    const CoveredFacets& covered_;
+    const Envelope& parts_;
+    Execution execution_;
+    LocalArrangement scope_;
+    Clipper clipper_;
+    std::vector<Searched> searched_;
+    std::vector<std::uint32_t> first_;  ///< of each tile
+    std::vector<std::uint8_t> is_searched_;
+};
+
+/// Joins covered triangles that are neighbors over one block.
+void join_neighbors(const TriangleLinks& links, const CoveredFacets& covered,
+                    const WholeTriangles& wholes, const Construction& construction,
+                    DisjointSets& sets, const Execution& execution) {
+    const auto count = static_cast<std::int32_t>(covered.wholes.size());
+    const auto block = [&](std::int32_t node) {
+        return construction.node_block[static_cast<std::size_t>(node)];
+    };
+    parallel_each(covered.wholes.size(), execution, [&](std::size_t i) {
+        const PlaneId plane = covered.wholes[i];
+        const std::int32_t node = covered.first_node + static_cast<std::int32_t>(i);
+        for (const PlaneId other : links.of(plane)) {
+            if (other <= plane) continue;
+            const std::int32_t below = wholes.of(other).below;
+            const std::int32_t j = below - covered.first_node;
+            if (j >= 0 && j < count && block(below) == block(node))
+                sets.join(static_cast<std::int32_t>(i), j);
+        }
+    });
+}
+
+/// Links covered facets with the surface beneath them, which they were never overlaid with.
+/// Neighboring triangles of facets are connected, and so are the triangles beneath them: one link
+/// for each connected part of them is enough.
+/// @param filter  which compared `tiling` with the facets
+/// @param node_above  of each triangle of the tiling that is below
+void link_sheets(PlanArrangement& geometry, const TriangleLinks& links,
+                 const WholeTriangleFilter& filter, const BlockTiling& tiling,
+                 const std::vector<std::int32_t>& node_above, const CoveredFacets& covered,
+                 const Envelope& parts, const WholeTriangles& wholes, Construction& construction,
+                 const Execution& execution) {
+    const std::size_t count = covered.wholes.size();
+    DisjointSets sets(count);
+    join_neighbors(links, covered, wholes, construction, sets, execution);
+    SheetLinks sheets(geometry, filter, tiling, covered, parts, execution);
+    for (std::size_t i = 0; i < count + covered.parts.size(); ++i) {
+        const auto k = static_cast<std::int32_t>(i);
+        if (i >= count || sets.find(k) == k) sheets.add(covered.first_node + k);
+    }
+    sheets.find([&](std::int32_t node, std::int32_t triangle) {
+        construction.links.emplace_back(node, node_above[static_cast<std::size_t>(triangle)]);
+    });
+}
+
+}  // namespace
 
 BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& links,
                              const BorderEdges& borders, double largest_height,
@@ -70,7 +251,7 @@ void BlockEnvelope::start(const BlockTiling& tiling, std::int32_t number) {
     std::swap(whole_block_, next_whole_block_);
     for (std::size_t p = 0; p < tiling.part_plane.size(); ++p) {
         const PlaneId plane = tiling.part_plane[p];
-        wholes_.is_in_parts[index(plane)] = 1;
+        wholes_.part_state[index(plane)] = PartState::kInParts;
         parts_.add_facet(tiling.parts[p], plane, number, number);
         parts_.add_face(tiling.parts[p], kOutsideCell);
     }
@@ -105,7 +286,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
             const WholeFace& face = wholes_.of(whole_[f]);
             wholes_.is_exact[index(whole_[f])] = 1;
             // until it turns out to be kept or sealed as it is
-            wholes_.is_in_parts[index(whole_[f])] = kMayStayWhole;
+            wholes_.part_state[index(whole_[f])] = PartState::kMayStayWhole;
             envelope.add_facet(outlines[i], whole_[f], face.surface, whole_block_[f]);
             envelope.add_face(outlines[i], face.above);
             continue;
@@ -122,8 +303,8 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
                                        construction_, execution_);
     sort_overlaid(overlaid.kept, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
-        std::uint8_t& in_parts = wholes_.is_in_parts[index(whole_[exact[i]])];
-        in_parts = in_parts == kMayStayWhole ? 1 : 0;
+        PartState& state = wholes_.part_state[index(whole_[exact[i]])];
+        state = state == PartState::kMayStayWhole ? PartState::kInParts : PartState::kWhole;
     }
     return overlaid;
 }
@@ -139,9 +320,9 @@ bool BlockEnvelope::is_triangle(PolygonView polygon, PlaneId plane) const {
 void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) {
     const auto stays_whole = [&](PolygonView polygon, PlaneId plane) {
         if (!plane.has_value()) return false;
-        std::uint8_t& in_parts = wholes_.is_in_parts[index(plane)];
-        if (in_parts != kMayStayWhole || !is_triangle(polygon, plane)) return false;
-        in_parts = kStaysWhole;
+        PartState& state = wholes_.part_state[index(plane)];
+        if (state != PartState::kMayStayWhole || !is_triangle(polygon, plane)) return false;
+        state = PartState::kStaysWhole;
         return true;
     };
     const FaceList& faces = construction_.faces;
@@ -164,30 +345,31 @@ void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) 
 }
 
 /// Facets that bounds sorted.
-SealedFacets BlockEnvelope::sort_facets(std::int32_t number) {
-    SealedFacets sealed;
-    sealed.first_node = static_cast<std::int32_t>(construction_.node_block.size());
+CoveredFacets BlockEnvelope::sort_facets(std::int32_t number) {
+    CoveredFacets covered;
+    covered.first_node = static_cast<std::int32_t>(construction_.node_block.size());
     for (std::size_t f = 0; f < whole_.size(); ++f) {
-        const Standing standing = filter_.facet[f];
-        if (standing == Standing::kAbove) {
+        const HeightRelation relation = filter_.facet[f];
+        if (relation == HeightRelation::kAbove) {
             wholes_.of(whole_[f]).below = construction_.add_node(whole_block_[f], true);
-            sealed.wholes.push_back(whole_[f]);
-        } else if (standing != Standing::kExact) {
+            covered.wholes.push_back(whole_[f]);
+        } else if (relation != HeightRelation::kExact) {
             next_whole_.push_back(whole_[f]);
-            next_whole_block_.push_back(standing == Standing::kBelow ? number : whole_block_[f]);
+            next_whole_block_.push_back(relation == HeightRelation::kBelow ? number
+                                                                           : whole_block_[f]);
         }
     }
     for (std::size_t f = 0; f < parts_.size(); ++f) {
-        const Standing standing = filter_.facet[whole_.size() + f];
-        if (standing == Standing::kAbove) {
+        const HeightRelation relation = filter_.facet[whole_.size() + f];
+        if (relation == HeightRelation::kAbove) {
             construction_.seal(parts_, f, construction_.add_node(parts_.block_beneath[f], true));
-            sealed.parts.push_back(f);
-        } else if (standing != Standing::kExact) {
+            covered.parts.push_back(f);
+        } else if (relation != HeightRelation::kExact) {
             next_parts_.add_facet_of(
-                parts_, f, standing == Standing::kBelow ? number : parts_.block_beneath[f]);
+                parts_, f, relation == HeightRelation::kBelow ? number : parts_.block_beneath[f]);
         }
     }
-    return sealed;
+    return covered;
 }
 
 /// Of each triangle in the exact part, whether it stays whole: it touches the facets nowhere, has
@@ -232,9 +414,9 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
     node_above_.assign(triangles, kOutsideCell);
     std::vector<std::uint8_t>& use = overlaid.is_divided;
     for (std::size_t t = 0; t < tiling.size(); ++t) {
-        const Standing standing = filter_.surface[t];
+        const HeightRelation relation = filter_.surface[t];
         const PlaneId plane = tiling.plane(t);
-        if (standing == Standing::kBelow) {
+        if (relation == HeightRelation::kBelow) {
             if (filter_.block[t] != kSkyBlock)
                 node_above_[t] = construction_.add_node(filter_.block[t], true);
             enter(plane, number, node_above_[t], filter_.surface_at[t].span);
@@ -242,16 +424,16 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
         if (filter_.polygon[t] < 0) continue;
         const auto p = static_cast<std::size_t>(filter_.polygon[t]);
         const auto own = pieces[p];
-        if (standing != Standing::kExact || own.empty()) {
+        if (relation != HeightRelation::kExact || own.empty()) {
             use[p] = kElsewhere;
-            if (standing == Standing::kAbove) continue;
+            if (relation == HeightRelation::kAbove) continue;
             for (const std::uint32_t piece : own)
                 link(node_above_[t], node_of(piece));
             continue;
         }
         wholes_.is_exact[index(plane)] = 1;
         if (is_whole[p] == 0) {
-            wholes_.is_in_parts[index(plane)] = 1;
+            wholes_.part_state[index(plane)] = PartState::kInParts;
             continue;
         }
         use[p] = kElsewhere;
@@ -275,9 +457,9 @@ void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
     next_parts_ = {};
     const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
     Overlaid overlaid = overlay_exactly(facets, part, number);
-    const SealedFacets sealed = sort_facets(number);
+    const CoveredFacets covered = sort_facets(number);
     add_surface(tiling, part, number, overlaid);
-    link_sheets(geometry_, links_, filter_, tiling, node_above_, sealed, parts_, wholes_,
+    link_sheets(geometry_, links_, filter_, tiling, node_above_, covered, parts_, wholes_,
                 construction_, execution_);
     for (std::size_t tile = 0; tile < cover_.size(); ++tile) {
         if (cover_[tile] == Cover::kSkyOnly && filter_.is_empty[tile] == 0)

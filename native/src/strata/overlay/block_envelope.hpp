@@ -5,10 +5,17 @@
 #include <vector>
 
 #include "strata/overlay/facet_overlay.hpp"
-#include "strata/overlay/sheet_links.hpp"
 #include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
+
+/// Facets that bounds sorted above a surface: the nodes beneath the triangles come first, one after
+/// another, then those beneath the parts.
+struct CoveredFacets {
+    std::int32_t first_node = 0;
+    std::vector<PlaneId> wholes;
+    std::vector<std::size_t> parts;  ///< of the envelope's
+};
 
 /// The envelope of one rock mass while blocks are built: triangles that the filter sorts wholly
 /// above or below what they meet are neither cut nor named anywhere; only the others are overlaid.
@@ -30,9 +37,6 @@ public:
     void finish(std::optional<PlaneId> base);
 
 private:
-    // Instead of 0 or 1 in WholeTriangles::is_in_parts, while a surface is added.
-    static constexpr std::uint8_t kMayStayWhole = 2, kStaysWhole = 3;
-
     FacetView view() const {
         return {whole_,
                 whole_block_,
@@ -48,7 +52,7 @@ private:
     Overlaid overlay_exactly(const FacetView& facets, const SurfaceTiling& part,
                              std::int32_t number);
     void sort_overlaid(const Envelope& kept, std::size_t first_face);
-    SealedFacets sort_facets(std::int32_t number);
+    CoveredFacets sort_facets(std::int32_t number);
     std::vector<std::uint8_t> find_whole(const SurfaceTiling& part, const PiecesOfPolygons& pieces,
                                          const Overlaid& overlaid, std::size_t triangles) const;
     void add_surface(const BlockTiling& tiling, const SurfaceTiling& part, std::int32_t number,

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "base/keep_single.hpp"
-#include "exact/orient2d.hpp"
+#include "base/algorithms.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::strata {
 
@@ -44,7 +44,7 @@ bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
 /// @param side_of_segment  side_of_segment(i): on which side of the segment corner i lies
 /// @param side_of_edge     side_of_edge(i, end): on which side of the edge from there the end lies
 template <class SideOfSegment, class SideOfEdge>
-bool BorderEdges::reaches_inside(const Segment& segment, std::size_t corners,
+bool BorderEdges::reaches_inside(const BorderSegment& segment, std::size_t corners,
                                  const SideOfSegment& side_of_segment,
                                  const SideOfEdge& side_of_edge) {
     bool any_left = false, any_right = false;
@@ -61,7 +61,7 @@ bool BorderEdges::reaches_inside(const Segment& segment, std::size_t corners,
 }
 
 bool BorderEdges::divide(LocalArrangement& scope, PolygonView polygon, const TileSpan& span) const {
-    return any_in(span, [&](const Segment& segment) {
+    return any_in(span, [&](const BorderSegment& segment) {
         const exact::DirectedLine line(segment.line);
         return reaches_inside(
             segment, polygon.size(),
@@ -77,7 +77,7 @@ bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& tr
     };
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
     const PlanBox box = spatial::box_around(corners);
-    return any_in(span, [&](const Segment& segment) {
+    return any_in(span, [&](const BorderSegment& segment) {
         const PlanBox& own = segment.box;
         if (own.high_x <= box.low_x || own.low_x >= box.high_x || own.high_y <= box.low_y ||
             own.low_y >= box.high_y)
@@ -95,7 +95,7 @@ bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& tr
 
 bool BorderEdges::run_between(LocalArrangement& scope, PointId a, PointId b,
                               const TileSpan& span) const {
-    return any_in(span, [&](const Segment& segment) {
+    return any_in(span, [&](const BorderSegment& segment) {
         const exact::DirectedLine line(segment.line);
         if (scope.side(line, a) != 0 || scope.side(line, b) != 0) return false;
         const int axis = scope.compare(0, segment.from, segment.to) != 0 ? 0 : 1;

@@ -42,7 +42,7 @@ public:
     bool run_between(LocalArrangement& scope, PointId a, PointId b, const TileSpan& span) const;
 
 private:
-    struct Segment {
+    struct BorderSegment {
         exact::VertexId from, to;
         LineId line;
         PlanBox box;
@@ -50,12 +50,12 @@ private:
     template <class Holds>
     bool any_in(const TileSpan& span, const Holds& holds) const;
     template <class SideOfSegment, class SideOfEdge>
-    static bool reaches_inside(const Segment& segment, std::size_t corners,
+    static bool reaches_inside(const BorderSegment& segment, std::size_t corners,
                                const SideOfSegment& side_of_segment,
                                const SideOfEdge& side_of_edge);
 
     PlanTiles tiles_;
-    std::vector<Segment> segments_;
+    std::vector<BorderSegment> segments_;
     Buckets<std::uint32_t> in_tiles_;  ///< segments
 };
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "base/parallel_counts.hpp"
-#include "strata/overlay/shared_polygons.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

@@ -7,9 +7,8 @@
 
 #include "base/parallel_counts.hpp"
 #include "strata/overlay/chunk_joining.hpp"
-#include "strata/overlay/ordered_commit.hpp"
 #include "strata/overlay/pieces.hpp"
-#include "strata/overlay/shared_polygons.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 
@@ -43,16 +42,17 @@ public:
         const PlaneId plane = envelope_.plane[facet];
         if (plane == kOutside) {
             for (const std::int32_t polygon : finder_.overlapping(outline))
-                mark(overlaid_.is_divided[index(polygon)]);
+                atomic_set(overlaid_.is_divided[index(polygon)]);
             result_.kept.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
             return;
         }
         const Pieces& pieces = finder_.find_for_split(outline, plane);
         std::size_t below = 0, not_below = 0;
         for (const Piece& piece : pieces.list) {
-            below += piece.side == Side::kBelow;
-            not_below += piece.side == Side::kNotBelow;
-            if (piece.side == Side::kNotBelow) mark(overlaid_.is_divided[index(piece.polygon)]);
+            below += piece.side == PieceSide::kBelow;
+            not_below += piece.side == PieceSide::kNotBelow;
+            if (piece.side == PieceSide::kNotBelow)
+                atomic_set(overlaid_.is_divided[index(piece.polygon)]);
         }
         const bool is_complete = blocks_ == nullptr || blocks_->is_complete[facet] != 0;
         const bool all_below = below == pieces.list.size();
@@ -81,7 +81,7 @@ private:
         spatial::Box box =
             box_of(*result_.scope, envelope_.outlines[facet], envelope_.plane[facet]);
         for (const Piece& piece : pieces.list) {
-            if (piece.side != Side::kBelow) continue;
+            if (piece.side != PieceSide::kBelow) continue;
             const HeightRange heights = tiling_.heights[static_cast<std::size_t>(piece.polygon)];
             box.low[2] = std::min(box.low[2], heights.low);
         }
@@ -108,7 +108,7 @@ private:
         group_.clear();
         std::int32_t nodes = 0;
         for (const Piece& piece : pieces.list)
-            group_.push_back(piece.side == Side::kBelow ? nodes++ : -1);
+            group_.push_back(piece.side == PieceSide::kBelow ? nodes++ : -1);
         return nodes;
     }
 
@@ -118,12 +118,12 @@ private:
         if (blocks_ == nullptr) return;
         const auto touches = pieces.touches.begin();
         if (std::find(touches + piece.first, touches + piece.last, 1) != touches + piece.last)
-            mark(overlaid_.is_touched[index(piece.polygon)]);
+            atomic_set(overlaid_.is_touched[index(piece.polygon)]);
     }
 
     void split_sky(std::size_t facet, const Pieces& pieces) {
         for (const Piece& piece : pieces.list) {
-            if (piece.side == Side::kBelow) {
+            if (piece.side == PieceSide::kBelow) {
                 add_below(pieces, piece, kOutsideCell);
             } else {
                 result_.kept.add_facet(pieces.outline(piece), kSky, envelope_.surface[facet],
@@ -169,14 +169,14 @@ private:
         for (std::size_t i = 0; i < pieces.list.size(); ++i) {
             const Piece& piece = pieces.list[i];
             const PolygonView outline = pieces.outline(piece);
-            const bool below = piece.side == Side::kBelow;
+            const bool below = piece.side == PieceSide::kBelow;
             const std::int32_t node = wanted ? first_node + group_[i] : kLeftOut;
             if (below) {
                 add_below(pieces, piece, node);
             } else {
                 result_.kept.add_facet(
                     outline, envelope_.plane[facet], envelope_.surface[facet],
-                    piece.side == Side::kNotBelow ? number_ : envelope_.block_beneath[facet]);
+                    piece.side == PieceSide::kNotBelow ? number_ : envelope_.block_beneath[facet]);
             }
             const bool only_one = end - begin == 1;  // then it is the facet
             if (!only_one) clipper_.begin(outline);

@@ -5,8 +5,7 @@
 
 #include "strata/overlay/border_edges.hpp"
 #include "strata/overlay/envelope.hpp"
-#include "strata/overlay/surface_facets.hpp"
-#include "strata/tiling/wanted_space.hpp"
+#include "strata/tiling/plan_grid.hpp"
 
 namespace realmodel::strata {
 

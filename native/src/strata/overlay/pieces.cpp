@@ -5,8 +5,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
+#include "base/disjoint_sets.hpp"
 #include "base/vectors.hpp"
 
 namespace realmodel::strata {
@@ -95,7 +95,7 @@ std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
 
 /// Begins with a facet; true where that was all: where it was walked around, or one polygon of the
 /// tiling is all that it meets.
-bool PieceFinder::begin(const Facet& facet, bool for_split) {
+bool PieceFinder::begin(const EnvelopeFacet& facet, bool for_split) {
     pieces_.clear();
     if (is_expected(facet.outline) || !walk_.begin(facet.outline)) {
         if (find_candidates(facet.outline)) {
@@ -112,13 +112,13 @@ bool PieceFinder::begin(const Facet& facet, bool for_split) {
     return true;
 }
 
-void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
+void PieceFinder::add_all(std::span<const std::int32_t> polygons, const EnvelopeFacet& facet) {
     for (const std::int32_t polygon : polygons)
         add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
 }
 
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
-    const Facet facet = facet_of(outline, plane);
+    const EnvelopeFacet facet = facet_of(outline, plane);
     if (!begin(facet, false)) add_all({candidates_.begin(), candidates_.end()}, facet);
     assert(!plane.has_value() || tile(scope_, pieces_, outline));
     return pieces_;
@@ -126,7 +126,7 @@ const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
 
 const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     if (!plane.has_value()) return find(outline, plane);
-    const Facet facet = facet_of(outline, plane);
+    const EnvelopeFacet facet = facet_of(outline, plane);
     if (begin(facet, true)) return pieces_;
     // for as long as all is higher, it is only looked which polygons meet the facet
     higher_.clear();
@@ -138,7 +138,7 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     }
     if (c == candidates_.end()) {
         for (const std::int32_t polygon : higher_)
-            add(polygon, Side::kNotBelow, {});
+            add(polygon, PieceSide::kNotBelow, {});
         return pieces_;
     }
     add_all({higher_.begin(), higher_.end()}, facet);
@@ -147,14 +147,14 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     return pieces_;
 }
 
-void PieceFinder::add_walked(const Facet& facet, bool for_split) {
+void PieceFinder::add_walked(const EnvelopeFacet& facet, bool for_split) {
     std::size_t higher = 0;
     while (for_split && higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
         ++higher;
     const bool is_all = higher == walk_.size();
     for (std::size_t i = 0; i < walk_.size(); ++i) {
         if (is_all) {
-            add(walk_.polygon(i), Side::kNotBelow, {});
+            add(walk_.polygon(i), PieceSide::kNotBelow, {});
         } else {
             add_common(walk_.polygon(i), walk_.common(i), facet);
         }
@@ -163,7 +163,7 @@ void PieceFinder::add_walked(const Facet& facet, bool for_split) {
 
 /// Whether a polygon of the tiling is nowhere below the facet where they meet, as far as heights
 /// and floating point tell.
-bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
+bool PieceFinder::is_higher(std::int32_t polygon, const EnvelopeFacet& facet) const {
     const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
     if (!surface.has_value()) return false;
     const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
@@ -176,20 +176,20 @@ bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
 }
 
 /// Adds what a facet has in common with a polygon, which may be nothing.
-void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Facet& facet) {
+void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const EnvelopeFacet& facet) {
     if (common.empty()) return;
     const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
     if (!surface.has_value()) {
-        add(polygon, Side::kAbsent, common);
+        add(polygon, PieceSide::kAbsent, common);
     } else if (!facet.plane.has_value()) {
-        add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
+        add(polygon, facet.plane == kSky ? PieceSide::kBelow : PieceSide::kNotBelow, common);
     } else {
         // both are parts of triangles, so most are sorted by the heights of the corners
         const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
         if (heights.high < facet.heights.low) {
-            add(polygon, Side::kBelow, common);
+            add(polygon, PieceSide::kBelow, common);
         } else if (heights.low >= facet.heights.high) {
-            add(polygon, Side::kNotBelow, common);
+            add(polygon, PieceSide::kNotBelow, common);
             return;
         } else {
             classify(polygon, facet.plane, common);
@@ -199,14 +199,14 @@ void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Fac
 }
 
 /// Notes whether there is room between the facet and a piece beneath it.
-void PieceFinder::note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+void PieceFinder::note_room(PlaneId surface, const EnvelopeFacet& facet, const HeightRange& heights,
                             PolygonView common) {
     const HeightRange& above = facet.heights;
     const double margin =
         scope_.shared().clear_height(std::max({std::abs(heights.low), std::abs(heights.high),
                                                std::abs(above.low), std::abs(above.high)}));
     if (!pieces_.is_clear || heights.high + margin < above.low) return;
-    if (pieces_.list.back().side != Side::kBelow) {
+    if (pieces_.list.back().side != PieceSide::kBelow) {
         pieces_.is_clear = false;
         return;
     }
@@ -230,7 +230,7 @@ void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonVie
         }
     }
     if (!lower || !higher) {
-        add(polygon, lower ? Side::kBelow : Side::kNotBelow, common);
+        add(polygon, lower ? PieceSide::kBelow : PieceSide::kNotBelow, common);
         if (lower) {
             std::transform(signs_.begin(), signs_.end(),
                            pieces_.touches.end() - static_cast<std::ptrdiff_t>(signs_.size()),
@@ -240,11 +240,11 @@ void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonVie
     }
     const DirectedLine above = scope_.trace(surface, facet_plane);
     add_touching(polygon, clipper_.cut(common, above.reversed()), surface, facet_plane);
-    add(polygon, Side::kNotBelow, clipper_.cut(common, above));
+    add(polygon, PieceSide::kNotBelow, clipper_.cut(common, above));
 }
 
 /// Adds a piece that touches the facet nowhere.
-void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline) {
+void PieceFinder::add(std::int32_t polygon, PieceSide side, PolygonView outline) {
     const auto first = static_cast<std::int64_t>(pieces_.corners.size());
     pieces_.corners.resize(pieces_.corners.size() + outline.size());
     copy_corners(outline, pieces_.corners.begin() + first);
@@ -256,7 +256,7 @@ void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline) {
 /// Adds a piece below the facet that is as high as it at some of its corners.
 void PieceFinder::add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower,
                                PlaneId upper) {
-    add(polygon, Side::kBelow, outline);
+    add(polygon, PieceSide::kBelow, outline);
     for (auto c = static_cast<std::size_t>(pieces_.list.back().first); c < pieces_.corners.size();
          ++c) {
         pieces_.touches[c] =
@@ -264,20 +264,11 @@ void PieceFinder::add_touching(std::int32_t polygon, PolygonView outline, PlaneI
     }
 }
 
-std::int32_t PieceGrouping::root(std::int32_t piece) {
-    while (parent_[static_cast<std::size_t>(piece)] != piece) {
-        auto& up = parent_[static_cast<std::size_t>(piece)];
-        up = parent_[static_cast<std::size_t>(up)];
-        piece = up;
-    }
-    return piece;
-}
-
 // Whether the cell goes through the edge that two pieces share: it is thick there and the surface
 // has no step.
-bool PieceGrouping::joined(const Pieces& pieces, const Edge& a, const Edge& b) {
+bool PieceGrouping::joined(const Pieces& pieces, const PieceEdge& a, const PieceEdge& b) {
     if (!a.below || !b.below || a.thin || b.thin) return false;
-    const auto plane = [&](const Edge& e) {
+    const auto plane = [&](const PieceEdge& e) {
         const Piece& piece = pieces.list[static_cast<std::size_t>(e.piece)];
         return tiling_.plane[static_cast<std::size_t>(piece.polygon)];
     };
@@ -285,7 +276,7 @@ bool PieceGrouping::joined(const Pieces& pieces, const Edge& a, const Edge& b) {
            scope_.compare_heights(plane(a), plane(b), a.to) == 0;
 }
 
-bool PieceGrouping::on_border(PolygonView facet, const Edge& edge) {
+bool PieceGrouping::on_border(PolygonView facet, const PieceEdge& edge) {
     return std::any_of(facet.begin(), facet.end(), [&](const Corner& side) {
         return scope_.side(side.line, edge.from) == 0 && scope_.side(side.line, edge.to) == 0;
     });
@@ -299,11 +290,11 @@ void PieceGrouping::collect_edges(const Pieces& pieces) {
             const auto here = static_cast<std::size_t>(c);
             const auto there = static_cast<std::size_t>(c + 1 < piece.last ? c + 1 : piece.first);
             edges_.push_back({pieces.corners[here].point, pieces.corners[there].point,
-                              static_cast<std::int32_t>(i), piece.side == Side::kBelow,
+                              static_cast<std::int32_t>(i), piece.side == PieceSide::kBelow,
                               pieces.touches[here] != 0 && pieces.touches[there] != 0});
         }
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
+    std::sort(edges_.begin(), edges_.end(), [](const PieceEdge& a, const PieceEdge& b) {
         return std::pair(a.key(), a.piece) < std::pair(b.key(), b.piece);
     });
 }
@@ -312,17 +303,14 @@ std::int32_t PieceGrouping::group(PolygonView facet, const Pieces& pieces,
                                   std::vector<std::int32_t>& group) {
     const auto count = static_cast<std::int32_t>(pieces.list.size());
     group.assign(static_cast<std::size_t>(count), -1);
-    parent_.resize(static_cast<std::size_t>(count));
-    std::iota(parent_.begin(), parent_.end(), 0);
+    DisjointSets cell_pieces(pieces.list.size());
     collect_edges(pieces);
     is_joined_.assign(edges_.size(), 0);
     for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
-        const Edge &a = edges_[i], &b = edges_[i + 1];
+        const PieceEdge &a = edges_[i], &b = edges_[i + 1];
         if (a.key() != b.key() || !joined(pieces, a, b)) continue;
         is_joined_[i] = is_joined_[i + 1] = 1;
-        const std::int32_t low = std::min(root(a.piece), root(b.piece));
-        const std::int32_t high = std::max(root(a.piece), root(b.piece));
-        parent_[static_cast<std::size_t>(high)] = low;
+        cell_pieces.join(a.piece, b.piece);
     }
     // The border of a cell in plan must pass each point once, or the cell would touch itself in a
     // vertical edge; two of its pieces must not meet in an edge that does not join them; and where
@@ -330,16 +318,17 @@ std::int32_t PieceGrouping::group(PolygonView facet, const Pieces& pieces,
     bool alone = false;
     border_.clear();
     for (std::size_t i = 0; i < edges_.size() && !alone; ++i) {
-        const Edge& edge = edges_[i];
+        const PieceEdge& edge = edges_[i];
         if (!edge.below || is_joined_[i] != 0) continue;
-        border_.emplace_back(root(edge.piece), edge.from);
+        border_.emplace_back(cell_pieces.find(edge.piece), edge.from);
         const bool before = i > 0 && edges_[i - 1].key() == edge.key();
         const bool after = i + 1 < edges_.size() && edges_[i + 1].key() == edge.key();
         if (!before && !after) {
             alone = !on_border(facet, edge);
         } else {
-            const Edge& partner = edges_[before ? i - 1 : i + 1];
-            alone = partner.below && root(partner.piece) == root(edge.piece);
+            const PieceEdge& partner = edges_[before ? i - 1 : i + 1];
+            alone =
+                partner.below && cell_pieces.find(partner.piece) == cell_pieces.find(edge.piece);
         }
     }
     std::sort(border_.begin(), border_.end());
@@ -347,8 +336,8 @@ std::int32_t PieceGrouping::group(PolygonView facet, const Pieces& pieces,
 
     std::int32_t cells = 0;
     for (std::int32_t i = 0; i < count; ++i) {
-        if (pieces.list[static_cast<std::size_t>(i)].side != Side::kBelow) continue;
-        auto& of_root = group[static_cast<std::size_t>(alone ? i : root(i))];
+        if (pieces.list[static_cast<std::size_t>(i)].side != PieceSide::kBelow) continue;
+        auto& of_root = group[static_cast<std::size_t>(alone ? i : cell_pieces.find(i))];
         if (of_root < 0) of_root = cells++;
         group[static_cast<std::size_t>(i)] = of_root;
     }

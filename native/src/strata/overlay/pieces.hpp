@@ -13,7 +13,7 @@
 namespace realmodel::strata {
 
 /// Where the surface lies against a facet of the envelope.
-enum class Side : std::int8_t {
+enum class PieceSide : std::int8_t {
     kBelow,     ///< below it somewhere and above it nowhere
     kNotBelow,  ///< on or above it: eroded away here
     kAbsent     ///< there is no surface
@@ -22,7 +22,7 @@ enum class Side : std::int8_t {
 /// The common part of a facet and one polygon of the tiling.
 struct Piece {
     std::int32_t polygon;  ///< of the tiling
-    Side side;
+    PieceSide side;
     std::int64_t first;  ///< corners within Pieces::corners
     std::int64_t last;
 };
@@ -66,28 +66,28 @@ public:
 
 private:
     /// A facet of the envelope.
-    struct Facet {
+    struct EnvelopeFacet {
         PolygonView outline;
         PlaneId plane;
         HeightRange heights;
     };
-    Facet facet_of(PolygonView outline, PlaneId plane) const {
+    EnvelopeFacet facet_of(PolygonView outline, PlaneId plane) const {
         return {outline, plane,
                 !plane.has_value() ? HeightRange{} : heights_of(scope_.shared(), plane)};
     }
     PolygonView outline_of(std::int32_t polygon) const {
         return tiling_.polygons[static_cast<std::size_t>(polygon)];
     }
-    bool is_higher(std::int32_t polygon, const Facet& facet) const;
-    void note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+    bool is_higher(std::int32_t polygon, const EnvelopeFacet& facet) const;
+    void note_room(PlaneId surface, const EnvelopeFacet& facet, const HeightRange& heights,
                    PolygonView common);
     bool is_expected(PolygonView outline) const;
     bool find_candidates(PolygonView outline);
-    bool begin(const Facet& facet, bool for_split);
-    void add_walked(const Facet& facet, bool for_split);
-    void add_all(std::span<const std::int32_t> polygons, const Facet& facet);
-    void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
-    void add(std::int32_t polygon, Side side, PolygonView outline);
+    bool begin(const EnvelopeFacet& facet, bool for_split);
+    void add_walked(const EnvelopeFacet& facet, bool for_split);
+    void add_all(std::span<const std::int32_t> polygons, const EnvelopeFacet& facet);
+    void add_common(std::int32_t polygon, PolygonView common, const EnvelopeFacet& facet);
+    void add(std::int32_t polygon, PieceSide side, PolygonView outline);
     void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
     void classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common);
 
@@ -115,7 +115,7 @@ public:
     std::int32_t group(PolygonView facet, const Pieces& pieces, std::vector<std::int32_t>& group);
 
 private:
-    struct Edge {
+    struct PieceEdge {
         PointId from, to;
         std::int32_t piece;
         bool below;  ///< the piece is
@@ -123,15 +123,13 @@ private:
 
         std::pair<PointId, PointId> key() const { return {std::min(from, to), std::max(from, to)}; }
     };
-    std::int32_t root(std::int32_t piece);
-    bool joined(const Pieces& pieces, const Edge& a, const Edge& b);
-    bool on_border(PolygonView facet, const Edge& edge);
+    bool joined(const Pieces& pieces, const PieceEdge& a, const PieceEdge& b);
+    bool on_border(PolygonView facet, const PieceEdge& edge);
     void collect_edges(const Pieces& pieces);
 
     LocalArrangement& scope_;
     const SurfaceTiling& tiling_;
-    std::vector<Edge> edges_;
-    std::vector<std::int32_t> parent_;
+    std::vector<PieceEdge> edges_;
     std::vector<std::uint8_t> is_joined_;  ///< for each edge
     std::vector<std::pair<std::int32_t, PointId>> border_;
 };

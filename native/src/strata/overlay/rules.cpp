@@ -7,6 +7,7 @@
 
 #include "base/parallel_counts.hpp"
 #include "strata/overlay/pieces.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
@@ -91,14 +92,14 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
             const bool all_below =
                 plane.has_value() &&
                 std::all_of(pieces.list.begin(), pieces.list.end(),
-                            [](const Piece& p) { return p.side == Side::kBelow; });
+                            [](const Piece& p) { return p.side == PieceSide::kBelow; });
             if (all_below) out.add(bound.polygons[f], plane);
             for (const Piece& piece : pieces.list) {
                 const auto polygon = static_cast<std::size_t>(piece.polygon);
-                if (piece.side == Side::kBelow) {
-                    mark(is_covered[polygon]);
+                if (piece.side == PieceSide::kBelow) {
+                    atomic_set(is_covered[polygon]);
                     if (!all_below) out.add(pieces.outline(piece), plane);
-                } else if (piece.side == Side::kNotBelow) {
+                } else if (piece.side == PieceSide::kNotBelow) {
                     out.add(pieces.outline(piece), surface.plane[polygon], piece.polygon);
                 }
             }
@@ -117,7 +118,7 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
 
 SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
                              const SurfaceTiling& surface, const Execution& execution) {
-    const auto is_absent = [](const Piece& piece) { return piece.side == Side::kAbsent; };
+    const auto is_absent = [](const Piece& piece) { return piece.side == PieceSide::kAbsent; };
     const auto look = [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
         // as a void, so that heights are not asked for
         const Pieces& pieces = finder.find(older.polygons[f], kVoid);
@@ -145,7 +146,7 @@ SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, 
             const Pieces& pieces = finder.find(one.polygons[f], plane);
             for (const Piece& piece : pieces.list) {
                 const PlaneId below = other.plane[static_cast<std::size_t>(piece.polygon)];
-                out.add(pieces.outline(piece), piece.side == Side::kNotBelow ? plane : below);
+                out.add(pieces.outline(piece), piece.side == PieceSide::kNotBelow ? plane : below);
             }
         }));
 }
@@ -161,7 +162,7 @@ SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
             }
             // beneath a void nothing is below: what there is lies where `one` is not
             const Pieces& pieces = finder.find(one.polygons[f], plane);
-            const Side changed = plane.has_value() ? Side::kBelow : Side::kNotBelow;
+            const PieceSide changed = plane.has_value() ? PieceSide::kBelow : PieceSide::kNotBelow;
             if (std::none_of(pieces.list.begin(), pieces.list.end(),
                              [&](const Piece& p) { return p.side == changed; })) {
                 out.add(one.polygons[f], plane);
@@ -208,6 +209,91 @@ SurfaceTiling TilingRaising::stays(SurfaceTiling lowest) const {
     std::ranges::replace(lowest.plane, kSky, kVoid);
     lowest.index(geometry_, execution_);
     return lowest;
+}
+
+namespace {
+
+/// Adds the facets of a bound that the filter found to be in one relation.
+void add_facets_that_are(const BlockTiling& bound, const std::vector<HeightRelation>& relation,
+                         HeightRelation wanted, BlockTiling& to) {
+    for (std::size_t f = 0; f < bound.size(); ++f) {
+        if (relation[f] != wanted) continue;
+        if (bound.is_whole(f)) {
+            to.whole.push_back(bound.whole[f]);
+        } else {
+            to.add_part(bound.parts[f - bound.whole.size()], bound.plane(f));
+        }
+    }
+}
+
+}  // namespace
+
+/// The exact facets of a bound, in outlines of their own.
+SurfaceTiling BlockRaising::exact_facets(const BlockTiling& bound) {
+    SurfaceTiling exact;
+    const std::vector<std::size_t> numbers = filter_.exact_facets();
+    for (const std::size_t f : numbers)
+        exact.plane.push_back(bound.plane(f));
+    const auto wholes = static_cast<std::size_t>(
+        std::lower_bound(numbers.begin(), numbers.end(), bound.whole.size()) - numbers.begin());
+    add_outlines(
+        geometry_, wholes, [&](std::size_t i) { return geometry_.plane(exact.plane[i]).plan; },
+        exact.polygons, execution_.progress);
+    for (std::size_t i = wholes; i < numbers.size(); ++i)
+        exact.polygons.add(bound.parts[numbers[i] - bound.whole.size()]);
+    return exact;
+}
+
+BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bound) {
+    const FacetView facets = view(bound);
+    filter_.compare(facets);
+    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
+    BlockTiling raised;
+    raised.is_raised = true;
+    raised.empty = surface.empty;
+    std::vector<std::uint8_t> given(part.plane.size(), 0);
+    for (std::size_t t = 0; t < surface.whole.size(); ++t) {
+        if (filter_.surface[t] == HeightRelation::kAbove) raised.whole.push_back(surface.whole[t]);
+        if (filter_.surface[t] != HeightRelation::kExact && filter_.polygon[t] >= 0)
+            given[static_cast<std::size_t>(filter_.polygon[t])] = 1;
+    }
+    add_facets_that_are(bound.tiling, filter_.facet, HeightRelation::kAbove, raised);
+    const SurfaceTiling exact =
+        raise_tiling(geometry_, part, exact_facets(bound.tiling), given, execution_);
+    for (std::size_t p = 0; p < exact.plane.size(); ++p) {
+        if (exact.plane[p].has_value()) raised.add_part(exact.polygons[p], exact.plane[p]);
+    }
+    return raised;
+}
+
+BlockBound BlockRaising::first(const BlockTiling& e) {
+    BlockBound bound{e, std::vector<Cover>(filter_.tiles().size(), Cover::kFacets)};
+    for (const PlanTriangle& t : e.empty)
+        bound.tiling.add_part(triangle_outline(geometry_, t), kVoid);
+    bound.tiling.empty.clear();
+    filter_.cover(view(bound));
+    for (std::size_t tile = 0; tile < bound.cover.size(); ++tile) {
+        if (filter_.is_empty[tile] != 0) bound.cover[tile] = Cover::kNothing;
+    }
+    return bound;
+}
+
+BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer,
+                               const BlockTiling& /* the one begun with */) {
+    const FacetView facets = view(older);
+    filter_.cover(facets);
+    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets, true);
+    BlockBound covered{newer, older.cover};
+    covered.tiling.empty.clear();
+    add_facets_that_are(older.tiling, filter_.facet, HeightRelation::kUncovered, covered.tiling);
+    const SurfaceTiling rest =
+        uncovered_part(geometry_, exact_facets(older.tiling), part, execution_);
+    for (std::size_t p = 0; p < rest.plane.size(); ++p)
+        covered.tiling.add_part(rest.polygons[p], rest.plane[p]);
+    for (std::size_t tile = 0; tile < covered.cover.size(); ++tile) {
+        if (filter_.is_empty[tile] == 0) covered.cover[tile] = Cover::kFacets;
+    }
+    return covered;
 }
 
 }  // namespace realmodel::strata

@@ -14,7 +14,7 @@ std::uint32_t after(std::uint32_t corner) {
 }  // namespace
 
 /// The same edge seen from the neighbor; none where there is no neighbor.
-TilingWalk::HalfEdge TilingWalk::beyond(HalfEdge edge) const {
+TilingWalk::TilingEdge TilingWalk::beyond(TilingEdge edge) const {
     const std::int32_t next = tiling_.neighbor[index(edge.triangle)][edge.corner];
     if (next < 0) return {};
     const PointId to = triangle(edge.triangle)[after(edge.corner)].point;
@@ -23,7 +23,7 @@ TilingWalk::HalfEdge TilingWalk::beyond(HalfEdge edge) const {
 }
 
 /// On which side of a triangle's edge a point lies: 1 that of the triangle.
-inline int TilingWalk::side(HalfEdge edge, PointId id) {
+inline int TilingWalk::side(TilingEdge edge, PointId id) {
     const exact::PlanArrangement& shared = scope_.shared();
     const PolygonView at = triangle(edge.triangle);
     const Corner &from = at[edge.corner], &to = at[after(edge.corner)];
@@ -38,7 +38,7 @@ inline int TilingWalk::side(HalfEdge edge, PointId id) {
 /// Walks along an edge from triangle t, which has its first point; false where something coincides
 /// or a neighbor is missing.
 bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
-    const std::int32_t goal = known_place(edge.to);
+    const std::int32_t goal = known_triangle(edge.to);
     if (t == goal) return true;
     const exact::LineRowFilter line = line_row_filter(scope_, edge);
     const auto side_of_corner = [&](std::uint32_t corner) {
@@ -57,7 +57,7 @@ bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
             if (s == 0) return false;
             if (s > 0) break;
         }
-        const HalfEdge entered = beyond({t, out});
+        const TilingEdge entered = beyond({t, out});
         if (entered.triangle < 0) return false;
         crossings_.push_back({{t, out}, entered, kNone});
         t = entered.triangle;
@@ -66,13 +66,13 @@ bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
         if (opposite == 0) return false;
         out = opposite > 0 ? right : after(right);
     }
-    place(edge.to) = {edge.to, t};
+    location(edge.to) = {edge.to, t};
     return true;
 }
 
 /// What an edge crosses; triangle t has its first point.
-TilingWalk::Way TilingWalk::way_along(const exact::DirectedEdge& edge, std::int32_t t) {
-    Way& way = ways_[index(edge.line.id()) % kKnown];
+TilingWalk::FacetEdge TilingWalk::way_along(const exact::DirectedEdge& edge, std::int32_t t) {
+    FacetEdge& way = ways_[index(edge.line.id()) % kKnown];
     if (way.line == edge.line.id()) {
         if (way.from == edge.from && way.to == edge.to) return way;
         if (way.from == edge.to && way.to == edge.from) return way.reversed();
@@ -92,11 +92,11 @@ TilingWalk::Way TilingWalk::way_along(const exact::DirectedEdge& edge, std::int3
 bool TilingWalk::locate(PolygonView facet, std::span<const std::int32_t> polygons) {
     if (tiling_.neighbor.empty()) return false;
     ways_.resize(kKnown);
-    places_.resize(kKnown);
-    const auto is_known = [this](const Corner& c) { return known_place(c.point) != kUnknown; };
+    locations_.resize(kKnown);
+    const auto is_known = [this](const Corner& c) { return known_triangle(c.point) != kUnknown; };
     if (std::ranges::any_of(facet, is_known)) return false;
     const PointId point = facet[0].point;
-    Place& of_point = place(point) = {point, kNowhere};
+    PointLocation& of_point = location(point) = {point, kNowhere};
     for (const std::int32_t t : polygons) {
         if (std::ranges::max(tiling_.neighbor[index(t)]) < 0) continue;
         int least = 1;
@@ -109,12 +109,12 @@ bool TilingWalk::locate(PolygonView facet, std::span<const std::int32_t> polygon
 }
 
 bool TilingWalk::begin(PolygonView facet) {
-    if (places_.empty()) return false;
+    if (locations_.empty()) return false;
     facet_ = facet;
     std::size_t begin = 0;
     std::int32_t t = kUnknown;
     for (std::size_t i = facet.size(); i-- > 0;) {
-        const std::int32_t known = known_place(facet[i].point);
+        const std::int32_t known = known_triangle(facet[i].point);
         if (known == kNowhere) return false;
         if (known == kUnknown) continue;
         begin = i;
@@ -135,8 +135,8 @@ bool TilingWalk::begin(PolygonView facet) {
 }
 
 /// The n-th crossing of a way, seen in its direction.
-TilingWalk::Crossing TilingWalk::seen_from(const Way& way, std::size_t n) const {
-    Crossing crossing = crossings_[way.crossing(n)];
+TilingWalk::EdgeCrossing TilingWalk::seen_from(const FacetEdge& way, std::size_t n) const {
+    EdgeCrossing crossing = crossings_[way.crossing(n)];
     if (way.is_reversed) std::swap(crossing.left, crossing.entered);
     return crossing;
 }
@@ -144,12 +144,12 @@ TilingWalk::Crossing TilingWalk::seen_from(const Way& way, std::size_t n) const 
 /// Divides the border of the facet where it crosses edges, from corner 0 to corner 0.
 void TilingWalk::find_stretches() {
     stretches_.clear();
-    HalfEdge in{start_, 0};
+    TilingEdge in{start_, 0};
     std::uint32_t crossing_in = 0, first_corner = 0;
     for (std::uint32_t i = 0; i < border_.size(); ++i) {
         for (std::size_t n = 0; n < border_[i].size(); ++n) {
             const std::uint32_t number = border_[i].crossing(n);
-            const Crossing crossing = seen_from(border_[i], n);
+            const EdgeCrossing crossing = seen_from(border_[i], n);
             stretches_.push_back({in, crossing.left, crossing_in, number, first_corner, i + 1});
             in = crossing.entered;
             crossing_in = number;
@@ -176,7 +176,7 @@ bool TilingWalk::find_met() {
     }
     const std::span<const Met> on_border(met_.data(), met_.size());
     inside_.clear();
-    const auto look_beyond = [&](HalfEdge edge) {
+    const auto look_beyond = [&](TilingEdge edge) {
         const std::int32_t next = beyond(edge).triangle;
         if (next >= 0 && (std::ranges::binary_search(on_border, next, {}, &Met::polygon) ||
                           std::ranges::find(inside_, next) != inside_.end()))
@@ -186,7 +186,7 @@ bool TilingWalk::find_met() {
     };
     for (const Met& met : on_border) {
         for (std::size_t o = met.first; o < met.end; ++o) {
-            const HalfEdge out = stretch(o).out;
+            const TilingEdge out = stretch(o).out;
             if (out.triangle < 0) continue;
             const std::uint32_t in = next_stretch(met, o).in.corner;
             if (out.corner == in) continue;
@@ -207,7 +207,7 @@ bool TilingWalk::find_met() {
 }
 
 PointId TilingWalk::point_of(std::size_t crossing, std::size_t edge) {
-    Crossing& at = crossings_[crossing];
+    EdgeCrossing& at = crossings_[crossing];
     if (at.point == kNone) {
         const LineId line = triangle(at.left.triangle)[at.left.corner].line.id();
         at.point = scope_.crossing_between_ends(facet_[edge].line.id(), line);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,17 +39,17 @@ private:
     static constexpr std::size_t kMostInside = 64;
 
     /// An edge of a triangle by its first corner.
-    struct HalfEdge {
+    struct TilingEdge {
         std::int32_t triangle = kUnknown;
         std::uint32_t corner = 0;
     };
     /// Where an edge of a facet crosses an edge of the tiling: seen from both triangles.
-    struct Crossing {
-        HalfEdge left, entered;
+    struct EdgeCrossing {
+        TilingEdge left, entered;
         PointId point;  ///< kNone until it is asked for
     };
     /// An edge of a facet: its crossings, which are side by side.
-    struct Way {
+    struct FacetEdge {
         LineId line = kNone;
         PointId from = kNone, to = kNone;
         std::uint32_t first = 0, end = 0;
@@ -61,20 +60,20 @@ private:
         std::uint32_t crossing(std::size_t n) const {
             return static_cast<std::uint32_t>(is_reversed ? end - 1 - n : first + n);
         }
-        Way reversed() const {
-            Way other = *this;
+        FacetEdge reversed() const {
+            FacetEdge other = *this;
             other.is_reversed = true;
             return other;
         }
     };
-    struct Place {
+    struct PointLocation {
         PointId point = kNone;
         std::int32_t triangle = kUnknown;
     };
     /// A part of the facet's border in one triangle: where it comes in, corners, where it goes out.
     /// The border begins and ends at corner 0.
     struct Stretch {
-        HalfEdge in, out;
+        TilingEdge in, out;
         std::uint32_t crossing_in = 0, crossing_out = 0;
         std::uint32_t first_corner = 0, end_corner = 0;
     };
@@ -85,15 +84,15 @@ private:
     };
 
     PolygonView triangle(std::int32_t t) const { return tiling_.polygons[index(t)]; }
-    Place& place(PointId point) { return places_[index(point) % kKnown]; }
-    std::int32_t known_place(PointId point) {
-        return place(point).point == point ? place(point).triangle : kUnknown;
+    PointLocation& location(PointId point) { return locations_[index(point) % kKnown]; }
+    std::int32_t known_triangle(PointId point) {
+        return location(point).point == point ? location(point).triangle : kUnknown;
     }
-    HalfEdge beyond(HalfEdge edge) const;
-    int side(HalfEdge edge, PointId point);
+    TilingEdge beyond(TilingEdge edge) const;
+    int side(TilingEdge edge, PointId point);
     bool walk(const exact::DirectedEdge& edge, std::int32_t t);
-    Way way_along(const exact::DirectedEdge& edge, std::int32_t t);
-    Crossing seen_from(const Way& way, std::size_t n) const;
+    FacetEdge way_along(const exact::DirectedEdge& edge, std::int32_t t);
+    EdgeCrossing seen_from(const FacetEdge& way, std::size_t n) const;
     void find_stretches();
     bool find_met();
     const Stretch& stretch(std::size_t o) const {
@@ -107,10 +106,10 @@ private:
     LocalArrangement& scope_;
     const SurfaceTiling& tiling_;
     PolygonView facet_;
-    std::vector<Way> ways_;  ///< none until a place is known
-    std::vector<Place> places_;
-    Array<Crossing> crossings_;
-    Array<Way> border_;  ///< the facet's edges
+    std::vector<FacetEdge> ways_;  ///< none until a location is known
+    std::vector<PointLocation> locations_;
+    Array<EdgeCrossing> crossings_;
+    Array<FacetEdge> border_;  ///< the facet's edges
     Array<Stretch> stretches_;
     Array<std::uint64_t> order_;  ///< triangles with their stretches
     Array<Met> met_;

@@ -1,14 +1,121 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/overlay/whole_triangles.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "base/parallel_counts.hpp"
-#include "strata/tiling/triangle_outlines.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanArrangement;
+using exact::VertexId;
+
+namespace {
+
+/// What triangles are to each other all over one, from the difference of two planes at its corners.
+Comparison compare_at(const PlanArrangement& geometry, const exact::LineFilter& difference,
+                      const PlanTriangle& triangle, double margin) {
+    bool below = true, above = true;
+    for (const VertexId v : triangle) {
+        const exact::Point& p = geometry.point(v);
+        const double dx = p.x - difference.x0, dy = p.y - difference.y0;
+        const double value = difference.a * dx + difference.b * dy + difference.c;
+        const double room = difference.error_at(dx, dy, 0) + margin;
+        below &= value + room < 0;
+        above &= value - room > 0;
+    }
+    if (below) return Comparison::kBelow;
+    return above ? Comparison::kAbove : Comparison::kUnclear;
+}
+
+/// Whether an edge of one triangle has all of the other beyond it, for certain: they share no
+/// position in plan, not even a corner.
+bool is_beyond(const PlanArrangement& geometry, const PlanTriangle& triangle,
+               const PlanTriangle& other) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const exact::LineFilter edge =
+            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
+        if (std::all_of(other.begin(), other.end(), [&](VertexId v) {
+                const exact::Point& p = geometry.point(v);
+                const double dx = p.x - edge.x0, dy = p.y - edge.y0;
+                return edge.a * dx + edge.b * dy < -edge.error_at(dx, dy, 0);
+            }))
+            return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool are_apart(const PlanArrangement& geometry, PlaneId a, PlaneId b) {
+    const PlanTriangle &p = geometry.plane(a).plan, &q = geometry.plane(b).plan;
+    return is_beyond(geometry, p, q) || is_beyond(geometry, q, p);
+}
+
+Comparison compare_over(const PlanArrangement& geometry, PlaneId lower, PlaneId upper,
+                        const PlanBox& a, const PlanBox& b, double margin) {
+    const exact::LineFilter d = geometry.trace_filter(lower, upper);  // lower less upper
+    // Beside its origin, for the middle of large coordinates is rounded by more than these differ.
+    const double low_x = std::max(a.low_x, b.low_x) - d.x0;
+    const double high_x = std::min(a.high_x, b.high_x) - d.x0;
+    const double low_y = std::max(a.low_y, b.low_y) - d.y0;
+    const double high_y = std::min(a.high_y, b.high_y) - d.y0;
+    const double x = 0.5 * (low_x + high_x), y = 0.5 * (low_y + high_y);
+    // boxes of parts are those of rounded corners
+    const exact::PlanReach& reach = geometry.reach();
+    const double half_x = 0.5 * (high_x - low_x) + reach.point_error;
+    const double half_y = 0.5 * (high_y - low_y) + reach.point_error;
+    const double middle = d.a * x + d.b * y + d.c;
+    const double reach_x = std::abs(x) + half_x, reach_y = std::abs(y) + half_y;
+    const double error =
+        d.error_a * reach_x + d.error_b * reach_y + d.error_c +
+        0x1p-48 * (std::abs(d.a) * reach_x + std::abs(d.b) * reach_y + std::abs(d.c));
+    const double room = std::abs(d.a) * half_x + std::abs(d.b) * half_y + error + margin;
+    if (middle + room < 0) return Comparison::kBelow;
+    if (middle - room > 0) return Comparison::kAbove;
+    const Comparison over_lower = compare_at(geometry, d, geometry.plane(lower).plan, margin);
+    if (over_lower != Comparison::kUnclear) return over_lower;
+    const Comparison over_upper = compare_at(geometry, d, geometry.plane(upper).plan, margin);
+    if (over_upper != Comparison::kUnclear) return over_upper;
+    return are_apart(geometry, lower, upper) ? Comparison::kApart : Comparison::kUnclear;
+}
+
+int side_of_border(const PlanArrangement& geometry, const PlanTriangle& triangle,
+                   const std::array<double, 2>& position) {
+    constexpr double kRounding = 0x1p-44;  // of coordinates, far more than a middle has
+    const double error = kRounding * (std::abs(position[0]) + std::abs(position[1])) + 1e-290;
+    int side = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const exact::LineFilter edge =
+            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
+        const double u = edge.a * (position[0] - edge.x0), v = edge.b * (position[1] - edge.y0);
+        const double least =
+            (std::abs(edge.a) + std::abs(edge.b)) * error + 0x1p-46 * (std::abs(u) + std::abs(v));
+        if (u + v < -least) return -1;
+        if (!(u + v > least)) side = 0;
+    }
+    return side;
+}
+
+TriangleBounds bounds_of(const PlanArrangement& geometry, PlaneId plane) {
+    TriangleBounds b{spatial::kNoBox, HUGE_VAL, -HUGE_VAL};
+    for (const exact::SpaceId s : geometry.plane(plane).corner) {
+        const auto& vertex = geometry.space(s);
+        const auto& p = geometry.point(vertex.plan);
+        b.box = b.box.united({p.x, p.y, p.x, p.y});
+        b.low = std::min(b.low, vertex.z);
+        b.high = std::max(b.high, vertex.z);
+    }
+    return b;
+}
+
+std::array<double, 2> middle_of(const PlanArrangement& geometry, PlaneId plane) {
+    return middle_of(geometry.plane(plane).plan,
+                     [&](VertexId v) -> const exact::Point& { return geometry.point(v); });
+}
 
 namespace {
 
@@ -92,7 +199,7 @@ void WholeTriangleFilter::measure_facets(const FacetView& facets) {
 
 /// Marks tiles, from any thread.
 void WholeTriangleFilter::mark_tiles(const TileSpan& span, std::vector<std::uint8_t>& marks) const {
-    tiles().for_each(span, [&](std::size_t tile) { mark(marks[tile]); });
+    tiles().for_each(span, [&](std::size_t tile) { atomic_set(marks[tile]); });
 }
 
 void WholeTriangleFilter::compare(const FacetView& facets) {
@@ -111,12 +218,12 @@ void WholeTriangleFilter::compare(const FacetView& facets) {
 }
 
 void WholeTriangleFilter::classify_surface(const FacetView& facets) {
-    surface.assign(tiling_->size(), Standing::kExact);
+    surface.assign(tiling_->size(), HeightRelation::kExact);
     block.assign(tiling_->size(), kSeveral);
     const auto classify = [&](std::size_t t) {
         const auto& [b, span] = surface_at[t];
         if (!is_same_.empty() && is_same_[index(tiling_->whole[t])] == 3) {
-            surface[t] = Standing::kAbove;
+            surface[t] = HeightRelation::kAbove;
             return;
         }
         if (borders_.near(span)) {
@@ -143,9 +250,9 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
         if (mixed || over == kNoBlock) return;
         block[t] = over;
         if (b.high + margin_ < low) {
-            surface[t] = Standing::kBelow;
+            surface[t] = HeightRelation::kBelow;
         } else if (b.low > high + margin_) {
-            surface[t] = Standing::kAbove;
+            surface[t] = HeightRelation::kAbove;
         }
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
@@ -166,7 +273,7 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
     is_unclear_.assign(tiles().size(), 0);
     parallel_each(tiling_->size(), execution_, [&](std::size_t t) {
         if (is_to_compare(t)) compare_triangle(facets, bins, t);
-        if (surface[t] == Standing::kExact) mark_tiles(surface_at[t].span, is_unclear_);
+        if (surface[t] == HeightRelation::kExact) mark_tiles(surface_at[t].span, is_unclear_);
     });
 }
 
@@ -201,11 +308,11 @@ void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatia
     });
     if (over == kSeveral || !covered || below == above) return;
     block[t] = over;
-    surface[t] = below ? Standing::kBelow : Standing::kAbove;
+    surface[t] = below ? HeightRelation::kBelow : HeightRelation::kAbove;
 }
 
 void WholeTriangleFilter::classify_facets(const FacetView& facets) {
-    facet.assign(facets.size(), Standing::kExact);
+    facet.assign(facets.size(), HeightRelation::kExact);
     const auto by_tiles = [&](const TileBounds& at) {
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_surface = false, near_unclear = false;
@@ -220,27 +327,27 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
             }
             return any_empty && any_surface;
         });
-        if (mixed) return Standing::kExact;
-        if (any_empty) return near_unclear ? Standing::kExact : Standing::kUncovered;
-        if (near_unclear) return Standing::kToCompare;
-        if (high + margin_ < at.bounds.low) return Standing::kAbove;
-        return at.bounds.high + margin_ < low ? Standing::kBelow : Standing::kToCompare;
+        if (mixed) return HeightRelation::kExact;
+        if (any_empty) return near_unclear ? HeightRelation::kExact : HeightRelation::kUncovered;
+        if (near_unclear) return HeightRelation::kToCompare;
+        if (high + margin_ < at.bounds.low) return HeightRelation::kAbove;
+        return at.bounds.high + margin_ < low ? HeightRelation::kBelow : HeightRelation::kToCompare;
     };
     const auto classify = [&](std::size_t f) {
         const PlaneId plane = facets.plane(f);
-        if (!plane.has_value()) return Standing::kExact;
+        if (!plane.has_value()) return HeightRelation::kExact;
         if (facets.is_whole(f) && !is_same_.empty() && is_same_[index(plane)] == 3)
-            return Standing::kBelow;
+            return HeightRelation::kBelow;
         const TileSpan& span = facet_at[f].span;
         if (!borders_.near(span)) return by_tiles(facet_at[f]);
         const bool is_exact =
             !facets.is_whole(f) || borders_.divide(geometry_, geometry_.plane(plane).plan, span);
-        return is_exact ? Standing::kExact : Standing::kToCompare;
+        return is_exact ? HeightRelation::kExact : HeightRelation::kToCompare;
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
     parallel_each(facets.size(), execution_, [&](std::size_t f) {
         facet[f] = classify(f);
-        if (facet[f] == Standing::kToCompare) mark_tiles(facet_at[f].span, is_wanted);
+        if (facet[f] == HeightRelation::kToCompare) mark_tiles(facet_at[f].span, is_wanted);
     });
     compare_facets(facets, is_wanted);
 }
@@ -253,13 +360,13 @@ void WholeTriangleFilter::compare_facets(const FacetView& facets,
         tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
         execution_);
     parallel_each(facets.size(), execution_, [&](std::size_t f) {
-        if (facet[f] == Standing::kToCompare)
+        if (facet[f] == HeightRelation::kToCompare)
             facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
     });
 }
 
-Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
-                                            const spatial::TileBins& bins) const {
+HeightRelation WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
+                                                  const spatial::TileBins& bins) const {
     const PlanBox& box = at.bounds.box;
     // No border divides a facet beside one: there is a surface under all of it if there is under
     // its middle.
@@ -271,7 +378,7 @@ Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
         const PlaneId triangle = tiling_->plane(t);
         const PlanBox& other = surface_at[t].bounds.box;
         if (!box.meets(other)) return true;
-        if (surface[t] == Standing::kExact) return are_apart(geometry_, triangle, plane);
+        if (surface[t] == HeightRelation::kExact) return are_apart(geometry_, triangle, plane);
         const Comparison found = compare_over(geometry_, triangle, plane, other, box, margin_);
         if (found == Comparison::kApart) return true;
         covers = covers || side_of_border(geometry_, geometry_.plane(triangle).plan, middle) > 0;
@@ -279,14 +386,14 @@ Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
         above &= found == Comparison::kAbove;
         return below || above;
     });
-    if (!clear || below == above || !covers) return Standing::kExact;
-    return below ? Standing::kAbove : Standing::kBelow;
+    if (!clear || below == above || !covers) return HeightRelation::kExact;
+    return below ? HeightRelation::kAbove : HeightRelation::kBelow;
 }
 
 void WholeTriangleFilter::cover(const FacetView& facets) {
     locate(facets, false);
-    surface.assign(tiling_->size(), Standing::kBelow);
-    facet.assign(facets.size(), Standing::kExact);
+    surface.assign(tiling_->size(), HeightRelation::kBelow);
+    facet.assign(facets.size(), HeightRelation::kExact);
     parallel_each(facets.size(), execution_, [&](std::size_t f) {
         const TileSpan& span = facet_at[f].span;
         if (!facets.plane(f).has_value() || borders_.near(span)) return;
@@ -295,7 +402,7 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
             (is_empty[tile] != 0 ? any_empty : any_surface) = true;
         });
         if (any_empty && any_surface) return;
-        facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
+        facet[f] = any_empty ? HeightRelation::kUncovered : HeightRelation::kBelow;
     });
 }
 
@@ -305,7 +412,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
     const std::size_t triangles = tiling.whole.size();
     std::vector<std::uint8_t> is_needed(tiles().size(), 0);
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facet[f] != Standing::kExact) continue;
+        if (facet[f] != HeightRelation::kExact) continue;
         if (facets.plane(f).has_value()) {
             tiles().for_each(facet_at[f].span, [&](std::size_t tile) { is_needed[tile] = 1; });
         } else if (with_void) {  // which fills the frame: only where something else may be, too
@@ -317,7 +424,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
     }
     polygon.assign(tiling.size(), -1);
     parallel_each(triangles, execution_, [&](std::size_t t) {
-        if (surface[t] == Standing::kExact ||
+        if (surface[t] == HeightRelation::kExact ||
             tiles().any(surface_at[t].span, [&](std::size_t tile) { return is_needed[tile] != 0; }))
             polygon[t] = 0;
     });
@@ -353,7 +460,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
 std::vector<std::size_t> WholeTriangleFilter::exact_facets() const {
     std::vector<std::size_t> exact;
     for (std::size_t f = 0; f < facet.size(); ++f) {
-        if (facet[f] == Standing::kExact) exact.push_back(f);
+        if (facet[f] == HeightRelation::kExact) exact.push_back(f);
     }
     return exact;
 }

@@ -2,17 +2,63 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "spatial/tile_bins.hpp"
+#include "spatial/plan_tiles.hpp"
 #include "strata/overlay/border_edges.hpp"
-#include "strata/overlay/triangle_comparison.hpp"
-#include "strata/tiling/block_tiling.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
+
+/// Plan box and heights of a triangle.
+struct TriangleBounds {
+    PlanBox box;
+    double low, high;
+};
+TriangleBounds bounds_of(const exact::PlanArrangement& geometry, PlaneId plane);
+
+/// What a pair of triangles is to each other where they share a position in plan, for certain.
+enum class Comparison { kBelow, kAbove, kApart, kUnclear };
+
+/// Compares triangle `lower` with triangle `upper`, of which at least what lies in two boxes
+/// counts: their difference over the common part of the boxes decides, or over either triangle.
+Comparison compare_over(const exact::PlanArrangement& geometry, PlaneId lower, PlaneId upper,
+                        const PlanBox& lower_box, const PlanBox& upper_box, double margin);
+
+/// Whether two triangles share no position in plan, not even a corner, for certain.
+bool are_apart(const exact::PlanArrangement& geometry, PlaneId a, PlaneId b);
+
+/// The middle of some corners, as rounding leaves it.
+template <class Corners, class PointOf>
+std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of) {
+    std::array<double, 2> middle{0, 0};
+    const double share = 1.0 / static_cast<double>(corners.size());
+    for (const auto& corner : corners) {
+        const exact::Point& p = point_of(corner);
+        middle[0] += p.x * share;
+        middle[1] += p.y * share;
+    }
+    return middle;
+}
+std::array<double, 2> middle_of(const exact::PlanArrangement& geometry, PlaneId plane);
+
+/// On which side of a triangle's border a position lies that rounding may have moved: 1 inside for
+/// certain, -1 outside for certain, 0 near the border.
+int side_of_border(const exact::PlanArrangement& geometry, const PlanTriangle& triangle,
+                   const std::array<double, 2>& position);
+
+/// Plan positions of a triangle's corners.
+inline std::array<std::array<double, 2>, 3> corners_of(const exact::PlanArrangement& geometry,
+                                                       const PlanTriangle& triangle) {
+    std::array<std::array<double, 2>, 3> p;
+    for (std::size_t i = 0; i < 3; ++i)
+        p[i] = {geometry.point(triangle[i]).x, geometry.point(triangle[i]).y};
+    return p;
+}
 
 /// Bounds, and the tiles that the box meets.
 struct TileBounds {
@@ -58,8 +104,8 @@ struct FacetView {
     }
 };
 
-/// What the filter found of a triangle or facet.
-enum class Standing : std::uint8_t {
+/// How high a triangle or facet is against what it shares a position in plan with.
+enum class HeightRelation : std::uint8_t {
     kBelow,      ///< below all that it shares a position in plan with
     kAbove,      ///< above all of it, or the same triangle as a facet
     kUncovered,  ///< of a facet: there is no surface at all
@@ -104,13 +150,13 @@ public:
 
     // Of the triangles and parts of the surface:
     Array<TileBounds> surface_at;
-    std::vector<Standing> surface;
+    std::vector<HeightRelation> surface;
     std::vector<std::int32_t> block;     ///< above, of each that is below
     std::vector<std::int32_t> polygon;   ///< in the exact part, or -1
     std::vector<std::uint8_t> is_empty;  ///< of each tile without a border: no surface there
     // Of the facets:
     Array<TileBounds> facet_at;
-    std::vector<Standing> facet;
+    std::vector<HeightRelation> facet;
 
 private:
     void locate(const FacetView& facets, bool with_heights);
@@ -121,10 +167,10 @@ private:
     void compare_triangle(const FacetView& facets, const spatial::TileBins& bins, std::size_t t);
     void classify_facets(const FacetView& facets);
     void compare_facets(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
-    Standing compare_facet(PlaneId facet, const TileBounds& at,
-                           const spatial::TileBins& bins) const;
+    HeightRelation compare_facet(PlaneId facet, const TileBounds& at,
+                                 const spatial::TileBins& bins) const;
     bool is_to_compare(std::size_t triangle) const {
-        return surface[triangle] == Standing::kExact &&
+        return surface[triangle] == HeightRelation::kExact &&
                (block[triangle] >= 0 || block[triangle] == kBesideBorder);
     }
     void mark_tiles(const TileSpan& span, std::vector<std::uint8_t>& marks) const;
@@ -138,6 +184,43 @@ private:
     std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or parts meet it
     std::vector<std::uint8_t>
         is_same_;  ///< of each plane, for raised surfaces: a facet, a triangle
+};
+
+/// A whole triangle between two nodes.
+struct WholeFace {
+    static constexpr std::int32_t kUnset = -2;
+    std::int32_t above = kUnset, below = kUnset;  ///< nodes, or kOutsideCell
+    std::int32_t surface = -1;                    ///< number of the surface that it is of
+
+    bool is_set() const { return below != kUnset; }
+    bool is_face() const { return is_set() && (above >= 0 || below >= 0); }
+};
+
+/// Whether a triangle is divided into several faces.
+enum class PartState : std::uint8_t {
+    kWhole,
+    kInParts,
+    kMayStayWhole,  ///< while it is overlaid
+    kStaysWhole     ///< as that has shown
+};
+
+/// What the overlays of blocks leave of whole triangles, in all rock masses.
+struct WholeTriangles {
+    std::vector<WholeFace> face;  ///< of each plane
+    /// Of each plane: looked at more closely than by bounds, or beside a border.
+    std::vector<std::uint8_t> is_exact;
+    std::vector<PartState> part_state;   ///< of each plane
+    std::vector<std::uint8_t> is_added;  ///< of each plane: among the conforming faces
+    struct BaseFace {
+        PlaneId plane, base;
+        std::int32_t node;
+    };
+    std::vector<BaseFace> on_base;  ///< beneath whole triangles
+
+    explicit WholeTriangles(std::size_t planes)
+        : face(planes), is_exact(planes), part_state(planes), is_added(planes) {}
+    WholeFace& of(PlaneId plane) { return face[index(plane)]; }
+    const WholeFace& of(PlaneId plane) const { return face[index(plane)]; }
 };
 
 }  // namespace realmodel::strata

@@ -9,15 +9,14 @@
 #include <string>
 #include <utility>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
-#include "exact/orient2d.hpp"
-#include "realmodel/base/elementary.hpp"
-#include "spatial/point_bins.hpp"
-#include "strata/limits.hpp"
+#include "exact/orientation.hpp"
+#include "spatial/plan_tiles.hpp"
+#include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {
 
@@ -136,9 +135,9 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
 }
 
 /// A mesh with the divided triangles' parts.
-class Divided {
+class DividedMesh {
 public:
-    Divided(const Mesh& mesh, const BorderChains& chains, Progress* progress) : mesh_(mesh) {
+    DividedMesh(const Mesh& mesh, const BorderChains& chains, Progress* progress) : mesh_(mesh) {
         vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
         for (std::size_t row = 0; row + mesh.columns <= vertices.size(); row += mesh.columns) {
             vertices[row] = mesh.snapping->x(vertices[row]);
@@ -297,12 +296,10 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
         if (rock.region)
             meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
     }
-    std::vector<PlanEdge> edges;
     std::vector<std::vector<PlanEdge>> borders(meshes.size());
     parallel_chunks(meshes.size(), execution,
                     [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
-    for (const auto& border : borders)
-        edges.insert(edges.end(), border.begin(), border.end());
+    std::vector<PlanEdge> edges = concatenated(borders);
     sort_unique(edges);
     BorderChains chains;
     if (edges.empty()) return chains;
@@ -330,7 +327,7 @@ JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::in
                        std::size_t columns, const PlanSnapping& snapping,
                        const BorderChains& chains, Progress* progress) {
     const Mesh mesh{vertices, triangles, columns, &snapping};
-    Divided parts(mesh, chains, progress);
+    DividedMesh parts(mesh, chains, progress);
     return {std::move(parts.vertices), std::move(parts.triangles)};
 }
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/joins.hpp"
 
-#include <utility>
-
 #include "strata/repair/border_joining.hpp"
+#include "strata/repair/plan_context.hpp"
 #include "strata/repair/plan_snapping.hpp"
-#include "strata/repair/site.hpp"
 #include "strata/steps.hpp"
 
 namespace realmodel::strata {
@@ -26,7 +24,7 @@ struct Joins::Found {
 
 private:
     // All meshes together are single-valued where each is alone: what a mesh covers is found from
-    // its own border (enter_site), and that the frame around this one is another one does not
+    // its own border (load_input), and that the frame around this one is another one does not
     // count, as it only has to lie outside of the border (fill_frame).
     static bool is_single_valued(const TriangleView& mesh, std::size_t columns,
                                  const Execution& execution) {
@@ -37,7 +35,7 @@ private:
             input.region = mesh;
         }
         std::vector<Warning> warnings;
-        return enter_site({&input, 1}, {}, warnings, execution)->is_single_valued;
+        return load_input({&input, 1}, {}, warnings, execution)->is_single_valued;
     }
 };
 

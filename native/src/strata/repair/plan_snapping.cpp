@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
+#include <cstddef>
 #include <set>
+#include <utility>
+#include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
-#include "exact/orient2d.hpp"
-#include "strata/repair/close_values.hpp"
-#include "strata/repair/surface_input.hpp"
+#include "exact/orientation.hpp"
 
 namespace realmodel::strata {
 
@@ -53,7 +56,7 @@ bool is_finite(const Position& p) {
 int orientation(const std::array<SpacePosition, 3>& p) {
     const int in_plan = exact::orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]});
     constexpr int kUpright = 2;
-    return in_plan != 0 || in_one_line(p[0], p[1], p[2]) ? in_plan : kUpright;
+    return in_plan != 0 || exact::in_one_line(p[0], p[1], p[2]) ? in_plan : kUpright;
 }
 
 /// Calls visit(position) for all vertices; what the builder refuses later (numbers that are not
@@ -88,6 +91,147 @@ void for_each_triangle(std::span<const StackInput> rocks, Progress* progress, co
         }
     }
 }
+
+constexpr std::size_t kBins = std::size_t{1} << 16;  // of a pass that counts
+
+void sort_doubles(std::vector<double>& values) {
+    // apart: Boost takes the difference of the bits of the least and of the greatest one
+    const auto middle =
+        std::partition(values.begin(), values.end(), [](double value) { return value < 0; });
+    boost::sort::spreadsort::float_sort(values.begin(), middle);
+    boost::sort::spreadsort::float_sort(middle, values.end());
+}
+
+/// Runs of different values, ascending, each no further from the next one than rounding.
+struct CloseValues {
+    struct Value {
+        double value;
+        std::size_t count;
+    };
+    std::vector<Value> values;
+    std::vector<std::size_t> ends;  ///< of each run, in `values`
+};
+
+/// Finds the runs among more values than there is memory for: whoever has them goes through all of
+/// them until that is done. Where there are many, some of these passes count how many are where;
+/// each of the others takes a slice of them.
+class CloseValueSearch {
+public:
+    /// @param least, most  of all values
+    /// @param count        of all values
+    /// @param reach        how far values of a run may be apart
+    /// @param at_once      values in a slice
+    CloseValueSearch(double least, double most, std::size_t count, double reach,
+                     std::size_t at_once)
+        : reach_(reach), at_once_(at_once), waiting_{{least, most, count}} {
+        begin_pass();
+    }
+
+    bool is_done() const { return is_done_; }
+    /// To be called in each pass for all values, in any order.
+    void see(double value) {
+        if (value < slice_.least || value > slice_.most) return;
+        if (bins_.empty()) {
+            seen_.push_back(value);
+        } else {
+            bins_[bin_of(value)].add(value);
+        }
+    }
+    void end_pass() {
+        if (is_done_) return;
+        if (bins_.empty()) {
+            look_at_seen();
+        } else {
+            divide();
+        }
+        begin_pass();
+    }
+    CloseValues take() { return std::move(found_); }
+
+private:
+    /// All values from one to another.
+    struct Slice {
+        double least, most;
+        std::size_t count = 0;
+
+        void add(double value) {
+            least = count == 0 ? value : std::min(least, value);
+            most = count == 0 ? value : std::max(most, value);
+            ++count;
+        }
+    };
+
+    /// Ascends with the value, and the first and the last bin have some.
+    std::size_t bin_of(double value) const {
+        const double half = std::isinf(slice_.most - slice_.least) ? 0.5 : 1.0;
+        const double low = half * slice_.least;
+        const double share = (half * value - low) / (half * slice_.most - low);
+        return std::min(bins_.size() - 1,
+                        static_cast<std::size_t>(share * static_cast<double>(bins_.size())));
+    }
+    void begin_pass() {
+        while (!waiting_.empty() && waiting_.back().least == waiting_.back().most) {
+            add(waiting_.back().least, waiting_.back().count);
+            waiting_.pop_back();
+        }
+        if (waiting_.empty()) {
+            end_run();
+            slice_ = {HUGE_VAL, -HUGE_VAL};
+            seen_ = {};
+            is_done_ = true;
+            return;
+        }
+        slice_ = waiting_.back();
+        waiting_.pop_back();
+        if (slice_.count > at_once_) {
+            bins_.resize(std::min(kBins, slice_.count));
+        } else {
+            seen_.reserve(slice_.count);
+        }
+    }
+    void divide() {
+        std::vector<Slice> slices;
+        for (const Slice& bin : bins_) {
+            if (bin.count == 0) continue;
+            if (slices.empty() || slices.back().count + bin.count > at_once_) {
+                slices.push_back(bin);
+            } else {
+                slices.back().most = bin.most;
+                slices.back().count += bin.count;
+            }
+        }
+        waiting_.insert(waiting_.end(), slices.rbegin(), slices.rend());
+        bins_ = {};
+    }
+    void look_at_seen() {
+        sort_doubles(seen_);
+        for (const auto equal : groups_of(seen_))
+            add(equal[0], equal.size());
+        seen_.clear();
+    }
+    /// Values come ascending. A run may go on in the next slice.
+    void add(double value, std::size_t count) {
+        if (!run_.empty() && !(value - run_.back().value <= reach_)) end_run();
+        run_.push_back({value, count});
+    }
+    void end_run() {
+        if (run_.size() > 1) {
+            found_.values.insert(found_.values.end(), run_.begin(), run_.end());
+            found_.ends.push_back(found_.values.size());
+        }
+        run_.clear();
+    }
+
+    double reach_;
+    std::size_t at_once_;
+    std::vector<Slice> waiting_;  // the least one last
+    Slice slice_;
+    std::vector<Slice> bins_;   // of equal width; empty where the slice is small enough
+    std::vector<double> seen_;  // else its values
+    std::vector<CloseValues::Value> run_;
+    CloseValues found_;
+    bool is_done_ = false;
+};
 
 /// Each value of a run becomes the most frequent of them (of equally frequent ones the lowest),
 /// unless one of them is to be left alone.

@@ -2,6 +2,7 @@
 #include "strata/tiling/plan_grid.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/index.hpp"
@@ -16,6 +17,8 @@ constexpr std::size_t kBoxes = 4096, kPolygons = 128;
 bool is_narrow(const TileSpan& span) {
     return span.right - span.left <= 1 || span.high - span.low <= 1;
 }
+
+constexpr double kNear = 1e-6;  // of a cell: what is only beside a cell counts as in it
 
 }  // namespace
 
@@ -32,7 +35,10 @@ void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPoo
                         const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
                         std::size_t cells, const Execution& execution) {
     if (chosen.empty()) return;
-    cells_ = PlanTiles(spatial::box_around(boxes, chosen), cells);
+    PlanBox frame = spatial::kNoBox;
+    for (const std::int32_t i : chosen)
+        frame = frame.united(boxes[index(i)]);
+    cells_ = PlanTiles(frame, cells);
     const auto produce = [&](std::size_t chunk, const auto& put) {
         const LocalArrangement scope(geometry);
         for (std::size_t c = chunk * kPolygons, end = std::min(chosen.size(), c + kPolygons);
@@ -40,12 +46,12 @@ void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPoo
             const auto i = index(chosen[c]);
             const TileSpan span = cells_.span(boxes[i]);
             const bool whole = is_inside(boxes[i]) && is_narrow(span);
-            const Item item{chosen[c], whole ? span.left : kScattered,
-                            whole ? span.low : kScattered};
+            const CellPolygon item{chosen[c], whole ? span.left : kScattered,
+                                   whole ? span.low : kScattered};
             for_each_cell(scope, polygons[i], boxes[i], [&](std::size_t cell) { put(cell, item); });
         }
     };
-    items_ = bucketize_in_any_order<Item>(
+    items_ = bucketize_in_any_order<CellPolygon>(
         cells_.size(), (chosen.size() + kPolygons - 1) / kPolygons, produce, execution);
 }
 
@@ -110,7 +116,7 @@ bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, co
     const TileSpan span = cells_.span(box);
     bool is_once = true;
     const auto visit = [&](std::size_t cell, const auto& is_first) {
-        for (const Item& item : items_[cell]) {
+        for (const CellPolygon& item : items_[cell]) {
             if (!is_first(item)) continue;
             if (!boxes[index(item.polygon)].meets(box)) continue;
             is_once &= item.left != kScattered;
@@ -120,7 +126,7 @@ bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, co
     if (is_inside(box) && is_narrow(span)) {
         for (std::int32_t r = span.low; r <= span.high; ++r) {
             for (std::int32_t c = span.left; c <= span.right; ++c) {
-                visit(cells_.tile(c, r), [&](const Item& item) {
+                visit(cells_.tile(c, r), [&](const CellPolygon& item) {
                     return item.left == kScattered || (c == std::max(span.left, item.left) &&
                                                        r == std::max(span.low, item.low));
                 });
@@ -129,7 +135,7 @@ bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, co
         return is_once;
     }
     for_each_cell(scope, polygon, box,
-                  [&](std::size_t cell) { visit(cell, [](const Item&) { return true; }); });
+                  [&](std::size_t cell) { visit(cell, [](const CellPolygon&) { return true; }); });
     return false;
 }
 
@@ -146,9 +152,7 @@ PlanGrid::PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& po
             boxes_[i] = box_of(scope, polygons[i]);
     });
     cells = std::max(cells, polygons.size());
-    // of two polygons for a cell, all but the largest are small
-    const std::vector<std::int32_t> large = small_.fill(boxes_, inner, cells / 2, execution);
-    large_.fill(geometry, polygons, boxes_, large, std::min(cells, 8 * large.size()), execution);
+    inner_.fill(geometry, polygons, boxes_, inner, cells / 4, execution);
     // fans of needles around the border: finer cells keep them apart, but each is in many
     outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), execution);
 }
@@ -157,13 +161,52 @@ void PlanGrid::candidates(const LocalArrangement& scope, PolygonView polygon,
                           Array<std::int32_t>& found) const {
     found.clear();
     const PlanBox box = box_of(scope, polygon);
-    small_.append(box, found);
-    bool is_once = large_.append(scope, polygon, box, boxes_, found);
+    bool is_once = inner_.append(scope, polygon, box, boxes_, found);
     is_once &= outer_.append(scope, polygon, box, boxes_, found);
     std::sort(found.begin(), found.end());
     if (!is_once)
         found.resize(
             static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin()));
+}
+
+WantedBoxes::WantedBoxes(const WantedSpace& space) : space_(space) {
+    const auto [nx, ny, nz] = space.cells;
+    assert(nz <= kMostLayers && space.is_wanted.size() == nx * ny * nz);
+    layers_.resize(nx * ny, 0);
+    for (std::size_t i = 0; i < space.is_wanted.size(); ++i) {
+        if (space.is_wanted[i] != 0) layers_[i / nz] |= std::uint64_t{1} << (i % nz);
+    }
+}
+
+bool WantedBoxes::any_in(const spatial::Box& box) const {
+    const double top = space_.low[2] + space_.step[2] * static_cast<double>(space_.cells[2]);
+    if (box.low[2] < space_.low[2] || box.high[2] > top) return true;
+    const double beside = kNear * space_.step[2];
+    const std::uint64_t layers =
+        layers_up_to(box.high[2] + beside) & ~(layers_up_to(box.low[2] - beside) >> 1);
+    std::array<std::size_t, 2> first{}, last{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double near = kNear * space_.step[axis];
+        first[axis] = cell(axis, box.low[axis] - near);
+        last[axis] = cell(axis, box.high[axis] + near);
+    }
+    for (std::size_t x = first[0]; x <= last[0]; ++x) {
+        for (std::size_t y = first[1]; y <= last[1]; ++y) {
+            if ((layers_[x * space_.cells[1] + y] & layers) != 0) return true;
+        }
+    }
+    return false;
+}
+
+/// The layer of a height and those beneath it.
+std::uint64_t WantedBoxes::layers_up_to(double height) const {
+    return ~std::uint64_t{0} >> (kMostLayers - 1 - cell(2, height));
+}
+
+std::size_t WantedBoxes::cell(std::size_t axis, double coordinate) const {
+    const double at = std::floor((coordinate - space_.low[axis]) / space_.step[axis]);
+    return static_cast<std::size_t>(
+        std::clamp(at, 0.0, static_cast<double>(space_.cells[axis] - 1)));
 }
 
 }  // namespace realmodel::strata

@@ -6,7 +6,9 @@
 
 #include "realmodel/base/array.hpp"
 #include "realmodel/base/execution.hpp"
-#include "spatial/small_boxes.hpp"
+#include "realmodel/strata/stack.hpp"
+#include "spatial/box_tree.hpp"
+#include "spatial/plan_tiles.hpp"
 #include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
@@ -33,7 +35,7 @@ public:
 private:
     /// A polygon in a cell. Of those entered in all cells of a box, the first column and row: two
     /// such polygons meet for the first time in a cell that follows from them.
-    struct Item {
+    struct CellPolygon {
         std::int32_t polygon, left, low;
     };
     static constexpr std::int32_t kScattered = -1;
@@ -45,16 +47,16 @@ private:
                        const Visit& visit) const;
 
     PlanTiles cells_;
-    Buckets<Item> items_;  ///< of each cell
+    Buckets<CellPolygon> items_;  ///< of each cell
 };
 
-/// Finds the polygons of a set that may share an area with another polygon. Most of a surface's are
-/// small; what is larger, and what fills the frame around the surface, has cells of its own.
+/// Finds the polygons of a set that may share an area with another polygon. What fills the frame
+/// around a surface has cells of its own.
 class PlanGrid {
 public:
     PlanGrid() = default;
-    /// is_inner: of each polygon, whether it is the surface's; cells: at
-    /// least so many of either kind.
+    /// is_inner: of each polygon, whether it is the surface's; cells: four times those of the
+    /// surface's polygons, where there are not as many polygons.
     PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
              const std::vector<std::uint8_t>& is_inner, std::size_t cells,
              const Execution& execution);
@@ -65,8 +67,26 @@ public:
 
 private:
     std::vector<PlanBox> boxes_;
-    spatial::SmallBoxes small_;
-    PolygonCells large_, outer_;
+    PolygonCells inner_, outer_;
+};
+
+/// The most layers that a grid may have.
+inline constexpr std::size_t kMostLayers = 64;
+
+/// Answers whether anything is wanted in a box. Above and below the grid it is, beside the grid as
+/// in its nearest cells.
+class WantedBoxes {
+public:
+    explicit WantedBoxes(const WantedSpace& space);
+
+    bool any_in(const spatial::Box& box) const;
+
+private:
+    std::uint64_t layers_up_to(double height) const;
+    std::size_t cell(std::size_t axis, double coordinate) const;
+
+    WantedSpace space_;
+    std::vector<std::uint64_t> layers_;  ///< of each cell in plan, a bit for each layer
 };
 
 }  // namespace realmodel::strata

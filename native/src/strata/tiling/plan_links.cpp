@@ -5,13 +5,12 @@
 #include <limits>
 #include <tuple>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
-#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
-#include "strata/limits.hpp"
 
 namespace realmodel::strata {
 
@@ -46,6 +45,13 @@ struct VertexRange {
 
 }  // namespace
 
+void check_triangle_count(std::size_t triangles) {
+    if (triangles > UINT32_MAX / 3) {
+        throw InputError("too_large",
+                         "a surface has more than 1431 million triangles; use a coarser one");
+    }
+}
+
 PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* progress) {
     const std::size_t count = triangles.size();
     check_triangle_count(count);
@@ -72,21 +78,18 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* prog
     });
     for (std::size_t r = 0; r < passes.size(); ++r) {
         poll(progress, r);
-        Pass *const begin = passes[r].data(), *const end = begin + passes[r].size();
-        std::sort(begin, end);
-        for (Pass* first = begin; first != end;) {
-            Pass* last = first;
+        std::ranges::sort(passes[r]);
+        for (const auto along : groups_of(passes[r], [](Pass pass) { return high_of(pass); })) {
             std::int32_t net = 0;
-            for (; last != end && high_of(*last) == high_of(*first); ++last)
-                net += is_upward(*last) ? 1 : -1;
-            if (last - first == 2 && net == 0) {
-                const std::size_t a = half_edge_of(first[0]), b = half_edge_of(first[1]);
+            for (const Pass pass : along)
+                net += is_upward(pass) ? 1 : -1;
+            if (along.size() == 2 && net == 0) {
+                const std::size_t a = half_edge_of(along[0]), b = half_edge_of(along[1]);
                 links.neighbor[a / 3][a % 3] = static_cast<std::int32_t>(b / 3);
                 links.neighbor[b / 3][b % 3] = static_cast<std::int32_t>(a / 3);
             } else if (net != 0) {
-                links.border.push_back({range.first + r, high_of(*first), net});
+                links.border.push_back({range.first + r, high_of(along[0]), net});
             }
-            first = last;
         }
     }
     return links;
@@ -112,7 +115,7 @@ public:
         }
         std::sort(edges_.begin(), edges_.end(), before);
         edges_.erase(std::unique(edges_.begin(), edges_.end(),
-                                 [](const Edge& a, const Edge& b) {
+                                 [](const CoverageEdge& a, const CoverageEdge& b) {
                                      return a.from == b.from && a.to == b.to;
                                  }),
                      edges_.end());
@@ -122,18 +125,20 @@ public:
 
     /// How much more often the left side of the edge is covered than the right one.
     std::int32_t operator()(std::int32_t from, std::int32_t to) const {
-        return std::lower_bound(edges_.begin(), edges_.end(), Edge{from, to, 0}, before)->net;
+        return std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before)
+            ->net;
     }
 
 private:
-    struct Edge {
+    struct CoverageEdge {
         std::int32_t from, to, net;
     };
-    static bool before(const Edge& a, const Edge& b) {
+    static bool before(const CoverageEdge& a, const CoverageEdge& b) {
         return std::tie(a.from, a.to) < std::tie(b.from, b.to);
     }
     std::int32_t& net(std::int32_t from, std::int32_t to) {
-        return std::lower_bound(edges_.begin(), edges_.end(), Edge{from, to, 0}, before)->net;
+        return std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before)
+            ->net;
     }
 
     void add_along(std::int32_t from, std::int32_t to, std::int32_t value) {
@@ -146,11 +151,13 @@ private:
     }
     /// The far end of the edge that leaves `from` straight towards `to`.
     std::int32_t next_towards(std::int32_t from, std::int32_t to) const {
-        auto edge = std::lower_bound(edges_.begin(), edges_.end(), Edge{from, to, 0}, before);
+        auto edge =
+            std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before);
         if (edge != edges_.end() && edge->from == from && edge->to == to) return to;
         const auto& p = at(from);
         const auto& q = at(to);
-        for (edge = std::lower_bound(edges_.begin(), edges_.end(), Edge{from, -1, 0}, before);
+        for (edge =
+                 std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, -1, 0}, before);
              edge != edges_.end() && edge->from == from; ++edge) {
             const auto& r = at(edge->to);
             const bool ahead = (q[0] > p[0]) == (r[0] > p[0]) && (q[0] < p[0]) == (r[0] < p[0]) &&
@@ -164,7 +171,7 @@ private:
     }
 
     const std::vector<meshing::PlanPoint>& points_;
-    std::vector<Edge> edges_;
+    std::vector<CoverageEdge> edges_;
 };
 
 /// Nothing where segments cross.

@@ -30,7 +30,12 @@ struct PlanLinks {
 
 using PlanTriangle = std::array<exact::VertexId, 3>;
 
+/// Half-edges of a mesh are 32-bit numbers.
+/// @throws InputError kind too_large
+void check_triangle_count(std::size_t triangles);
+
 /// Links triangles.
+/// @throws InputError kind too_large
 PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* progress);
 
 /// Plan vertices around everything: the four corners of a rectangle, counter-clockwise, then others

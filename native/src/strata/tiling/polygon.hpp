@@ -69,6 +69,25 @@ struct PolygonPool {
     }
 };
 
+/// Marks all lines and points of polygons as used.
+inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
+    for (const Corner& corner : pool.corners) {
+        scope.mark_point_used(corner.point);
+        scope.mark_line_used(corner.line.id());
+    }
+}
+
+/// Writes the corners of polygons with their shared lines and points, which are committed.
+inline void share(LocalArrangement& scope, const PolygonPool& pool, Corner* shared) {
+    for (const Corner& corner : pool.corners)
+        *shared++ = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+}
+
+/// Gives polygons the shared lines and points.
+inline void share(LocalArrangement& scope, PolygonPool& pool) {
+    share(scope, pool, pool.corners.begin());
+}
+
 /// The part of a convex polygon to the left of a line; empty where it has no area.
 /// `sides` is scratch; `result` must not be `polygon`.
 void clip(LocalArrangement& scope, PolygonView polygon, DirectedLine line, std::vector<int>& sides,

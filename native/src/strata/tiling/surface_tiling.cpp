@@ -2,15 +2,15 @@
 #include "strata/tiling/surface_tiling.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
+#include "base/algorithms.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/tiling/triangle_outlines.hpp"
 
 namespace realmodel::strata {
 
@@ -68,8 +68,7 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTria
             }
         }
     });
-    throw std::logic_error(
-        "a surface covers a position twice, yet no two of its triangles overlap");
+    throw InternalError("of a surface that covers a position twice two triangles overlap");
 }
 
 /// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a
@@ -83,6 +82,19 @@ std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
         std::minmax_element(filling->covered.begin(), filling->covered.end());
     if (*least < 0 || *most > 1) return std::nullopt;
     return filling;
+}
+
+/// Whether neighbors have each other.
+[[maybe_unused]] bool are_symmetric(const TriangleLinks& links, PlaneId first) {
+    for (std::size_t p = index(first); p < links.neighbor.size(); ++p) {
+        for (const PlaneId n : links.neighbor[p]) {
+            if (n == kNone) continue;
+            const auto& back = links.of(n);
+            if (std::find(back.begin(), back.end(), static_cast<PlaneId>(p)) == back.end())
+                return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -105,6 +117,17 @@ HeightRange heights_of(const PlanArrangement& geometry, PlaneId plane) {
     const auto [low, high] = std::minmax(
         {geometry.space(corner[0]).z, geometry.space(corner[1]).z, geometry.space(corner[2]).z});
     return {low, high};
+}
+
+spatial::Box box_of(LocalArrangement& scope, PolygonView polygon, PlaneId plane) {
+    spatial::Box box;
+    const HeightRange heights = heights_of(scope.shared(), plane);
+    for (const Corner& corner : polygon) {
+        const auto [x, y] = scope.rounded(corner.point);
+        box.include(spatial::Box::Position{x, y, heights.low});
+        box.include(spatial::Box::Position{x, y, heights.high});
+    }
+    return box;
 }
 
 void SurfaceTiling::index(const PlanArrangement& geometry, const Execution& execution,
@@ -153,7 +176,7 @@ bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t 
 }
 
 std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
-                                       std::vector<EnteredSurface>& surfaces, const Frame& frame,
+                                       std::vector<LoadedSurface>& surfaces, const Frame& frame,
                                        const Execution& execution) {
     std::vector<SurfacePlan> plans(surfaces.size());
     parallel_chunks(surfaces.size(), execution, [&](std::size_t k) {
@@ -217,6 +240,41 @@ SurfaceTiling make_region_tiling(PlanArrangement& geometry,
         tiling.plane.push_back(kSky);
     }
     add_empty(geometry, tiling, filling, kOutside);
+    return tiling;
+}
+
+BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
+                              SurfacePlan plan, std::int32_t number, TriangleLinks& links,
+                              const Execution& execution) {
+    if (!plan.filling)
+        make_surface_tiling(geometry, triangles, plan, {}, number, execution);  // refuses
+    const PlaneId first = make_planes(geometry, triangles, execution);
+    assert(plan.links.neighbor.size() == triangles.size());
+    links.neighbor.resize(index(first), {kNone, kNone, kNone});  // planes of bases
+    links.neighbor.resize(index(first) + triangles.size());
+    BlockTiling tiling;
+    tiling.whole.resize(triangles.size());
+    std::iota(tiling.whole.begin(), tiling.whole.end(), first);
+    const auto border = found_in_each<std::pair<exact::VertexId, exact::VertexId>>(
+        triangles.size(), execution, [&](std::size_t t, auto& found) {
+            const PlaneId plane = tiling.whole[t];
+            const PlanTriangle& corner = geometry.plane(plane).plan;
+            auto& neighbors = links.neighbor[index(plane)];
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::int32_t n = plan.links.neighbor[t][i];
+                if (n >= 0 && meet_in_height(geometry, plane, i, first + n)) {
+                    neighbors[i] = first + n;
+                    continue;
+                }
+                neighbors[i] = kNone;
+                found.emplace_back(corner[i], corner[(i + 1) % 3]);
+            }
+        });
+    assert(are_symmetric(links, first));
+    links.border.insert(links.border.end(), border.begin(), border.end());
+    for (std::size_t t = 0; t < plan.filling->triangles.size(); ++t) {
+        if (plan.filling->covered[t] == 0) tiling.empty.push_back(plan.filling->triangles[t]);
+    }
     return tiling;
 }
 

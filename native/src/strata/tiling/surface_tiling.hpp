@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cassert>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "realmodel/base/array.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "spatial/box_tree.hpp"
 #include "strata/tiling/plan_grid.hpp"
 #include "strata/tiling/plan_links.hpp"
 #include "strata/tiling/polygon.hpp"
@@ -24,6 +29,8 @@ struct HeightRange {
     double low, high;
 };
 HeightRange heights_of(const exact::PlanArrangement& geometry, PlaneId plane);
+/// Around a polygon in the plane of a triangle: as high as the triangle is.
+spatial::Box box_of(LocalArrangement& scope, PolygonView polygon, PlaneId plane);
 
 /// One surface as a set of convex plan polygons that tile the whole frame: its triangles, and void
 /// triangles where it has none. So every plan point lies in one polygon of every tiling, and
@@ -64,13 +71,76 @@ struct UsedTriangle {
 PlanTriangle plan_of(const exact::PlanArrangement& geometry, const UsedTriangle& triangle);
 
 /// A checked surface, and how its triangles are connected in plan.
-struct EnteredSurface {
+struct LoadedSurface {
     std::vector<UsedTriangle> triangles;
     PlanLinks links;
 };
 
 /// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
 std::array<Corner, 3> triangle_outline(exact::PlanArrangement& geometry, const PlanTriangle& v);
+
+/// Where no outline is known that an edge could be taken from.
+inline constexpr std::int32_t kNoOutline = -1;
+
+/// Adds the outlines of triangles; their lines are made where they are new. Edges are fetched some
+/// triangles before they are needed.
+/// @param plan_of  plan_of(i) is the i-th triangle
+/// @param earlier  earlier(i, e) is which of the triangles before the i-th has edge e the other way
+///     around, or kNoOutline
+/// @param similar  similar(i) is an outline that may be of the same triangle, or empty
+template <class PlanOf, class Earlier, class Similar>
+void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
+                  const Earlier& earlier, const Similar& similar, PolygonPool& pool,
+                  Progress* progress) {
+    constexpr std::size_t kAhead = 8;
+    const DirectedLine unknown{LineId(kNone)};
+    const std::size_t polygons = pool.size(), corners = pool.corners.size();
+    pool.corners.resize(corners + 3 * count);
+    pool.offsets.resize(polygons + count + 1);
+    const auto outline = [&](std::size_t i) { return &pool.corners[corners + 3 * i]; };
+    for (std::size_t ahead = 0; ahead < count + kAhead; ++ahead) {
+        poll(progress, ahead);
+        if (ahead < count) {
+            const PlanTriangle v = plan_of(ahead);
+            const PolygonView like = similar(ahead);
+            const bool same = like.size() == 3 && like[0].point == v[0] && like[1].point == v[1] &&
+                              like[2].point == v[2];
+            for (std::size_t e = 0; e < 3; ++e) {
+                outline(ahead)[e] = {v[e], same ? like[e].line : unknown};
+                if (!same && earlier(ahead, e) == kNoOutline)
+                    geometry.prefetch_edge(v[e], v[(e + 1) % 3]);
+            }
+            pool.offsets[polygons + ahead + 1] =
+                static_cast<std::uint32_t>(corners + 3 * (ahead + 1));
+        }
+        if (ahead < kAhead) continue;
+        const std::size_t i = ahead - kAhead;
+        Corner* const own = outline(i);
+        for (std::size_t e = 0; e < 3; ++e) {
+            if (own[e].line != unknown) continue;
+            const PointId to = own[(e + 1) % 3].point;
+            const std::int32_t before = earlier(i, e);
+            if (before == kNoOutline) {
+                own[e].line = geometry.add_edge(geometry.vertex(own[e].point), geometry.vertex(to));
+                continue;
+            }
+            assert(static_cast<std::size_t>(before) < i);
+            const Corner* other = outline(static_cast<std::size_t>(before));
+            while (other->point != to)
+                ++other;
+            own[e].line = other->line.reversed();
+        }
+    }
+}
+
+/// The same where nothing is known of the triangles' neighbors.
+template <class PlanOf>
+void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
+                  PolygonPool& pool, Progress* progress) {
+    add_outlines(
+        geometry, count, plan_of, [](std::size_t, std::size_t) { return kNoOutline; },
+        [](std::size_t) { return PolygonView(); }, pool, progress);
+}
 
 /// Whether two triangles meet along edge i of the first at the same heights.
 bool meet_in_height(const exact::PlanArrangement& geometry, PlaneId plane, std::size_t i,
@@ -85,7 +155,7 @@ struct SurfacePlan {
 
 /// How checked surfaces lie in plan; their links are taken.
 std::vector<SurfacePlan> plan_surfaces(const exact::PlanArrangement& geometry,
-                                       std::vector<EnteredSurface>& surfaces, const Frame& frame,
+                                       std::vector<LoadedSurface>& surfaces, const Frame& frame,
                                        const Execution& execution);
 
 /// Planes of triangles, one after another; the first of them.
@@ -104,5 +174,44 @@ SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
 SurfaceTiling make_region_tiling(exact::PlanArrangement& geometry,
                                  const std::vector<PlanTriangle>& triangles,
                                  const FrameTriangles& filling);
+
+/// A surface while blocks are built, or what rules raised it to: triangles as a whole, and parts of
+/// triangles, which overlays always cut exactly.
+struct BlockTiling {
+    std::vector<PlaneId> whole;
+    PolygonPool parts;
+    std::vector<PlaneId> part_plane;  ///< kVoid where there is no surface
+    std::vector<PlanTriangle> empty;  ///< where in the frame the surface is not
+    bool is_raised = false;           ///< triangles of older surfaces may be among these
+
+    /// Number of whole triangles and parts, counted in this order.
+    std::size_t size() const { return whole.size() + part_plane.size(); }
+    bool is_whole(std::size_t i) const { return i < whole.size(); }
+    PlaneId plane(std::size_t i) const {
+        return is_whole(i) ? whole[i] : part_plane[i - whole.size()];
+    }
+    void add_part(PolygonView outline, PlaneId in_plane) {
+        parts.add(outline);
+        part_plane.push_back(in_plane);
+    }
+};
+
+/// How the triangles of surfaces are connected in space.
+struct TriangleLinks {
+    /// Of each plane: across edge i, from corner i to corner i + 1, the only other triangle of its
+    /// surface there, at the same heights; -1 where a wall may stand.
+    std::vector<std::array<PlaneId, 3>> neighbor;
+    /// The edges across which there is none, and borders of regions.
+    std::vector<std::pair<exact::VertexId, exact::VertexId>> border;
+
+    const std::array<PlaneId, 3>& of(PlaneId plane) const { return neighbor[index(plane)]; }
+};
+
+/// A checked surface from its linked triangles; its planes are made, and their links added.
+/// @throws InputError kind double_valued, as make_surface_tiling does
+BlockTiling make_block_tiling(exact::PlanArrangement& geometry,
+                              const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
+                              std::int32_t number, TriangleLinks& links,
+                              const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/rounding/contraction.hpp"
-
 #include "../halved_box.hpp"
+#include "cutting/rounding/rounded_parts.hpp"
 
 namespace realmodel::cutting {
 namespace {
@@ -9,7 +8,7 @@ namespace {
 TEST_F(AHalvedBox, TheShapeOfAPartCountsItsPolygons) {
     cut_at(0.5);
     RoundedParts parts = rounded_parts();
-    Contraction::Scratch scratch;
+    Contraction::ShapeScratch scratch;
     const auto shape = Contraction(parts, false).shape(0, scratch);
     ASSERT_TRUE(shape);
     EXPECT_EQ(shape->count, 6U);
@@ -23,7 +22,7 @@ TEST_F(AHalvedBox, APartIsNoMoreWhereItsNodesBecomeThoseOfOnePolygon) {
     Contraction contraction(parts, false);
     for (NodeId node = 0; node < 4; ++node)
         contraction.becomes[index(node + 8)] = node;
-    Contraction::Scratch scratch;
+    Contraction::ShapeScratch scratch;
     EXPECT_FALSE(contraction.shape(0, scratch));
     EXPECT_TRUE(contraction.shape(1, scratch));
 }
@@ -32,7 +31,7 @@ TEST_F(AHalvedBox, APartIsSoundWithAnExtentOrWhereItVanishes) {
     cut_at(0.5);
     RoundedParts parts = rounded_parts();
     Contraction contraction(parts, true);
-    Contraction::Scratch scratch;
+    Contraction::ShapeScratch scratch;
     EXPECT_TRUE(contraction.is_sound(*contraction.shape(0, scratch), 0));
     for (NodeId node = 0; node < 4; ++node)
         contraction.becomes[index(node + 8)] = node;
@@ -54,7 +53,7 @@ TEST_F(AHalvedBox, EqualPolygonsOfAPartThatFaceEachOtherCancelWhereTheyMay) {
     pieces_[kCap + 1].parts = {0, -1};
     pieces_.add_reversed(std::array<NodeId, 3>{8, 0, 9}, pieces_[kCap + 1]);
     parts.update();
-    Contraction::Scratch scratch;
+    Contraction::ShapeScratch scratch;
     EXPECT_FALSE(Contraction(parts, false).shape(0, scratch));
     const auto shape = Contraction(parts, true).shape(0, scratch);
     ASSERT_TRUE(shape);
@@ -65,7 +64,7 @@ TEST_F(AHalvedBox, EdgesThatAPartUsesMoreThanTwiceAreTouches) {
     cut_at(0.5);
     pieces_.add(std::array<NodeId, 3>{8, 9, 0}, {-1, {0, -1}, {kBelow, kOn}, false, {0, -1}});
     RoundedParts parts = rounded_parts();
-    Contraction::Scratch scratch;
+    Contraction::ShapeScratch scratch;
     const auto shape = Contraction(parts, false).shape(0, scratch);
     ASSERT_TRUE(shape);
     EXPECT_EQ(shape->touches, 2U);  // 8-9 and 0-8

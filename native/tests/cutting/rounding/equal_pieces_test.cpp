@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/rounding/equal_pieces.hpp"
-
 #include "../halved_box.hpp"
+#include "cutting/rounding/rounded_parts.hpp"
 
 namespace realmodel::cutting {
 namespace {

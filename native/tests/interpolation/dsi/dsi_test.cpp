@@ -11,7 +11,7 @@
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
 #include "interpolation/data_points.hpp"
-#include "interpolation/dsi/vectors.hpp"
+#include "interpolation/dsi/wavefront_sweep.hpp"
 #include "lattice.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"

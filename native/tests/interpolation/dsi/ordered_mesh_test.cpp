@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/dsi/ordered_mesh.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "interpolation/dsi/spline_grid.hpp"
 #include "lattice.hpp"
 
 namespace realmodel::interpolation {

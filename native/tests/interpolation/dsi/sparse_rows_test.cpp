@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/dsi/sparse_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <new>
 
+#include "interpolation/dsi/roughness.hpp"
 #include "lattice.hpp"
 
 namespace realmodel::interpolation {

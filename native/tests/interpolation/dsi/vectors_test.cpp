@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/dsi/vectors.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <new>
+
+#include "interpolation/dsi/wavefront_sweep.hpp"
 
 namespace realmodel::interpolation {
 namespace {

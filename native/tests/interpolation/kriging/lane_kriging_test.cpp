@@ -11,7 +11,7 @@
 #include "../dense_kriging.hpp"
 #include "../variogram_models.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
-#include "interpolation/neighbors/data_search.hpp"
+#include "interpolation/neighbors/neighbor_search.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -60,13 +60,13 @@ SomeDips some_dips(const Points& points, std::size_t count) {
 }
 
 std::vector<Estimate> one_by_one(const LinearData& data, const Covariance& covariance,
-                                 std::span<const LaneKriging::Node> nodes, int neighbors) {
+                                 std::span<const LaneKriging::KrigingNode> nodes, int neighbors) {
     const spatial::NearestPoints tree(data.points().local);
     DataSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging kriging(data, covariance, Drift::kConstant);
     std::vector<spatial::Neighbor> near;
     std::vector<Estimate> out;
-    for (const LaneKriging::Node& node : nodes) {
+    for (const LaneKriging::KrigingNode& node : nodes) {
         search.find(node.position, near, node.left_out);
         const bool on_point = node.left_out < 0 && near[0].squared_distance == 0;
         out.push_back(on_point ? Estimate{data.value(near[0].point, 0), 0}
@@ -80,7 +80,7 @@ void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram
     const DataPoints distinct = prepare_points(points);
     const Covariance covariance(variogram);
     const LinearData data(distinct, dips, covariance.scales_over(dips.baseline));
-    std::vector<LaneKriging::Node> all;
+    std::vector<LaneKriging::KrigingNode> all;
     if (leave_out) {
         for (std::uint32_t i = 0; i < distinct.local.size(); ++i)
             all.push_back({distinct.local[i], i, static_cast<std::int32_t>(i)});
@@ -157,7 +157,7 @@ std::size_t left_to_others(const Points& points, const Nodes& nodes, const Vario
     DataSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging plain(data, covariance, drift);
     std::vector<spatial::Neighbor> near;
-    std::vector<LaneKriging::Node> all;
+    std::vector<LaneKriging::KrigingNode> all;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
         all.push_back({distinct.to_local(nodes[i]), i});
     std::vector<Estimate> first;

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "../dense_kriging.hpp"
-#include "exact/orient2d.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/variogram/clustering.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "../dense_kriging.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
+#include "interpolation/variogram/many_points.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 
 namespace realmodel::interpolation {

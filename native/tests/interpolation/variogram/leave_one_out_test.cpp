@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "../dense_kriging.hpp"
-#include "interpolation/variogram/anisotropy_search.hpp"
-#include "interpolation/variogram/capped_square.hpp"
+#include "interpolation/variogram/variogram_search.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/kriging.hpp"

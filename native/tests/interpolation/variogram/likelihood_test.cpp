@@ -7,8 +7,8 @@
 #include <random>
 
 #include "../dense_kriging.hpp"
+#include "realmodel/interpolation/distances.hpp"
 #include "realmodel/interpolation/kriging.hpp"
-#include "realmodel/interpolation/nearest_distance.hpp"
 
 namespace realmodel::interpolation {
 namespace {

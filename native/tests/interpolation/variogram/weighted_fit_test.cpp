@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/variogram/weighted_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../variogram_models.hpp"
+#include "interpolation/variogram/experimental_variogram.hpp"
 
 namespace realmodel::interpolation {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/cells/closedness.hpp"
-
 #include "../complex_checks.hpp"
+#include "strata/cells/assembly.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/cells/node_cells.hpp"
-
 #include <gtest/gtest.h>
+
+#include "strata/cells/block_cells.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/cells/plan_offsets.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../complex_checks.hpp"
+#include "strata/cells/exact_positions.hpp"
 #include "strata/cells/volumes.hpp"
 
 namespace realmodel::strata {

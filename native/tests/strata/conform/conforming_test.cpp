@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "small_faces.hpp"
-#include "strata/conform/collinear_lines.hpp"
 #include "strata/conform/conformed_faces.hpp"
-#include "strata/conform/interval_curves.hpp"
+#include "strata/conform/plan_vertices.hpp"
 #include "strata/conform/walls.hpp"
 
 namespace realmodel::strata {
@@ -59,6 +58,50 @@ TEST(PlanVertices, WhatNoFaceUsesIsNone) {
     EXPECT_EQ(found.size(), 3u);
     EXPECT_EQ(found.of_point[1], -1);
     EXPECT_EQ(found.of_point[4], -1);
+}
+
+TEST(PlanVertices, ManyPositionsMayRoundToOne) {
+    // lines that cross one another within a thousandth of a corner, where doubles are whole numbers
+    constexpr double kCorner = 0x1p52;
+    constexpr int kLines = 6;
+    exact::PlanArrangement geometry;
+    std::vector<std::array<exact::VertexId, 2>> ends;
+    for (const bool steep : {false, true}) {
+        for (int i = 1; i <= kLines; ++i) {
+            const auto vertex = [&](double along, double across) {
+                return steep ? geometry.add_vertex(kCorner + across, kCorner + along)
+                             : geometry.add_vertex(kCorner + along, kCorner + across);
+            };
+            ends.push_back({vertex(-1000, -i), vertex(3001, 3 * i)});
+        }
+    }
+    geometry.freeze_vertices();
+    std::vector<LineId> lines;
+    for (const auto& [from, to] : ends)
+        lines.push_back(geometry.add_edge(from, to).id());
+    std::vector<ExtraPoint> extra;
+    for (int name = 0; name < 2; ++name) {
+        LocalArrangement local(geometry);
+        std::vector<PointId> crossings;
+        for (std::size_t i = 0; i < kLines; ++i) {
+            for (std::size_t j = kLines; j < 2 * kLines; ++j) {
+                crossings.push_back(local.crossing(lines[i], lines[j]));
+                local.mark_point_used(crossings.back());
+            }
+        }
+        local.commit(geometry);
+        for (const PointId at : crossings)
+            extra.push_back({lines[0], local.shared_point(at)});
+    }
+    const PlanVertices found = find_plan_vertices(geometry, {}, extra, {1, nullptr});
+    constexpr std::size_t kCrossings = kLines * kLines;
+    ASSERT_EQ(found.size(), kCrossings);
+    EXPECT_EQ(found.coincident.size(), kCrossings - 1);
+    for (std::size_t c = 0; c < kCrossings; ++c) {
+        const PlanVertexId vertex = found.of_point[index(extra[c].point)];
+        EXPECT_EQ(found.of_point[index(extra[kCrossings + c].point)], vertex);
+        EXPECT_EQ(found.representative[index(vertex)], extra[c].point);
+    }
 }
 
 TEST(PlanVertices, OnePositionIsOneVertexHoweverOftenItWasFound) {
@@ -114,7 +157,7 @@ TEST(CollinearEdges, ALongEdgePassesWhatLiesBetweenItsEnds) {
     EXPECT_EQ(edges, (std::vector<std::array<std::int32_t, 3>>{{0, 0, 2}, {1, 1, 0}, {2, 2, 1}}));
     std::size_t passing = 0;
     for (const PassedVertices& some : lines.passed) {
-        for (const PassedVertices::Edge& edge : some.edges) {
+        for (const PassedVertices::PassingEdge& edge : some.edges) {
             ++passing;
             EXPECT_EQ(edge.corner, 1u);  // the second corner of the first face
             EXPECT_EQ(edge.count, 1u);

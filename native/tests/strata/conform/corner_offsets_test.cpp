@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/conform/corner_offsets.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/conform/vertex_heights.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
+
+#include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
 namespace {

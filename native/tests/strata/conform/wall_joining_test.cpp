@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/conform/wall_joining.hpp"
-
 #include <gtest/gtest.h>
+
+#include "strata/conform/walls.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/overlay/ordered_commit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <memory>
 #include <numeric>
 #include <vector>
+
+#include "strata/overlay/chunk_joining.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -35,9 +35,9 @@ Shares shares(const OwnedSurface& upper, const OwnedSurface& lower) {
     for (const Piece& piece : found.list) {
         const double area = twice_area(scope, found.outline(piece)) / 2;
         EXPECT_GT(area, 0);
-        (piece.side == Side::kBelow      ? result.below
-         : piece.side == Side::kNotBelow ? result.not_below
-                                         : result.absent) += area;
+        (piece.side == PieceSide::kBelow      ? result.below
+         : piece.side == PieceSide::kNotBelow ? result.not_below
+                                              : result.absent) += area;
     }
     EXPECT_DOUBLE_EQ(result.below + result.not_below + result.absent,
                      twice_area(scope, facets.polygons[0]) / 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/overlay/triangle_comparison.hpp"
-
 #include <gtest/gtest.h>
+
+#include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
 namespace {

@@ -28,11 +28,11 @@ struct Comparing {
         filter.begin(lower);
         filter.compare({upper.whole, {}, PolygonPool(), {}, {}, cover});
     }
-    long triangles(Standing standing) const {
-        return std::count(filter.surface.begin(), filter.surface.end(), standing);
+    long triangles(HeightRelation relation) const {
+        return std::count(filter.surface.begin(), filter.surface.end(), relation);
     }
-    long facets(Standing standing) const {
-        return std::count(filter.facet.begin(), filter.facet.end(), standing);
+    long facets(HeightRelation relation) const {
+        return std::count(filter.facet.begin(), filter.facet.end(), relation);
     }
 };
 
@@ -43,48 +43,49 @@ OwnedSurface level(double z, int n = 6, bool other = false) {
 
 /// In tiles of borders, the outer ones here, heights decide nothing, and a triangle whose middle is
 /// near an edge is exact.
-void expect_sorted(const Comparing& c, Standing wanted) {
+void expect_sorted(const Comparing& c, HeightRelation wanted) {
     for (std::size_t t = 0; t < c.lower.whole.size(); ++t) {
-        const auto box = bounds_of(c.scene.site->geometry, c.lower.whole[t]).box;
+        const auto box = bounds_of(c.scene.context->geometry, c.lower.whole[t]).box;
         const bool is_inner =
             box.low_x > 0.5 && box.high_x < 4.5 && box.low_y > 0.5 && box.high_y < 4.5;
-        if (is_inner || c.filter.surface[t] != Standing::kExact) {
+        if (is_inner || c.filter.surface[t] != HeightRelation::kExact) {
             EXPECT_EQ(c.filter.surface[t], wanted);
         }
     }
-    const Standing of_facets = wanted == Standing::kBelow ? Standing::kAbove : Standing::kBelow;
+    const HeightRelation of_facets =
+        wanted == HeightRelation::kBelow ? HeightRelation::kAbove : HeightRelation::kBelow;
     EXPECT_GT(c.facets(of_facets), 0);
-    EXPECT_EQ(c.facets(of_facets) + c.facets(Standing::kExact), 32);
+    EXPECT_EQ(c.facets(of_facets) + c.facets(HeightRelation::kExact), 32);
 }
 
 TEST(WholeTriangles, FarBelowAreSorted) {
-    expect_sorted(Comparing(level(0), level(1, 4, true)), Standing::kBelow);
+    expect_sorted(Comparing(level(0), level(1, 4, true)), HeightRelation::kBelow);
 }
 
 TEST(WholeTriangles, FarAboveAreSorted) {
-    expect_sorted(Comparing(level(1), level(0, 4, true)), Standing::kAbove);
+    expect_sorted(Comparing(level(1), level(0, 4, true)), HeightRelation::kAbove);
 }
 
 TEST(WholeTriangles, EquallyHighOnesAreExact) {
     const Comparing c(level(1), level(1, 4, true));
-    EXPECT_EQ(c.triangles(Standing::kExact), 72);
-    EXPECT_EQ(c.facets(Standing::kExact), 32);
+    EXPECT_EQ(c.triangles(HeightRelation::kExact), 72);
+    EXPECT_EQ(c.facets(HeightRelation::kExact), 32);
 }
 
 TEST(WholeTriangles, OnlyThoseBesideACrossingAreExact) {
     const auto slope = grid(6, 6, 0, 0, 6, 6, [](double x, double) { return x - 2.5; });
     const Comparing c(level(0), slope);
     // the crossing at x = 5/2 runs through the third column of squares
-    EXPECT_GE(c.triangles(Standing::kExact), 12);
-    EXPECT_GT(c.triangles(Standing::kAbove), 0);
-    EXPECT_GE(c.triangles(Standing::kBelow), 24);
+    EXPECT_GE(c.triangles(HeightRelation::kExact), 12);
+    EXPECT_GT(c.triangles(HeightRelation::kAbove), 0);
+    EXPECT_GE(c.triangles(HeightRelation::kBelow), 24);
     for (std::size_t t = 0; t < c.lower.whole.size(); ++t) {
-        const auto box = bounds_of(c.scene.site->geometry, c.lower.whole[t]).box;
-        const Standing standing = c.filter.surface[t];
+        const auto box = bounds_of(c.scene.context->geometry, c.lower.whole[t]).box;
+        const HeightRelation relation = c.filter.surface[t];
         if (box.low_x < 2.5 && box.high_x > 2.5) {
-            EXPECT_EQ(standing, Standing::kExact);
-        } else if (standing != Standing::kExact) {
-            EXPECT_EQ(standing, box.low_x > 2.5 ? Standing::kBelow : Standing::kAbove);
+            EXPECT_EQ(relation, HeightRelation::kExact);
+        } else if (relation != HeightRelation::kExact) {
+            EXPECT_EQ(relation, box.low_x > 2.5 ? HeightRelation::kBelow : HeightRelation::kAbove);
         }
     }
 }
@@ -94,13 +95,13 @@ TEST(WholeTriangles, AreDividedByABorder) {
     holed.triangles.erase(holed.triangles.begin(), holed.triangles.begin() + 3);
     const Comparing c(level(0, 1), holed);
     // the hole lies beneath one half of the square
-    EXPECT_EQ(c.triangles(Standing::kExact), 1);
+    EXPECT_EQ(c.triangles(HeightRelation::kExact), 1);
 }
 
 TEST(WholeTriangles, OfRaisedSurfacesMayBeTheFacetsThemselves) {
     const Comparing c(level(0), level(1), true);
-    EXPECT_EQ(c.triangles(Standing::kAbove), 72);  // not below: eroded there
-    EXPECT_EQ(c.facets(Standing::kBelow), 72);
+    EXPECT_EQ(c.triangles(HeightRelation::kAbove), 72);  // not below: eroded there
+    EXPECT_EQ(c.facets(HeightRelation::kBelow), 72);
 }
 
 TEST(TriangleLinks, AreSymmetricAndEndAtBorders) {

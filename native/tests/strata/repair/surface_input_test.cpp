@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/repair/surface_input.hpp"
-
 #include <gtest/gtest.h>
 
 #include "../complex_checks.hpp"
+#include "strata/repair/plan_context.hpp"
 
 namespace realmodel::strata {
 namespace {
 
 /// Surfaces that were entered, with what was left out.
-struct Entered {
+struct LoadedInput {
     exact::PlanArrangement geometry;
     std::vector<Warning> warnings;
-    std::vector<EnteredSurface> surfaces;
+    std::vector<LoadedSurface> surfaces;
 
-    explicit Entered(const OwnedSurface& surface, const PlanSnapping& snapping = {}) {
+    explicit LoadedInput(const OwnedSurface& surface, const PlanSnapping& snapping = {}) {
         const std::vector<TriangleView> views{surface.view()};
-        surfaces = enter_surfaces(geometry, views, 7, snapping, warnings, {1, nullptr});
+        surfaces = load_surfaces(geometry, views, 7, snapping, warnings, {1, nullptr});
     }
 };
 
 std::string refusal(const OwnedSurface& surface) {
     try {
-        Entered entered(surface);
+        LoadedInput entered(surface);
     } catch (const InputError& error) {
         EXPECT_EQ(error.surface, 7);
         return error.kind;
@@ -34,7 +33,7 @@ TEST(SurfaceInput, TrianglesTurnCounterClockwiseWhicheverWayTheyWereGiven) {
     OwnedSurface s;
     const auto a = s.vertex(0, 0, 0), b = s.vertex(1, 0, 0), c = s.vertex(0, 1, 0);
     s.triangle(a, c, b);
-    const Entered entered(s);
+    const LoadedInput entered(s);
     ASSERT_EQ(entered.surfaces[0].triangles.size(), 1u);
     const auto& corner = entered.surfaces[0].triangles[0].corner;
     double area = 0;
@@ -54,7 +53,7 @@ TEST(SurfaceInput, EqualVerticesAreOne) {
         const auto c = copy == 0 ? s.vertex(1, 0, 5) : s.vertex(0, 1, 5);
         s.triangle(a, b, c);
     }
-    const Entered entered(s);
+    const LoadedInput entered(s);
     const auto& links = entered.surfaces[0].links;
     EXPECT_EQ(links.border.size(), 4u);  // they hang together
 }
@@ -66,7 +65,7 @@ TEST(SurfaceInput, WhatHasNoAreaIsLeftOutWithAWarning) {
     s.triangle(a, b, c);
     s.triangle(a, middle, b);  // in one line
     s.triangle(a, a, c);
-    const Entered entered(s);
+    const LoadedInput entered(s);
     ASSERT_EQ(entered.surfaces[0].triangles.size(), 1u);
     EXPECT_EQ(entered.surfaces[0].triangles[0].number, 0);
     ASSERT_EQ(entered.warnings.size(), 1u);
@@ -95,16 +94,10 @@ TEST(SurfaceInput, CoordinatesAreSnappedBeforeVerticesAreCompared) {
                other_b = s.vertex(beside, 1, 0), d = s.vertex(0, 1, 0);
     s.triangle(a, c, b);
     s.triangle(a, other_b, d);
-    EXPECT_EQ(Entered(s).surfaces[0].links.border.size(), 6u);
+    EXPECT_EQ(LoadedInput(s).surfaces[0].links.border.size(), 6u);
     PlanSnapping snapping;
     snapping.x = AxisSnapping({{beside, 1.0}});
-    EXPECT_EQ(Entered(s, snapping).surfaces[0].links.border.size(), 4u);
-}
-
-TEST(SurfaceInput, KnowsWhenThreePointsLieInOneLine) {
-    EXPECT_TRUE(in_one_line({0, 0, 0}, {1, 1, 1}, {3, 3, 3}));
-    EXPECT_TRUE(in_one_line({0, 0, 0}, {1, 1, 1}, {0, 0, 0}));
-    EXPECT_FALSE(in_one_line({0, 0, 0}, {1, 1, 1}, {3, 3, std::nextafter(3.0, 4.0)}));
+    EXPECT_EQ(LoadedInput(s, snapping).surfaces[0].links.border.size(), 4u);
 }
 
 }  // namespace

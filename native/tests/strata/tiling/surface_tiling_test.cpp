@@ -25,8 +25,8 @@ TEST(SurfaceTiling, CoversTheFrameWithTrianglesAndVoid) {
         }
     }
     EXPECT_EQ(with_plane, 1u);
-    const auto& low = scene.geometry().point(scene.site->frame[0]);
-    const auto& high = scene.geometry().point(scene.site->frame[2]);
+    const auto& low = scene.geometry().point(scene.context->frame[0]);
+    const auto& high = scene.geometry().point(scene.context->frame[2]);
     EXPECT_DOUBLE_EQ(area, (high.x - low.x) * (high.y - low.y));
 }
 
@@ -58,7 +58,7 @@ TEST(SurfaceTiling, TrianglesMeetInHeightWhereTheyShareBothCorners) {
     torn.triangle(a, b, c);
     torn.triangle(a, raised, d);
     Scene scene({square(0), torn});
-    auto& rocks = scene.site->rocks[0];
+    auto& rocks = scene.context->rocks[0];
     const PlaneId whole = make_planes(scene.geometry(), rocks.surfaces[0].triangles, {1, nullptr});
     const PlaneId parted = make_planes(scene.geometry(), rocks.surfaces[1].triangles, {1, nullptr});
     const auto next = [](PlaneId plane) { return static_cast<PlaneId>(index(plane) + 1); };
@@ -73,7 +73,7 @@ TEST(SurfaceTiling, TrianglesOverEachOtherAreRefusedWithAPosition) {
                c = folded.vertex(0.1, 0.5, 1);
     folded.triangle(a, b, c);
     Scene scene({folded});
-    EXPECT_FALSE(scene.site->is_single_valued);
+    EXPECT_FALSE(scene.context->is_single_valued);
     try {
         scene.tiling(0);
         FAIL() << "accepted";

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/tiling/wanted_space.hpp"
-
 #include <cmath>
 #include <map>
 #include <random>
@@ -8,6 +6,7 @@
 
 #include "../../sanitized.hpp"
 #include "../complex_checks.hpp"
+#include "strata/tiling/plan_grid.hpp"
 
 namespace realmodel::strata {
 namespace {

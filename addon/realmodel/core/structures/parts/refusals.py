@@ -16,6 +16,7 @@ _ADVICE = {
     "branching": "make a fault of its own of each branch, and set 'ends_at'",
     "folded": "make a fault of its own of each part of it that lies beside another one",
     "does_not_meet": "extend it to that fault, or take it out of 'ends_at'",
+    "equal_halves": "make it longer on the side of that fault on which it is to remain",
     "open_cell": "move the fault or body that cuts there a little",
     "ends_inside": "extend it beyond the rock, set 'dies_out' or 'ends_at', or choose an older 'youngest'",
 }
@@ -42,6 +43,8 @@ def refused_structure(error: NativeError, faults: Sequence[Fault], bodies: Seque
     what, items = str(error), [int(item) for item in error.items]
     if error.kind == "does_not_meet" and items:
         what = f"it ends at fault '{faults[items[0]].name}', but does not meet it"
+    elif error.kind == "equal_halves" and items:
+        what = f"fault '{faults[items[0]].name}', at which it ends, cuts it into two halves of one area"
     elif error.kind == "ends_inside" and fault is not None and fault.dies_out:
         what = "beyond its tip the surfaces differ on its two sides"
         advice = "extend it, or give data beyond the tip that agree"
