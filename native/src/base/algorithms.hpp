@@ -59,6 +59,16 @@ auto groups_of(Items&& items, Key key = {}) {
     return Groups<typename decltype(all)::element_type, Key>(all, std::move(key));
 }
 
+/// The items with a key, of some that are sorted by it, as a span. (clang++ 14 cannot read
+/// std::ranges::equal_range of libstdc++.)
+template <class Items, class Value, class Key>
+auto items_with_key(Items&& sorted, const Value& value, Key key) {
+    const std::span all(sorted);
+    const auto begin = std::ranges::lower_bound(all, value, {}, key) - all.begin();
+    const auto end = std::ranges::upper_bound(all, value, {}, key) - all.begin();
+    return all.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+}
+
 /// Sorts elements and keeps each once.
 template <class Element>
 void sort_unique(std::vector<Element>& elements) {

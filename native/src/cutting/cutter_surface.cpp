@@ -260,7 +260,7 @@ void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edg
         loop.push_back({a, view(at(a))});
         const std::size_t begin = loop.size();
         const auto edge = unordered(a, b);
-        for (const OnEdge& on : std::ranges::equal_range(on_edges, edge, {}, &OnEdge::edge))
+        for (const OnEdge& on : items_with_key(on_edges, edge, &OnEdge::edge))
             loop.push_back({on.node, view(at(on.node))});
         if (a > b) std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
     }

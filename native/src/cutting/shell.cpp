@@ -131,7 +131,7 @@ void join_hollows(const std::function<void(const VisitShellPolygon&)>& each_poly
         if (hollow.sixfold_volume > 0) continue;
         // what contains the first of its corners that touches none
         std::vector<std::int32_t> containing;
-        const auto own = std::ranges::equal_range(questions, inner, {}, &Question::hollow);
+        const auto own = items_with_key(questions, inner, &Question::hollow);
         for (const auto of_corner : groups_of(own, &Question::number)) {
             if (std::ranges::any_of(of_corner, &Question::is_on)) continue;
             for (const Question& question : of_corner) {

@@ -128,7 +128,8 @@ struct Graph {
 
     explicit Graph(const Traces& traces) {
         for (const auto equal : groups_of(traces.segments, &Traces::Segment::ends)) {
-            TraceEdge& edge = edges.emplace_back(equal[0].ends[0], equal[0].ends[1], false, false);
+            TraceEdge& edge =
+                edges.emplace_back(TraceEdge{equal[0].ends[0], equal[0].ends[1], false, false});
             for (const Traces::Segment& s : equal) {
                 edge.is_of_top = edge.is_of_top || s.block == Traces::kOfTop;
                 edge.is_step = edge.is_step || s.block < 0;

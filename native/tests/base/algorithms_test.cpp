@@ -33,6 +33,14 @@ TEST(Algorithms, GroupsAreRunsOfEqualKeys) {
         FAIL() << group.size();
 }
 
+TEST(Algorithms, ItemsWithAKeyAreASpan) {
+    const std::vector<std::pair<int, char>> sorted{{1, 'a'}, {2, 'b'}, {2, 'c'}, {4, 'd'}};
+    const auto two = items_with_key(sorted, 2, &std::pair<int, char>::first);
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_EQ(two[1].second, 'c');
+    EXPECT_TRUE(items_with_key(sorted, 3, &std::pair<int, char>::first).empty());
+}
+
 TEST(Algorithms, KeepSingleDropsWhatOccursTwice) {
     std::vector<int> sorted{1, 1, 2, 3, 3, 3, 4};
     keep_single(sorted);
