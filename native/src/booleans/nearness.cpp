@@ -15,6 +15,9 @@ using Position = exact::SpacePosition;
 
 namespace {
 
+/// A triangle that reaches far makes no more of a small one near than this share of a coordinate.
+constexpr double kMostOfShared = 1e-9;
+
 Position along(const Position& a, const Position& b, double t) {
     return moved(a, t, minus(b, a));
 }
@@ -61,7 +64,8 @@ double Nearness::distance_at(double coordinate) const {
 }
 
 double Nearness::distance_of(const FacetPair& pair) const {
-    double largest = 0;
+    // what both reach, and what one of them does
+    double shared = 0, largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto reach = [&](const TriangleCorners& corners) {
             double farthest = 0;
@@ -69,9 +73,11 @@ double Nearness::distance_of(const FacetPair& pair) const {
                 farthest = std::max(farthest, std::abs(points_.rounded(p)[axis]));
             return farthest;
         };
-        largest = std::max(largest, std::min(reach(pair[0]), reach(pair[1])));
+        const auto [lesser, greater] = std::minmax({reach(pair[0]), reach(pair[1])});
+        shared = std::max(shared, lesser);
+        largest = std::max(largest, greater);
     }
-    return distance_at(largest);
+    return std::min(distance_at(largest), std::max(distance_at(shared), kMostOfShared * shared));
 }
 
 bool Nearness::is_between(SpacePointId p, const Edge& edge) const {

@@ -37,9 +37,9 @@ struct NearParts {
     }
 };
 
-/// What is near: within so many units in the last place of the largest coordinate that is in the
-/// boxes of both triangles of a pair: so far new vertices move, however large one of them is.
-/// Decided in doubles (docs/dev/exactness.md, the rule of Booleans).
+/// What is near: within so many units in the last place of the largest coordinate of a pair, but no
+/// more than 1e-9 of the largest one that both triangles reach, or so many units of that. Decided
+/// in doubles (docs/dev/exactness.md, the rule of Booleans).
 class Nearness {
 public:
     Nearness(const SpacePoints& points, double ulps) : points_(points), ulps_(ulps) {}
