@@ -258,7 +258,7 @@ arrangement::EdgeFan CellFinder::fan_of(std::size_t edge) const {
     std::vector<arrangement::HalfPlane> items;
     for (const EdgeUse& use : uses) {
         const auto& c = mesh_.facets[index(use.item)].corners;
-        // the corner that is no end of the edge
+        // the corner across from the edge
         items.push_back({point(c[0] ^ c[1] ^ c[2] ^ a ^ b), -1, use.direction});
     }
     arrangement::EdgeFan fan;

@@ -15,9 +15,7 @@ protected:
     void TearDown() override { std::filesystem::remove(path_); }
     SpacePointId at(double x, double y, double z) { return points_.add(Position{x, y, z}); }
 
-    // One for each test: CTest runs them side by side.
-    std::string path_ =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
+    std::string path_ = file_of_test(".obj");
     exact::SpacePoints points_;
 };
 

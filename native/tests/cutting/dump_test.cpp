@@ -12,9 +12,7 @@ namespace {
 class CuttingDump : public AHalvedBox {
 protected:
     ~CuttingDump() override { std::filesystem::remove(path_); }
-    // One for each test: CTest runs them side by side.
-    std::string path_ =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
+    std::string path_ = file_of_test(".obj");
 };
 
 TEST_F(CuttingDump, PartsAreGroupsOfPolygonsSeenFromOutside) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "../base/read_text.hpp"
+
 namespace realmodel::strata {
 namespace {
 
@@ -62,9 +64,7 @@ protected:
     }
     void TearDown() override { std::filesystem::remove(path_); }
 
-    // One for each test: CTest runs them side by side.
-    std::string path_ =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
+    std::string path_ = file_of_test(".obj");
     exact::PlanArrangement geometry_;
     Polygon outline_;
     Envelope envelope_;
