@@ -76,7 +76,6 @@ public:
     /// @param mesh  adapted first: adapt_plan()
     PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh);
 
-    const meshing::FlatMesh& mesh() const { return mesh_; }
     meshing::PlanarMesh take_mesh() { return {std::move(mesh_.points), std::move(mesh_.corners)}; }
     std::size_t triangles() const { return mesh_.corners.size(); }
     std::size_t nodes() const { return mesh_.points.size(); }

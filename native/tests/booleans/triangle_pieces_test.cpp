@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "../base/read_text.hpp"
-#include "debug/dump.hpp"
 #include "small_meshes.hpp"
 
 namespace realmodel::booleans {
@@ -47,13 +43,6 @@ TEST_F(TwoSquares, AnInputMayBeDividedAndIsStillFound) {
     pieces.find({{0, 1.5, 0}, {0.1, 2, 0}},
                 [&](const TrianglePiece& piece) { near += piece.corners[2] == whole[2]; });
     EXPECT_EQ(near, 2);  // a part of the first, and the second
-    const std::string path = testing::TempDir() + "TwoSquares.obj";
-    dump_pieces(pieces, path.c_str());
-    const std::string text = read_text(path);
-    std::filesystem::remove(path);
-    EXPECT_EQ(count(text, "v "), 9);
-    EXPECT_EQ(count(text, "\nf "), 5);
-    EXPECT_NE(text.find("g P_fresh\nf 1 2 9\n"), std::string::npos) << text;
 }
 
 TEST_F(TwoSquares, WhatMayHaveMovedIsLookedForFartherAway) {

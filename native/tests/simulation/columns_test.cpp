@@ -4,11 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <string>
 
-#include "debug/dump.hpp"
 #include "plane_models.hpp"
 #include "plans.hpp"
 #include "realmodel/base/errors.hpp"
@@ -231,30 +227,6 @@ TEST(NarrowStripsTest, AreasOfOneElementFarFromOthersAreWide) {
         columns.offset.push_back(2 * (t + 1));
     EXPECT_EQ(narrow_strips(at.plan, columns),
               std::vector<std::uint8_t>(at.plan.triangles(), 0));  // there are no others
-}
-
-std::size_t lines_with(const std::string& path, const std::string& begin) {
-    std::ifstream file(path);
-    std::size_t count = 0;
-    for (std::string line; std::getline(file, line);)
-        count += line.starts_with(begin);
-    return count;
-}
-
-TEST(SimulationDumpTest, PlansPillarsAndColumns) {
-    const Fixture at({{0, 0}, {4, 4}, {6, 6}}, true);
-    const PillarLevels levels(at.input, {.minimum_thickness = 0.5, .layers = {1, 1}});
-    const FilledColumns columns = fill_columns(at.input, levels, nullptr);
-    const auto path = (std::filesystem::path(testing::TempDir()) / "columns.obj").string();
-    dump_plan(at.plan, path.c_str());
-    EXPECT_EQ(lines_with(path, "f "), at.plan.triangles());
-    EXPECT_EQ(lines_with(path, "g rock_0"), 1u);
-    EXPECT_EQ(lines_with(path, "l "), 6u + 2);
-    dump_pillars(at.plan, levels, path.c_str());
-    EXPECT_EQ(lines_with(path, "l "), 3 * at.plan.triangles());
-    dump_columns(at.plan, levels, columns.fronts, path.c_str());
-    EXPECT_EQ(lines_with(path, "f "), 2 * 2 * at.plan.triangles());
-    std::filesystem::remove(path);
 }
 
 }  // namespace
