@@ -18,13 +18,10 @@ namespace {
 
 using Extended = long double;
 
-// What is small is always inlined: to pass extended numbers through memory costs more than to
-// calculate with them.
-
 /// Has this thread's operations round to 64 bits, before any number is read that they are done
 /// with. Windows begins threads with 53, where no other code uses these registers. Checking takes a
 /// hundredth of what follows.
-[[gnu::always_inline]] inline void keep_extended() {
+void keep_extended() {
 #if defined(_WIN32) && defined(__x86_64__)
     constexpr unsigned short kAllBits = 0x300;
     unsigned short control = 0;
@@ -50,25 +47,22 @@ bool is_extended() {
 const bool kExtended = is_extended();
 
 /// The size of a number as far as bounds need it.
-[[gnu::always_inline]] inline double size(Extended value) {
+double size(Extended value) {
     return std::abs(static_cast<double>(value));
 }
 
-[[gnu::always_inline]] inline ExtendedInterval sum(const ExtendedInterval& a,
-                                                   const ExtendedInterval& b) {
+ExtendedInterval sum(const ExtendedInterval& a, const ExtendedInterval& b) {
     const Extended value = a.value + b.value;
     return {value, a.error + b.error + kExtendedUnit * size(value)};
 }
 
-[[gnu::always_inline]] inline ExtendedInterval operator-(const ExtendedInterval& a) {
+ExtendedInterval operator-(const ExtendedInterval& a) {
     return {-a.value, a.error};
 }
 
 /// s * t - u * v of numbers with errors.
-[[gnu::always_inline]] inline ExtendedInterval determinant(const ExtendedInterval& s,
-                                                           const ExtendedInterval& t,
-                                                           const ExtendedInterval& u,
-                                                           const ExtendedInterval& v) {
+ExtendedInterval determinant(const ExtendedInterval& s, const ExtendedInterval& t,
+                             const ExtendedInterval& u, const ExtendedInterval& v) {
     const Extended st = s.value * t.value, uv = u.value * v.value;
     const double error = size(s.value) * t.error + (size(t.value) + t.error) * s.error +
                          size(u.value) * v.error + (size(v.value) + v.error) * u.error +
@@ -77,16 +71,14 @@ const bool kExtended = is_extended();
 }
 
 /// The same of differences of doubles, each of which errs by one unit: three for a product.
-[[gnu::always_inline]] inline ExtendedInterval determinant(Extended s, Extended t, Extended u,
-                                                           Extended v) {
+ExtendedInterval determinant(Extended s, Extended t, Extended u, Extended v) {
     const Extended st = s * t, uv = u * v;
     return {st - uv, st == 0 && uv == 0
                          ? 0
                          : 5 * kExtendedUnit * (size(st) + size(uv)) + kExtendedUnderflow};
 }
 
-[[gnu::always_inline]] inline ExtendedInterval quotient(const ExtendedInterval& numerator,
-                                                        const ExtendedInterval& denominator) {
+ExtendedInterval quotient(const ExtendedInterval& numerator, const ExtendedInterval& denominator) {
     const double least = size(denominator.value) * (1 - kNarrowing) - denominator.error;
     if (!(least > 0)) return {0, HUGE_VAL};
     const Extended value = numerator.value / denominator.value;
@@ -96,7 +88,7 @@ const bool kExtended = is_extended();
 }
 
 /// The double that all numbers are nearest to which are within a bound of one, if they are.
-[[gnu::always_inline]] inline std::optional<double> nearest_within(Extended value, double bound) {
+std::optional<double> nearest_within(Extended value, double bound) {
     const auto up = static_cast<double>(value + bound);
     const auto down = static_cast<double>(value - bound);
     if (up == down && std::isfinite(up)) return up + 0.0;  // 0 is not negative
@@ -115,7 +107,7 @@ std::optional<double> nearest(Extended value, double error) {
 struct NearNormal {
     ExtendedInterval a, b, c;
 };
-[[gnu::always_inline]] inline NearNormal near_normal(const PlanArrangement& g, PlaneId plane) {
+NearNormal near_normal(const PlanArrangement& g, PlaneId plane) {
     const auto& [corner, plan] = g.plane(plane);
     const SpaceVertex &s0 = g.space(corner[0]), &s1 = g.space(corner[1]), &s2 = g.space(corner[2]);
     const Point &p0 = g.point(plan[0]), &p1 = g.point(plan[1]), &p2 = g.point(plan[2]);
@@ -135,7 +127,7 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
 }
 
 /// b - a of doubles.
-[[gnu::always_inline]] inline ExtendedInterval difference(double a, double b) {
+ExtendedInterval difference(double a, double b) {
     const Extended value = Extended(b) - a;
     return {value, kExtendedUnit * size(value)};
 }
@@ -146,8 +138,7 @@ struct Share {
     Extended value;
     double most, error;  ///< bounds of its size and of its error
 };
-[[gnu::always_inline]] inline Share share_of_way(const PlanArrangement& g, const Line& l,
-                                                 const Line& m) {
+Share share_of_way(const PlanArrangement& g, const Line& l, const Line& m) {
     const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
     const Point &s = g.point(m.ends()[0]), &t = g.point(m.ends()[1]);
     const auto across = [&](auto number, const Point& to) {  // the way from o to there x the other
@@ -168,22 +159,12 @@ struct Share {
 }
 
 /// That share of the way from one double to another.
-[[gnu::always_inline]] inline ExtendedInterval part_of(const Share& share, double from, double to) {
+ExtendedInterval part_of(const Share& share, double from, double to) {
     const double way = std::abs(to - from);
     return {share.value * (Extended(to) - from),
             way == 0 ? 0
                      : way * (share.error + 3 * kExtendedUnit * share.most) * kBoundSlack +
                            kTermUnderflow};
-}
-
-/// The double nearest to where one is after that share of the way.
-[[gnu::always_inline]] inline std::optional<double> nearest_on_way(const Share& share, double from,
-                                                                   double to) {
-    if (!kExtended) return std::nullopt;
-    const ExtendedInterval part = part_of(share, from, to);
-    const double most = std::abs(from) + std::abs(to - from) * share.most;
-    return nearest_within(from + part.value,
-                          part.error == 0 ? 0 : part.error + 3 * kExtendedUnit * most);
 }
 
 /// Where two edges cross, relative to the first one's first vertex.
@@ -227,14 +208,6 @@ std::optional<double> nearest_sum(double from, const ExtendedInterval& value) {
     return nearest(whole, exact ? 0 : value.error + kExtendedUnit * size(whole));
 }
 
-std::array<std::optional<double>, 2> nearest_crossing(const PlanArrangement& g, const Line& l,
-                                                      const Line& m) {
-    keep_extended();
-    const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
-    const Share share = share_of_way(g, l, m);
-    return {nearest_on_way(share, o.x, p.x), nearest_on_way(share, o.y, p.y)};
-}
-
 std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const NearPoint& p) {
     keep_extended();
     const SpaceVertex& corner = g.space(g.plane(plane).corner[0]);
@@ -242,40 +215,6 @@ std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const
     const NearNormal n = near_normal(g, plane);
     const ExtendedInterval dx = sum(difference(c.x, o.x), p.x), dy = sum(difference(c.y, o.y), p.y);
     return nearest_sum(corner.z, -quotient(determinant(n.a, dx, -n.b, dy), n.c));
-}
-
-std::optional<double> near_edge_height(const PlanArrangement& g, SpaceId from, SpaceId to,
-                                       const NearPoint& point) {
-    keep_extended();
-    const SpaceVertex &s = g.space(from), &t = g.space(to);
-    const Point &p = g.point(s.plan), &q = g.point(t.plan), &o = g.point(point.origin);
-    const ExtendedInterval along_x = difference(p.x, q.x), along_y = difference(p.y, q.y);
-    const bool is_x = size(along_x.value) >= size(along_y.value);
-    const ExtendedInterval way =
-        is_x ? sum(difference(p.x, o.x), point.x) : sum(difference(p.y, o.y), point.y);
-    const ExtendedInterval rise = difference(s.z, t.z);
-    const Extended product = way.value * rise.value;
-    const double error = size(way.value) * rise.error +
-                         (size(rise.value) + rise.error) * way.error +
-                         kExtendedUnit * size(product);
-    const bool exact = error == 0 && product == 0;
-    return nearest_sum(
-        s.z, quotient({product, exact ? 0 : error + kExtendedUnderflow}, is_x ? along_x : along_y));
-}
-
-std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId from, SpaceId to,
-                                              const Line& l, const Line& m) {
-    keep_extended();
-    const SpaceVertex &s = g.space(from), &t = g.space(to);
-    if (!l.is_edge() || !m.is_edge()) return std::nullopt;
-    const bool is_first = s.plan == l.ends()[0] || s.plan == l.ends()[1];
-    const Line &edge = is_first ? l : m, &other = is_first ? m : l;
-    const auto [low_end, high_end] = edge.ends();
-    const bool is_forward = s.plan == low_end;
-    if (s.plan != (is_forward ? low_end : high_end) || t.plan != (is_forward ? high_end : low_end))
-        return std::nullopt;
-    const double low = is_forward ? s.z : t.z, high = is_forward ? t.z : s.z;
-    return nearest_on_way(share_of_way(g, edge, other), low, high);
 }
 
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
@@ -350,17 +289,9 @@ HeightName LocalArrangement::height_name(PlaneId plane, PointId id) const {
 void LocalArrangement::locate(Point& p) {
     const Line& l = line(p.first);
     const Line& m = line(p.second);
-    std::optional<double> x, y;
-    if (l.is_edge() && m.is_edge()) {
-        const auto known = nearest_crossing(shared_, l, m);
-        x = known[0];
-        y = known[1];
-    } else {
-        const NearPoint close = approximate(p);
-        const Point& from = shared_.point(close.origin);
-        x = nearest_sum(from.x, close.x);
-        y = nearest_sum(from.y, close.y);
-    }
+    const NearPoint close = approximate(p);
+    const Point& from = shared_.point(close.origin);
+    std::optional<double> x = nearest_sum(from.x, close.x), y = nearest_sum(from.y, close.y);
     if (!x || !y) {
         const VertexId origin = anchor(shared_, l);
         const Point& o = shared_.point(origin);
@@ -398,22 +329,6 @@ std::array<double, 2> LocalArrangement::rounded(PointId id) {
 
 double LocalArrangement::rounded_height(PlaneId plane, PointId id) {
     return rounded_height(plane, id, approximate(id));
-}
-
-std::optional<double> LocalArrangement::rounded_height_of_crossing(const HeightName& name,
-                                                                   PointId id) const {
-    if (!name.is_edge() || is_vertex(id)) return std::nullopt;
-    const Point& p = point(id);
-    return near_height_of_crossing(shared_, name.from(), name.to(), line(p.first), line(p.second));
-}
-
-double LocalArrangement::rounded_height(PlaneId plane, const HeightName& name, PointId id,
-                                        const NearPoint& close) {
-    if (name.is_edge()) {
-        if (name.from() == name.to()) return shared_.space(name.from()).z;
-        if (const auto z = near_edge_height(shared_, name.from(), name.to(), close)) return *z;
-    }
-    return rounded_height(plane, id, close);
 }
 
 double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {

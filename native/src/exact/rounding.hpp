@@ -22,23 +22,9 @@ NearLine near_line(const PlanArrangement& geometry, const Line& line, VertexId o
 /// error leaves two to choose from.
 std::optional<double> nearest_sum(double from, const ExtendedInterval& value);
 
-/// The coordinates of the crossing of two input edges, likewise.
-std::array<std::optional<double>, 2> nearest_crossing(const PlanArrangement& geometry,
-                                                      const Line& first, const Line& second);
-
 /// The height of a plane above a point, likewise.
 std::optional<double> near_height(const PlanArrangement& geometry, PlaneId plane,
                                   const NearPoint& point);
-
-/// The height of an input edge above a point of it, likewise: the same as that of every plane that
-/// stands on the edge, in a third of the time.
-std::optional<double> near_edge_height(const PlanArrangement& geometry, SpaceId from, SpaceId to,
-                                       const NearPoint& point);
-
-/// The same at the crossing of two lines, where both are input edges and one of them is that edge:
-/// no more than the share of the way along it is asked for.
-std::optional<double> near_height_of_crossing(const PlanArrangement& geometry, SpaceId from,
-                                              SpaceId to, const Line& first, const Line& second);
 
 /// LocalArrangement::line_key of a line relative to the origin of the keys, likewise.
 std::optional<std::array<double, 3>> near_line_key(const NearLine& line);

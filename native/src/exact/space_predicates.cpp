@@ -76,68 +76,6 @@ bool lie_on_one_plane_by_construction(const SpacePoints& points,
     return false;
 }
 
-/// Whether a point surely lies in the upright plane over p and q, as it was constructed there.
-bool is_upright_over(const SpacePoints& points, SpacePointId p, SpacePointId q,
-                     SpacePointId point) {
-    if (points.is_double(point)) {
-        const SpacePosition& at = points.rounded(point);
-        return std::ranges::any_of(std::array{p, q}, [&](SpacePointId end) {
-            return at[0] == points.rounded(end)[0] && at[1] == points.rounded(end)[1];
-        });
-    }
-    return std::ranges::any_of(points.lines(point), [&](const SpacePoints::Line& line) {
-        return line[0] != kNone && is_upright_over(points, p, q, line[0]) &&
-               is_upright_over(points, p, q, line[1]);
-    });
-}
-
-/// Whether points surely lie in one upright plane, that of a line on which one was constructed:
-/// walls of models with the same plan do.
-template <std::size_t kCount>
-bool lie_in_one_upright_plane(const SpacePoints& points, const ConstructedPoint& own,
-                              const std::array<SpacePointId, kCount>& of) {
-    const SpacePointId p = own.of.of[0], q = own.of.of[1];
-    if (!points.is_double(p) || !points.is_double(q)) return false;
-    return std::ranges::all_of(
-        of, [&](SpacePointId point) { return is_upright_over(points, p, q, point); });
-}
-
-/// Whether a point surely lies in the plane that one was constructed on.
-bool is_on_plane_of(const SpacePoints& points, const ConstructedPoint& own, SpacePointId point) {
-    if (const ConstructedPoint* other = points.construction(point))
-        return other->of.is_on_plane_of(own.of);
-    return std::ranges::any_of(points.lines(point), [&](const SpacePoints::Line& line) {
-        return line[0] != kNone && is_on_plane_of(points, own, line[0]) &&
-               is_on_plane_of(points, own, line[1]);
-    });
-}
-
-/// Whether points surely lie on one line: in the plane that one was constructed on, and in the
-/// upright one of the line that it was constructed on. That line passes through the former plane,
-/// so that the two differ.
-bool lie_on_one_upright_line(const SpacePoints& points, const ConstructedPoint& own,
-                             const std::array<SpacePointId, 3>& of) {
-    return std::ranges::all_of(of,
-                               [&](SpacePointId p) { return is_on_plane_of(points, own, p); }) &&
-           lie_in_one_upright_plane(points, own, of);
-}
-
-/// How one of some points was constructed: where a line that is not upright passes through a plane,
-/// if there is such a one; nullptr where none was constructed so.
-const ConstructedPoint* construction_of_one(const SpacePoints& points,
-                                            std::span<const SpacePointId> of) {
-    const ConstructedPoint* found = nullptr;
-    for (const SpacePointId p : of) {
-        const ConstructedPoint* own = points.construction(p);
-        if (own == nullptr) continue;
-        const SpacePosition &from = points.rounded(own->of.of[0]),
-                            &to = points.rounded(own->of.of[1]);
-        if (from[0] != to[0] || from[1] != to[1]) return own;
-        found = own;
-    }
-    return found;
-}
-
 /// A coordinate to twice the precision of doubles.
 DoubleDoubleInterval interval(const SpacePoints& points, SpacePointId p, std::size_t axis) {
     if (const ConstructedPoint* own = points.construction(p)) return own->at[axis];
@@ -249,8 +187,6 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
                                           points.rounded(d), inexactness(points, of)))
         return *sign;
     if (lie_on_one_plane_by_construction(points, of)) return 0;
-    const ConstructedPoint* own = construction_of_one(points, of);
-    if (own != nullptr && lie_in_one_upright_plane(points, *own, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
 }
@@ -278,8 +214,6 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
     if (const auto sign = orient2d_filter(seen(a), seen(b), seen(c), inexactness(points, of)))
         return *sign;
     if (lie_on_one_line_by_construction(points, of)) return 0;
-    const ConstructedPoint* own = construction_of_one(points, of);
-    if (own != nullptr && lie_on_one_upright_line(points, *own, of)) return 0;
     if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });
 }

@@ -170,9 +170,8 @@ double VertexHeights::rounded(const HeightLevel& level, PointId point,
                               std::optional<exact::NearPoint>& near) {
     if (level.name.is_edge() && level.name.from() == level.name.to())
         return scope_.shared().space(level.name.from()).z;
-    if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) return *z;
     if (!near) near = scope_.approximate(point);
-    return scope_.rounded_height(level.plane, level.name, point, *near);
+    return scope_.rounded_height(level.plane, point, *near);
 }
 
 void VertexHeights::rank_levels(PointId point) {
