@@ -50,7 +50,6 @@ public:
                 if (sides.size() > kFacesOfLargeCell) {
                     large[chunk].push_back(c);
                 } else {
-                    send_for(sides);
                     closed(c, open_edge(model_, sides, table), found[chunk].closed);
                 }
             }
@@ -69,25 +68,6 @@ public:
 
 private:
     static constexpr std::size_t kCellsOfChunk = 1024;
-
-    // The faces of a cell lie all over the memory: those of the next cells are sent for while this
-    // one is looked at, first where their corners are, then the corners.
-    void send_for(std::span<const Side> sides) const {
-        constexpr std::size_t kNear = 24, kFar = 64;
-        const Side* const end = sides_.values.end();
-        for (const Side& side : sides) {
-            const Side* const ahead = &side;
-            if (end - ahead > static_cast<std::ptrdiff_t>(kFar)) {
-                __builtin_prefetch(&model_.face_offsets[face_of(ahead[kFar])]);
-                __builtin_prefetch(&faces_[face_of(ahead[kFar])]);
-            }
-            if (end - ahead > static_cast<std::ptrdiff_t>(kNear)) {
-                const auto corners = model_.face(face_of(ahead[kNear]));
-                __builtin_prefetch(corners.data());
-                __builtin_prefetch(corners.data() + corners.size() - 1);
-            }
-        }
-    }
 
     void closed(std::size_t c, const std::optional<EdgeCount>& open, Findings& found) const {
         if (!open) return;
