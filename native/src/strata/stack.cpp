@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "realmodel/base/page_store.hpp"
 #include "strata/build.hpp"
 #include "strata/cells/volumes.hpp"
 #include "strata/repair/border_joining.hpp"
@@ -128,7 +127,6 @@ Tile build_context(PlanContext& context, const std::vector<Warning>& warnings, C
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution& execution,
                               CellKind cells, const WantedSpace* wanted, bool is_local) {
-    const page_store::PageCache cache;
     const LoadedInput loaded = load_repaired(rocks, execution);
     if (wanted != nullptr) loaded.context->wanted.emplace(*wanted);
     loaded.context->is_local = is_local;
@@ -137,7 +135,6 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution
 
 Tile build_tile(std::span<const StackInput> rocks, const Window& window, const Execution& execution,
                 CellKind cells) {
-    const page_store::PageCache cache;
     const std::array corners{window.low_x,  window.low_y,  window.high_x, window.low_y,
                              window.high_x, window.high_y, window.low_x,  window.high_y};
     constexpr std::array<std::int32_t, 6> kTriangles{0, 1, 2, 0, 2, 3};

@@ -5,20 +5,19 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
 #include <iterator>
 #include <new>
 #include <type_traits>
 #include <utility>
 
-#include "realmodel/base/page_store.hpp"
-
 namespace realmodel {
 
 /// A vector of numbers, or of what is nothing but numbers, that differs from std::vector in two
 /// ways. Elements that are added without a value are not set: the threads that fill them are the
-/// first to touch their memory. And where it is large it takes the memory of others that were
-/// dropped (page_store.hpp), and grows as realloc does it, which on Linux copies nothing.
+/// first to touch their memory. And it grows as realloc does it, which on Linux copies nothing of
+/// large ones.
 template <class Element>
 class Array {
     static_assert(std::is_trivially_copyable_v<Element> &&
@@ -49,13 +48,13 @@ public:
         Array(std::move(other)).swap(*this);
         return *this;
     }
-    ~Array() { page_store::drop(memory_); }
+    ~Array() { std::free(data_); }
 
     std::size_t size() const { return size_; }
-    std::size_t capacity() const { return memory_.reserved / sizeof(Element); }
+    std::size_t capacity() const { return capacity_; }
     bool empty() const { return size_ == 0; }
-    Element* data() { return reinterpret_cast<Element*>(memory_.begin); }
-    const Element* data() const { return reinterpret_cast<const Element*>(memory_.begin); }
+    Element* data() { return data_; }
+    const Element* data() const { return data_; }
     Element& operator[](std::size_t i) { return data()[i]; }
     const Element& operator[](std::size_t i) const { return data()[i]; }
     Element* begin() { return data(); }
@@ -68,12 +67,12 @@ public:
     const Element& back() const { return data()[size_ - 1]; }
 
     void push_back(const Element& element) {
-        if ((size_ + 1) * sizeof(Element) > memory_.ready) {
-            const Element own = element;  // it may be one of these
-            make_ready(size_ + 1);
-            data()[size_++] = own;
+        if (size_ < capacity_) {
+            data_[size_++] = element;
         } else {
-            data()[size_++] = element;
+            const Element copy = element;  // it may be one of these
+            make_ready(size_ + 1);
+            data_[size_++] = copy;
         }
     }
     void pop_back() {
@@ -106,15 +105,17 @@ public:
     }
     /// Elements stay where they are while there are no more than `capacity`.
     void reserve(std::size_t capacity) {
-        change_memory(page_store::reserve, std::max<std::size_t>(capacity, 4));
+        if (capacity > capacity_) change_capacity(std::max<std::size_t>(capacity, 4));
     }
     /// Makes memory ready for elements that are set before resize() counts them.
     void make_ready(std::size_t size) {
-        if (size > memory_.ready / sizeof(Element)) change_memory(page_store::make_ready, size);
+        if (size > capacity_)
+            change_capacity(std::max({size, 2 * capacity_, 64 / sizeof(Element)}));
     }
     void clear() { size_ = 0; }
     void swap(Array& other) noexcept {
-        std::swap(memory_, other.memory_);
+        std::swap(data_, other.data_);
+        std::swap(capacity_, other.capacity_);
         std::swap(size_, other.size_);
     }
 
@@ -123,17 +124,16 @@ public:
     }
 
 private:
-    void change_memory(void (*change)(page_store::Memory&, std::size_t), std::size_t size) {
-        if (size > PTRDIFF_MAX / 4 / sizeof(Element)) throw std::bad_alloc();
-        try {
-            change(memory_, size * sizeof(Element));
-        } catch (...) {
-            size_ = std::min(size_, capacity());
-            throw;
-        }
+    void change_capacity(std::size_t capacity) {
+        if (capacity > PTRDIFF_MAX / 4 / sizeof(Element)) throw std::bad_alloc();
+        void* const data = std::realloc(data_, capacity * sizeof(Element));
+        if (data == nullptr) throw std::bad_alloc();
+        data_ = static_cast<Element*>(data);
+        capacity_ = capacity;
     }
 
-    page_store::Memory memory_;
+    Element* data_ = nullptr;
+    std::size_t capacity_ = 0;
     std::size_t size_ = 0;
 };
 
