@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#ifndef EIGEN_DONT_PARALLELIZE
+#define EIGEN_DONT_PARALLELIZE
+#endif
+#include <Eigen/Core>
 #include <array>
 #include <numeric>
 #include <span>
@@ -74,25 +78,34 @@ inline Vec3 mapped(const Map3& map, Vec3 v, std::span<const double> lift,
 /// covariance of Matern with smoothness 7/2, of distances in ranges (Rasmussen and Williams 2006,
 /// equation 4.14).
 struct Kernel {
+    static double decayed(double r) { return interpolation::decay(r); }
+    template <class Lanes>
+    static Lanes decayed(const Lanes& r) {
+        Lanes out;
+        for (Eigen::Index n = 0; n < r.size(); ++n)
+            out(n) = interpolation::decay(r(n));
+        return out;
+    }
+
     int order = 3;  ///< 2, 3 or 5
     double error = 0;
 
-    /// At a distance.
-    double value(double r) const {
+    /// At a distance, or at many.
+    template <class Number>
+    Number value(const Number& r) const {
         if (order == 2) return -r;
         if (order == 3) return r * r * r;
-        return interpolation::decay(r) * (1 + r * (1 + r * (0.4 + r / 15)));
+        return decayed(r) * (1 + r * (1 + r * (0.4 + r / 15)));
     }
     /// Its derivative by the distance, divided by this.
-    double rise(double r) const {
+    template <class Number>
+    Number rise(const Number& r) const {
         if (order == 2) return -1 / r;
         if (order == 3) return 3 * r;
-        return -interpolation::decay(r) * (0.2 + r * (0.2 + r / 15));
+        return -decayed(r) * (0.2 + r * (0.2 + r / 15));
     }
     /// The derivative of rise(), divided by the distance: of the orders 3 and 5.
-    double bend(double r) const {
-        return order == 3 ? 3 / r : interpolation::decay(r) * (1 + r) / 15;
-    }
+    double bend(double r) const { return order == 3 ? 3 / r : decayed(r) * (1 + r) / 15; }
 };
 
 /// The derivative along a vector, which says its weight by its length.

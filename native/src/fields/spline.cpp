@@ -19,14 +19,6 @@ constexpr double kProducts = 100;
 // Of a row's variance: what the rows before it leave of a row that follows from them.
 constexpr double kRedundant = 1e-13;
 constexpr Eigen::Index kBlock = 64;
-using Lanes = Eigen::Array<double, kBlock, 1>;
-
-Lanes decayed(const Lanes& r) {
-    Lanes out;
-    for (Eigen::Index n = 0; n < kBlock; ++n)
-        out(n) = interpolation::decay(r(n));
-    return out;
-}
 
 }  // namespace
 
@@ -214,38 +206,25 @@ Vec3 Spline::place(const Vec3& at, std::span<const double> lift) const {
     return mapped(smoothness_.map, at, lift, smoothness_.throws);
 }
 
-double Spline::value(const Vec3& at, const Lift& lift) const {
-    const Vec3 p = place(at, lift);
-    const Lift q = scaled(smoothness_.lift, lift);
-    const Kernel kernel = smoothness_.kernel();
-    double sum = dot(tilt_, p) + product(q, lift_tilt_);
-    for (const ValueAtom& atom : value_centers_) {
-        const Vec3 d = minus(p, atom.at);
-        sum += atom.weight * kernel.value(std::sqrt(dot(d, d) + squared(q, atom.lift)));
-    }
-    for (const SlopeAtom& atom : slope_centers_) {
-        const Vec3 d = minus(p, atom.at);
-        sum -= kernel.rise(std::sqrt(dot(d, d) + squared(q, atom.lift))) *
-               (dot(d, atom.along) + along(q, atom.lift, atom.along_lift));
-    }
-    return sum;
-}
-
-void Spline::values_at(std::span<const Vec3> positions, std::span<const double> lifts,
+/// So many positions at a time.
+template <std::size_t kWidth>
+void Spline::blocks_at(std::span<const Vec3> positions, std::span<const double> lifts,
                        std::span<double> values) const {
+    using Lanes = Eigen::Array<double, static_cast<int>(kWidth), 1>;
     const std::size_t further = positions.empty() ? 0 : lifts.size() / positions.size();
+    const Kernel kernel = smoothness_.kernel();
     std::vector<Lanes> up(further, Lanes::Zero());
-    for (std::size_t first = 0; first < positions.size(); first += kBlock) {
-        const std::size_t count = std::min<std::size_t>(kBlock, positions.size() - first);
+    for (std::size_t first = 0; first < positions.size(); first += kWidth) {
+        const std::size_t count = std::min(kWidth, positions.size() - first);
         Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
         for (std::size_t n = 0; n < count; ++n) {
-            const Vec3 p =
-                place(positions[first + n], lifts.subspan((first + n) * further, further));
+            const auto own = lifts.subspan((first + n) * further, further);
+            const Vec3 p = place(positions[first + n], own);
             x(n) = p[0];
             y(n) = p[1];
             z(n) = p[2];
             for (std::size_t k = 0; k < further; ++k)
-                up[k](n) = smoothness_.lift * lifts[(first + n) * further + k];
+                up[k](n) = smoothness_.lift * own[k];
         }
         Lanes sum = tilt_[0] * x + tilt_[1] * y + tilt_[2] * z;
         for (std::size_t k = 0; k < further; ++k)
@@ -255,32 +234,27 @@ void Spline::values_at(std::span<const Vec3> positions, std::span<const double> 
                 (x - atom.at[0]).square() + (y - atom.at[1]).square() + (z - atom.at[2]).square();
             for (std::size_t k = 0; k < further; ++k)
                 squared += (up[k] - atom.lift[k]).square();
-            const Lanes r = squared.sqrt();
-            if (smoothness_.order == 2)
-                sum -= atom.weight * r;
-            else if (smoothness_.order == 3)
-                sum += atom.weight * squared * r;
-            else
-                sum += atom.weight * decayed(r) * (1 + r * (1 + r * (0.4 + r / 15)));
+            sum += atom.weight * kernel.value<Lanes>(squared.sqrt());
         }
         for (const SlopeAtom& atom : slope_centers_) {
             const Lanes dx = x - atom.at[0], dy = y - atom.at[1], dz = z - atom.at[2];
             Lanes squared = dx.square() + dy.square() + dz.square();
-            Lanes rise = dx * atom.along[0] + dy * atom.along[1] + dz * atom.along[2];
+            Lanes along = dx * atom.along[0] + dy * atom.along[1] + dz * atom.along[2];
             for (std::size_t k = 0; k < further; ++k) {
                 const Lanes dk = up[k] - atom.lift[k];
                 squared += dk.square();
-                rise += dk * atom.along_lift[k];
+                along += dk * atom.along_lift[k];
             }
-            const Lanes r = squared.sqrt();
-            if (smoothness_.order == 3)
-                sum -= 3 * r * rise;
-            else
-                sum += decayed(r) * (0.2 + r * (0.2 + r / 15)) * rise;
+            sum -= kernel.rise<Lanes>(squared.sqrt()) * along;
         }
         std::copy_n(sum.data(), count, values.data() + first);
     }
 }
+
+template void Spline::blocks_at<1>(std::span<const Vec3>, std::span<const double>,
+                                   std::span<double>) const;
+template void Spline::blocks_at<64>(std::span<const Vec3>, std::span<const double>,
+                                    std::span<double>) const;
 
 std::pair<Vec3, Lift> Spline::mapped_gradient(const Vec3& at, const Lift& lift) const {
     const Vec3 p = place(at, lift);

@@ -61,7 +61,11 @@ public:
     /// Whether a functional follows from those before it, and was left out.
     bool left_out(std::size_t functional) const;
 
-    double value(const Vec3& at, const Lift& lift = {}) const;
+    double value(const Vec3& at, const Lift& lift = {}) const {
+        double out = 0;
+        blocks_at<1>({&at, 1}, lift, {&out, 1});
+        return out;
+    }
     /// Where further coordinates do not change.
     Vec3 gradient(const Vec3& at, const Lift& lift = {}) const;
     /// With the errors of measured values.
@@ -74,10 +78,16 @@ public:
     /// The same as value() of each, faster.
     /// @param lifts  further coordinates, those of one position together
     void values_at(std::span<const Vec3> positions, std::span<const double> lifts,
-                   std::span<double> values) const;
+                   std::span<double> values) const {
+        blocks_at<64>(positions, lifts, values);
+    }
 
 private:
     using Place = std::pair<Vec3, Lift>;
+
+    template <std::size_t kWidth>
+    void blocks_at(std::span<const Vec3> positions, std::span<const double> lifts,
+                   std::span<double> values) const;
 
     void factor(const Execution& execution);
     void solve(const Execution& execution);

@@ -91,9 +91,9 @@ private:
                          const Position& b) {
         const auto root = [](double v) { return std::sqrt(v); };
         const double dx = a[0] - b[0], dy = a[1] - b[1];
-        double sum = covariance_of(parts[0], dx, dy, root);
-        for (std::size_t part = 1; part < parts.size(); ++part)
-            sum += covariance_of(parts[part], dx, dy, root);
+        double sum = 0;
+        for (const CovariancePart& part : parts)
+            sum += covariance_of(part, dx, dy, root);
         return sum;
     }
 

@@ -2,6 +2,7 @@
 #include "interpolation/variogram/likelihood.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -83,40 +84,6 @@ bool is_stable(const Eigen::LLT<Eigen::MatrixXd>& factor, double least) {
     const double root = factor.matrixLLT().diagonal().minCoeff();
     return root * root > least;
 }
-
-/// The terms of a drift, whitened by the factor of the covariance of the data.
-class WhitenedDrift {
-public:
-    WhitenedDrift(Eigen::MatrixXd terms, const Eigen::LLT<Eigen::MatrixXd>& lower)
-        : terms_(std::move(terms)) {
-        const Eigen::MatrixXd plain = terms_;
-        lower.matrixL().solveInPlace(terms_);
-        gram_.compute(terms_.transpose() * terms_);
-        const Eigen::LLT<Eigen::MatrixXd> of_plain(plain.transpose() * plain);
-        const double root = std::sqrt(static_cast<double>(plain.rows()));
-        is_determined_ = gram_.info() == Eigen::Success && of_plain.info() == Eigen::Success &&
-                         of_plain.matrixLLT().diagonal().minCoeff() > kLeastTerm * root;
-    }
-
-    /// Whether the data distinguish the terms.
-    bool is_determined() const { return is_determined_; }
-    const Eigen::MatrixXd& terms() const { return terms_; }
-    Eigen::VectorXd coefficients(const Eigen::VectorXd& values) const {
-        return gram_.solve(terms_.transpose() * values);
-    }
-    /// Half the logarithm of |F^T C^-1 F|.
-    double log_determinant() const {
-        double sum = 0;
-        for (Eigen::Index k = 0; k < terms_.cols(); ++k)
-            sum += elementary::log(gram_.matrixLLT()(k, k));
-        return sum;
-    }
-
-private:
-    Eigen::MatrixXd terms_;
-    Eigen::LLT<Eigen::MatrixXd> gram_;
-    bool is_determined_ = false;
-};
 
 }  // namespace
 
@@ -219,13 +186,19 @@ std::optional<Likelihood::LikelihoodTerms> Likelihood::of(const CovarianceModel&
     const Eigen::LLT<Eigen::MatrixXd> lower(matrix);
     const bool is_gaussian = field.model == VariogramModel::kGaussian;
     if (!is_stable(lower, is_gaussian ? kLeastOfGaussian : kLeastVariance)) return std::nullopt;
+    const Eigen::Index terms = drift.cols();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> plain(drift);
+    const double least = kLeastTerm * std::sqrt(static_cast<double>(count));
+    if (!(plain.matrixQR().diagonal().cwiseAbs().minCoeff() > least)) return std::nullopt;
     lower.matrixL().solveInPlace(values);
-    const WhitenedDrift whitened(std::move(drift), lower);
-    if (!whitened.is_determined()) return std::nullopt;
-    const Eigen::VectorXd coefficients = whitened.coefficients(values);
-    values -= whitened.terms() * coefficients;
-    values -= whitened.terms() * whitened.coefficients(values);
-    double sum = -whitened.log_determinant();
+    lower.matrixL().solveInPlace(drift);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> whitened(drift);
+    values.applyOnTheLeft(whitened.householderQ().adjoint());
+    const auto upper = whitened.matrixQR().topRows(terms).triangularView<Eigen::Upper>();
+    const Eigen::VectorXd coefficients = upper.solve(values.head(terms));
+    double sum = 0;  // with half the logarithm of |F^T C^-1 F|
+    for (Eigen::Index k = 0; k < terms; ++k)
+        sum -= elementary::log(std::abs(whitened.matrixQR()(k, k)));
     for (Eigen::Index i = 0; i < count; ++i)
         sum -= elementary::log(lower.matrixLLT()(i, i));
     // what scales heights and differences scales their density, too
@@ -233,7 +206,7 @@ std::optional<Likelihood::LikelihoodTerms> Likelihood::of(const CovarianceModel&
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    LikelihoodTerms found{sum, values.squaredNorm(), free_, {}, 0};
+    LikelihoodTerms found{sum, values.tail(count - terms).squaredNorm(), free_, {}, 0};
     if (!std::isfinite(found.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
         found.constants.push_back(column < 0 ? 0 : coefficients(column));

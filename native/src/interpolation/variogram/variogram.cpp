@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "interpolation/kriging/decay.hpp"
-#include "realmodel/base/elementary.hpp"
+#include "interpolation/kriging/covariance.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
@@ -52,23 +51,8 @@ VariogramModel variogram_model(std::string_view name) {
 }
 
 double structure(VariogramModel model, double t) {
-    constexpr double a = kMatern32Scale, b = kMatern52Scale;
-    switch (model) {
-        case VariogramModel::kSpherical:
-            return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;
-        case VariogramModel::kExponential:
-            return -elementary::expm1(-3 * t);
-        case VariogramModel::kGaussian:
-        case VariogramModel::kWave:
-            return -elementary::expm1(-3 * t * t);
-        case VariogramModel::kCubic:
-            return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;
-        case VariogramModel::kMatern32:
-            return 1 - (1 + a * t) * elementary::exp(-a * t);
-        case VariogramModel::kMatern52:
-            return 1 - (1 + b * t + b * b * t * t / 3) * elementary::exp(-b * t);
-    }
-    return 1;
+    const auto root = [](double square) { return std::sqrt(square); };
+    return 1 - covariance_of({model, 1, 0, 0, 1, 1, 0}, t, 0.0, root);
 }
 
 double Variogram::first_sill() const {
