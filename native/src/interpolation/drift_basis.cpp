@@ -124,17 +124,4 @@ DriftBasis::Coefficients DriftBasis::solve(const DriftFrame::Terms& terms) const
     return out;
 }
 
-std::vector<double> without_drift(const DataPoints& data, Drift drift) {
-    const Eigen::MatrixXd terms =
-        DriftFrame(data.local, drift).terms(std::span<const Position>(data.local));
-    Eigen::VectorXd z(terms.rows());
-    for (Eigen::Index i = 0; i < z.size(); ++i)
-        z(i) = data.values[i] - data.values[0];
-    DriftBasis basis;
-    basis.make(terms, terms);
-    for (int pass = 0; pass < 2; ++pass)
-        z -= basis.expand(basis.project(z));
-    return {z.begin(), z.end()};
-}
-
 }  // namespace realmodel::interpolation

@@ -73,7 +73,4 @@ private:
     Eigen::MatrixXd plain_basis_;
 };
 
-/// The residuals of the polynomial that fits values best (least squares).
-std::vector<double> without_drift(const DataPoints& data, Drift drift);
-
 }  // namespace realmodel::interpolation

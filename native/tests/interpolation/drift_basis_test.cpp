@@ -69,17 +69,5 @@ TEST(DriftBasis, TermsThatThePointsDoNotDistinguishAreLeftOut) {
     EXPECT_EQ(kept(one, Drift::kLinear), 1);
 }
 
-TEST(WithoutDrift, NothingIsLeftOfAPlane) {
-    Points points = hills(40, 300, {4e5, 5e6});
-    for (auto& p : points)
-        p[2] = 1000 + 0.5 * (p[0] - 4e5) - 2 * (p[1] - 5e6);
-    for (const double residual : without_drift(prepare_points(points), Drift::kLinear))
-        EXPECT_NEAR(residual, 0, 1e-10);
-    const std::vector<double> means =
-        without_drift(prepare_points(Points{{0, 0, 1}, {1, 0, 2}, {0, 1, 6}}), Drift::kConstant);
-    EXPECT_NEAR(means[0], -2, 1e-15);
-    EXPECT_NEAR(means[2], 3, 1e-15);
-}
-
 }  // namespace
 }  // namespace realmodel::interpolation

@@ -41,7 +41,6 @@ ManyPoints::ManyPoints(std::span<const std::array<double, 3>> points, bool are_a
 }
 
 double ManyPoints::value(std::size_t i) const {
-    if (!residuals_.empty()) return residuals_[i];
     if (!trend_) return points_[i][2];
     const DriftBasis::Coefficients row = trend_->basis.solve(trend_->frame.terms(local(i)));
     return points_[i][2] - points_[0][2] - row.dot(trend_->coefficients);
@@ -49,10 +48,6 @@ double ManyPoints::value(std::size_t i) const {
 
 void ManyPoints::take_drift_out(Drift drift) {
     const DataPoints data = some(even_part(size(), kPointsOfDrift));
-    if (data.local.size() == size()) {
-        residuals_ = without_drift(data, drift);
-        return;
-    }
     DriftFrame frame(data.local, drift);
     const Eigen::MatrixXd terms = frame.terms(std::span<const Position>(data.local));
     DriftBasis basis;

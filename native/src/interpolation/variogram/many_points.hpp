@@ -72,8 +72,7 @@ private:
     std::vector<std::array<double, 3>> own_;  // where points were repeated
     std::span<const std::array<double, 3>> points_;
     std::size_t most_;
-    std::vector<double> residuals_;  // of few points with a drift
-    std::optional<Trend> trend_;     // of many
+    std::optional<Trend> trend_;
 };
 
 /// Where a number is among numbers that ManyPoints::kept gave of `size` points.

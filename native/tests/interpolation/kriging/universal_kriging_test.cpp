@@ -7,8 +7,6 @@
 #include "../../sanitized.hpp"
 #include "../dense_kriging.hpp"
 #include "../variogram_models.hpp"
-#include "interpolation/data_points.hpp"
-#include "interpolation/drift_basis.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
@@ -108,23 +106,6 @@ TEST(UniversalKriging, TheVariogramIsThatOfTheResiduals) {
     EXPECT_NEAR(tilted.sill, plain.sill, 1e-6 * plain.sill);
     EXPECT_NEAR(tilted.range, plain.range, 1e-6 * plain.range);
     EXPECT_GT(fit_variogram(points, {}).variogram.sill, 100 * plain.sill);
-}
-
-TEST(Drift, ResidualsAreWhatNoPolynomialTells) {
-    const DataPoints exact = prepare_points(on_polynomial(60, true));
-    for (const double r : without_drift(exact, Drift::kQuadratic))
-        EXPECT_NEAR(r, 0, 1e-12);
-    const DataPoints data = prepare_points(hills(60, 100, {4e5, 5e6}));
-    const std::vector<double> residuals = without_drift(data, Drift::kLinear);
-    double sum = 0, along_x = 0, along_y = 0;
-    for (std::size_t i = 0; i < residuals.size(); ++i) {
-        sum += residuals[i];
-        along_x += residuals[i] * data.local[i][0];
-        along_y += residuals[i] * data.local[i][1];
-    }
-    EXPECT_NEAR(sum, 0, 1e-9);
-    EXPECT_NEAR(along_x, 0, 1e-8);
-    EXPECT_NEAR(along_y, 0, 1e-8);
 }
 
 TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {

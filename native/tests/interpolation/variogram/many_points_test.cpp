@@ -97,6 +97,46 @@ TEST(ManyPoints, RepeatedOnesCountOnce) {
     EXPECT_THROW(ManyPoints{points}, InputError);
 }
 
+std::vector<double> residuals(const Points& points, Drift drift) {
+    ManyPoints data(points);
+    data.take_drift_out(drift);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < data.size(); ++i)
+        out.push_back(data.value(i));
+    return out;
+}
+
+TEST(ManyPoints, WithoutDriftNothingIsLeftOfAPlane) {
+    Points points = hills(40, 300, {4e5, 5e6});
+    for (auto& p : points)
+        p[2] = 1000 + 0.5 * (p[0] - 4e5) - 2 * (p[1] - 5e6);
+    for (const double residual : residuals(points, Drift::kLinear))
+        EXPECT_NEAR(residual, 0, 1e-10);
+    const auto means = residuals({{0, 0, 1}, {1, 0, 2}, {0, 1, 6}}, Drift::kConstant);
+    EXPECT_NEAR(means[0], -2, 1e-15);
+    EXPECT_NEAR(means[2], 3, 1e-15);
+}
+
+TEST(ManyPoints, ResidualsAreWhatNoPolynomialTells) {
+    Points points = hills(60, 100, {4e5, 5e6});
+    const std::vector<double> left = residuals(points, Drift::kLinear);
+    double sum = 0, along_x = 0, along_y = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        sum += left[i];
+        along_x += left[i] * (points[i][0] - 4e5);
+        along_y += left[i] * (points[i][1] - 5e6);
+    }
+    EXPECT_NEAR(sum, 0, 1e-9);
+    EXPECT_NEAR(along_x, 0, 1e-8);
+    EXPECT_NEAR(along_y, 0, 1e-8);
+    for (auto& [x, y, z] : points) {
+        const double u = x - 4e5, v = y - 5e6;
+        z = 2 + 0.1 * u - 0.3 * v + 1e-3 * u * u + 2e-3 * u * v - 1e-3 * v * v;
+    }
+    for (const double residual : residuals(points, Drift::kQuadratic))
+        EXPECT_NEAR(residual, 0, 1e-12);
+}
+
 TEST(ManyPoints, TheTrendOfMoreThanAreFittedIsThatOfAPart) {
     Points points = hills(30'000, 1000, {4e5, 5e6});
     for (auto& [x, y, z] : points)
