@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "base/counting_sort.hpp"
 #include "base/vectors.hpp"
 #include "interpolation/data_points.hpp"
 #include "realmodel/interpolation/ties.hpp"
@@ -52,30 +51,6 @@ inline double tie_kernel(const SheetNode& a, const SheetNode& b, double radius) 
     return value;
 }
 
-/// Nodes that lie close together.
-struct NodeBlock {
-    std::span<const std::uint32_t> numbers;
-    Eigen::ArrayXd x, y;
-    Eigen::ArrayXXd sided;  ///< a column for each fault
-    spatial::PlanBox box;
-};
-
-/// Nodes of a sheet, as SheetNode, in blocks.
-class NodeBlocks {
-public:
-    /// @param sided  of each node, `faults` numbers
-    NodeBlocks(std::span<const Position> nodes, std::span<const double> sided, std::size_t faults);
-
-    std::size_t size() const { return blocks_.size(); }
-    NodeBlock operator[](std::size_t number) const;
-
-private:
-    std::span<const Position> nodes_;
-    std::span<const double> sided_;
-    std::size_t faults_;
-    Buckets<std::uint32_t> blocks_;
-};
-
 /// The sum of kernels of one radius around centers with coefficients that are not 0.
 class KernelSum {
 public:
@@ -83,21 +58,13 @@ public:
     KernelSum(std::span<const Position> positions, std::span<const double> sided,
               std::size_t faults, std::span<const double> coefficients, double radius);
 
-    /// At the nodes of a block: terms are added in the order of the centers, so each node has the
-    /// same bytes in any block.
-    Eigen::ArrayXd at(const NodeBlock& block) const;
+    double at(const SheetNode& node) const;
 
 private:
-    static std::vector<std::int32_t> that_count(std::span<const double> coefficients);
-    std::vector<Position> own(std::span<const Position> positions) const;
-    /// The centers that may reach a block, ascending.
-    std::vector<std::size_t> near(const NodeBlock& block) const;
-
-    std::vector<std::int32_t> numbers_;
-    std::span<const Position> positions_;
     std::span<const double> sided_, coefficients_;
     std::size_t faults_;
     double radius_;
+    std::vector<std::size_t> numbers_;  // of the centers in the bins
     spatial::PointBins bins_;
 };
 

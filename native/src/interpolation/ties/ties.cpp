@@ -71,11 +71,7 @@ private:
 class Tying {
 public:
     Tying(const TieRows& rows, double tolerance, const Execution& execution)
-        : rows_(rows),
-          tolerance_(tolerance),
-          execution_(execution),
-          centers_(rows.positions, rows.sided, rows.faults),
-          z_(rows.heights) {
+        : rows_(rows), tolerance_(tolerance), execution_(execution), z_(rows.heights) {
         state_.assign(rows.rows.size(), TieState::kIdle);
     }
 
@@ -380,26 +376,21 @@ private:
         }
         const KernelSum sum(rows_.positions, rows_.sided, rows_.faults, coefficients,
                             radii_[level]);
-        const NodeLoop loop{centers_.size(), 4, execution_};
+        const NodeLoop loop{z_.size(), 256, execution_};
         loop.over_nodes([] { return 0; },
-                        [&](int, std::size_t number) {
-                            const NodeBlock block = centers_[number];
-                            const Eigen::ArrayXd found = sum.at(block);
-                            for (std::size_t k = 0; k < block.numbers.size(); ++k) {
-                                const std::uint32_t i = block.numbers[k];
-                                corrections_[level][i] = found[static_cast<Eigen::Index>(k)];
-                                double correction = 0;
-                                for (const auto& of_level : corrections_)
-                                    correction += of_level[i];
-                                z_[i] = rows_.heights[i] + correction;
-                            }
+                        [&](int, std::size_t i) {
+                            corrections_[level][i] =
+                                sum.at(rows_.center(static_cast<std::int32_t>(i)));
+                            double correction = 0;
+                            for (const auto& of_level : corrections_)
+                                correction += of_level[i];
+                            z_[i] = rows_.heights[i] + correction;
                         });
     }
 
     const TieRows& rows_;
     double tolerance_;
     Execution execution_;
-    NodeBlocks centers_;
     std::vector<double> z_;  // at the centers, corrected
     std::vector<TieState> state_;
     Members active_;
