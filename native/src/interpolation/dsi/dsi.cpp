@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/vectors.hpp"
 #include "interpolation/dsi/smooth_system.hpp"
 #include "interpolation/dsi/spline_grid.hpp"
 #include "interpolation/linear_data.hpp"
@@ -209,15 +210,18 @@ private:
                 ordered[k] = mesh_.new_number[triangle[k]];
             const double strength =
                 (weight_ > 0 ? weight_ : kExactRiseStrength) * system_->stiffness(ordered);
-            const double twice = twice_area(mesh_.nodes, ordered);
+            const auto area_of = [](std::span<const Position> of, const Triangle& t) {
+                return twice_area(of[t[0]], of[t[1]], of[t[2]]);
+            };
+            const double twice = area_of(mesh_.nodes, ordered);
             const double length = std::sqrt(std::abs(twice));
-            const double given = std::sqrt(std::abs(twice_area(nodes, triangle)));
+            const double length_before = std::sqrt(std::abs(area_of(nodes, triangle)));
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 Constraint c{ordered,
                              {},
                              strength,
                              weight_ > 0 ? Relation::kWeighted : Relation::kEqual,
-                             given * dips.slopes[i][axis]};
+                             length_before * dips.slopes[i][axis]};
                 c.along[axis] = length;
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Position& a = mesh_.nodes[ordered[(k + 1) % 3]];
@@ -228,11 +232,6 @@ private:
                 constraints_.push_back(c);
             }
         }
-    }
-
-    static double twice_area(std::span<const Position> of, const Triangle& triangle) {
-        const Position &a = of[triangle[0]], &b = of[triangle[1]], &c = of[triangle[2]];
-        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     }
 
     double stiffness(std::size_t node) const {

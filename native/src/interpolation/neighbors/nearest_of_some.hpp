@@ -23,8 +23,8 @@ struct DistinctPoints {
 inline constexpr std::size_t kMostInMemory = 1 << 18;
 
 /// The points nearest to some of them: of each `count` (all, where there are fewer), one after
-/// another, as NearestPoints::find gives them; the first is the point itself. Of many points no
-/// tree is built: they are gone through once, by how far those of an even part are from the asked.
+/// another, as NearestPoints::find gives them; the first is the point itself. Of many points there
+/// is one tree after another, each of a part of them.
 /// @param most  of points in a tree
 std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
                                                std::span<const std::int32_t> asked,
