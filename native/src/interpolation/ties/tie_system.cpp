@@ -193,27 +193,15 @@ TieSystem::TieSystem(const TieRows& rows, std::span<const std::int32_t> members,
     factor_.compute(matrix_);
 }
 
-std::vector<std::int32_t> TieSystem::dependent(double share) const {
-    const Eigen::VectorXd left = pivots();
-    std::vector<std::int32_t> found;
-    for (Eigen::Index i = 0; i < left.size(); ++i)
-        if (!(left[i] > share * matrix_.coeff(i, i))) found.push_back(static_cast<std::int32_t>(i));
-    return found;
-}
-
-std::vector<std::int32_t> TieSystem::below(double least) const {
-    const Eigen::VectorXd left = pivots();
-    std::vector<std::int32_t> found;
-    for (Eigen::Index i = 0; i < left.size(); ++i)
-        if (!(left[i] > least)) found.push_back(static_cast<std::int32_t>(i));
-    return found;
-}
-
-Eigen::VectorXd TieSystem::pivots() const {
+std::vector<std::int32_t> TieSystem::dependent(double share, double least) const {
     const auto& place = factor_.permutationP().indices();
-    Eigen::VectorXd found(matrix_.cols());
-    for (Eigen::Index i = 0; i < found.size(); ++i)
-        found[i] = factor_.vectorD()[place[i]];
+    std::vector<std::int32_t> found;
+    for (Eigen::Index i = 0; i < matrix_.cols(); ++i) {
+        // What those that are eliminated before leave.
+        const double left = factor_.vectorD()[place[i]];
+        if (!(left > share * matrix_.coeff(i, i) + least))
+            found.push_back(static_cast<std::int32_t>(i));
+    }
     return found;
 }
 
@@ -260,7 +248,7 @@ std::vector<std::int32_t> crowded_members(const TieRows& rows,
         }
     }
     if (!left.empty()) {
-        for (const std::int32_t at : TieSystem(rest, left, DBL_MIN, kRidge).below(least))
+        for (const std::int32_t at : TieSystem(rest, left, DBL_MIN, kRidge).dependent(0, least))
             crowded.push_back(places[at]);
     }
     std::sort(crowded.begin(), crowded.end());

@@ -113,10 +113,9 @@ public:
     TieSystem(const TieRows& rows, std::span<const std::int32_t> members, double radius,
               double ridge);
 
-    /// The places in `members` of rows of which others leave less than a share, ascending.
-    std::vector<std::int32_t> dependent(double share) const;
-    /// The same, of which others leave no more than a number.
-    std::vector<std::int32_t> below(double least) const;
+    /// The places in `members` of rows of which others leave no more than a share and a number,
+    /// ascending.
+    std::vector<std::int32_t> dependent(double share, double least = 0) const;
     /// The product of the rows at two places in `members`, as a share of theirs with themselves.
     double likeness(std::int32_t a, std::int32_t b) const;
     /// The places in `members` of rows that have a product with one.
@@ -124,9 +123,6 @@ public:
     Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return factor_.solve(right); }
 
 private:
-    /// What those that are eliminated before leave of each row.
-    Eigen::VectorXd pivots() const;
-
     using Matrix = Eigen::SparseMatrix<double>;  // lower triangle
 
     Matrix matrix_;
