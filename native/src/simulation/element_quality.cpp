@@ -164,7 +164,7 @@ void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& vis
 }
 
 ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_narrow) const {
-    Removals found, last;
+    Removals found;
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         // sides of walls that nothing stands behind are left to failing(), which gives up less
@@ -202,25 +202,14 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
                 const PillarLevels::Removal removal{plan_.corners(t)[i], gone,
                                                     upper ? low[i] : high[i]};
                 const auto levels = levels_.levels(plan_.pillar(t, i));
-                if (is_first && is_last) {
-                    if (is_narrow[t] != 0) found.push_back(removal);
-                } else if (!is_weak && levels.back() - levels.front() == 2) {
-                    last.push_back(removal);
-                } else {
+                // one that leans is better than a neighbor without any above it
+                const bool is_last_but_one = levels.back() - levels.front() == 2;
+                if (is_first && is_last ? is_narrow[t] != 0 : is_weak || !is_last_but_one)
                     found.push_back(removal);
-                }
             }
         }
     }
-    if (found.empty()) add_spare(last, found);
     return found;
-}
-
-/// The neighbor within takes the volume, but what stands out of the top goes.
-bool ElementQuality::gives_upward(std::size_t t, std::size_t element) const {
-    const std::size_t first = columns_.offset[t], count = columns_.elements(t);
-    return count > 1 &&
-           (element == first || (element + 1 == first + count && is_tall(corners(t), element)));
 }
 
 /// Gives up an element: its upper heights, or its lower ones.
@@ -305,7 +294,7 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
         const ColumnCorners at = corners(t);
         for (std::size_t e = first; e < end; ++e) {
             if (determinant(at, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
-                give_up({t, e}, gives_upward(t, e));
+                give_up({t, e}, e == first && e + 1 < end);  // its neighbor within takes the volume
         }
     }
     for_faces([&](const Face& face, const ElementRef& own, const ElementRef& other) {
@@ -315,10 +304,9 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
         // the face goes, and the smaller element with it
         const bool is_own = a.volume < b.volume;
         const auto [t, e] = is_own ? own : other;
-        const bool is_last = e + 1 == columns_.offset[t] + columns_.elements(t);
-        give_up({t, e}, own.triangle != other.triangle
-                            ? gives_upward(t, e)
-                            : is_own || (is_last && is_tall(corners(t), e)));
+        give_up({t, e}, own.triangle == other.triangle
+                            ? is_own
+                            : e == columns_.offset[t] && columns_.elements(t) > 1);
     });
     return found;
 }
@@ -434,30 +422,6 @@ std::vector<PillarLevels::Move> ElementQuality::steep(
         }
     }
     return moves;
-}
-
-/// Adds heights as long as no column around them has less than two elements then: one alone in its
-/// column would have no neighbor above, which is worse.
-void ElementQuality::add_spare(Removals& last, Removals& found) const {
-    if (last.empty()) return;
-    std::vector<std::size_t> elements(plan_.triangles());
-    for (std::size_t t = 0; t < elements.size(); ++t)
-        elements[t] = columns_.elements(t);
-    const auto around = plan_.triangles_at_nodes();
-    std::sort(last.begin(), last.end());
-    std::int32_t done = -1;
-    for (const PillarLevels::Removal& removal : last) {
-        const auto triangles = around[index(removal.node)];
-        if (removal.node == done ||
-            std::any_of(triangles.begin(), triangles.end(), [&](std::int32_t t) {
-                return elements[index(t)] == 1 || elements[index(t)] == 2;
-            }))
-            continue;
-        done = removal.node;
-        for (const std::int32_t t : triangles)
-            --elements[index(t)];
-        found.push_back(removal);
-    }
 }
 
 /// Whether an element is higher than its triangle is wide: it would only get worse if it became one

@@ -121,7 +121,6 @@ private:
         return at.body(columns_.fronts[element], columns_.fronts[element + 1]);
     }
     std::vector<ElementBody> bodies() const;
-    bool gives_upward(std::size_t t, std::size_t element) const;
     bool joins_upward(std::size_t t, std::size_t e) const;
     void give_up(std::size_t t, std::size_t element, bool upper, Removals& found) const;
     /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
@@ -136,7 +135,6 @@ private:
     bool is_tall(const ColumnCorners& at, std::size_t element) const;
     bool shares_sides(std::size_t t, std::size_t edge) const;
     bool divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const;
-    void add_spare(Removals& last, Removals& found) const;
     /// Calls visit(element, is_shared, beyond) for each upright side at one edge of a triangle:
     /// whether an element of the next column, `beyond`, has the same side.
     template <class Visit>

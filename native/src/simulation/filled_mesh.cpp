@@ -43,7 +43,6 @@
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
-#include "simulation/outside_faces.hpp"
 #include "simulation/tetrahedra_repair.hpp"
 
 namespace realmodel::simulation {

@@ -2,9 +2,11 @@
 #include "realmodel/simulation/layered_mesh.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,189 +25,9 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr std::int32_t kJudgedRing = 6;  ///< a front that has more places there than at first grows
-constexpr double kMostOfAll = 0.0005;    ///< that and less of all volumes every block may change by
-
-/// What repairs may take of each block. Where the end of a layer is given up because of its shape,
-/// the next one may be no better: in a layer of even thickness a hole of a few nodes would grow
-/// ring by ring until nothing is left. Where layers taper, fewer places follow from ring to ring.
-class RepairLimits {
-public:
-    /// @param volumes  of each block, before the first repair
-    RepairLimits(const ColumnInput& input, std::span<const double> volumes)
-        : input_(input),
-          volumes_(volumes.begin(), volumes.end()),
-          pillars_(bucketize<std::size_t>(input.plan.nodes(),
-                                          [&](const auto& put) {
-                                              for (std::size_t p = 0; p < input.plan.pillar_count();
-                                                   ++p)
-                                                  put(index(input.plan.pillar_node(p)), p);
-                                          })),
-          triangles_(input.plan.triangles_at_nodes()),
-          is_whole_(volumes.size(), 0) {
-        for (const double volume : volumes_)
-            least_ += kMostOfAll * volume;
-    }
-
-    /// Leaves out removals that would change a block where it stays as it is.
-    void limit(const PillarLevels& levels, std::vector<PillarLevels::Removal>& removals) const {
-        std::erase_if(removals, [&](const PillarLevels::Removal& removal) {
-            bool is_kept = false;
-            for_blocks(levels, removal, [&](std::int32_t block) {
-                is_kept =
-                    is_kept || is_whole_[index(block)] != 0 ||
-                    std::binary_search(kept_.begin(), kept_.end(), BlockNode{block, removal.node});
-            });
-            return is_kept;
-        });
-    }
-
-    /// Notes what removals that are about to be made change.
-    void note(const PillarLevels& levels, std::span<const PillarLevels::Removal> removals) {
-        std::vector<Taken> more;
-        for (const PillarLevels::Removal& removal : removals) {
-            for_blocks(levels, removal, [&](std::int32_t block) {
-                const BlockNode place{block, removal.node};
-                if (found(place) < taken_.size()) return;
-                std::int32_t inner = 0;
-                for_taken_around(
-                    place, [&](std::size_t other) { inner = std::max(inner, taken_[other].ring); });
-                more.push_back({place, inner + 1});
-            });
-        }
-        taken_.insert(taken_.end(), more.begin(), more.end());
-        sort_unique(taken_);
-    }
-
-    /// Whether a block has changed by more than repairs may cost: a share of itself, and a little
-    /// of all volumes.
-    bool changes_much(std::size_t block, std::span<const double> volumes, double most) const {
-        return std::abs(volumes[block] - volumes_[block]) >
-               std::max(most * volumes_[block], least_);
-    }
-
-    /// Judges what was noted and notes anew. @return whether blocks stay as they are at more places
-    /// from now on, because there a front grew, or their repair cost too much: then the step that
-    /// made the removals has to begin again
-    bool take_back(std::span<const double> volumes, double most) {
-        std::vector<std::uint8_t> is_much(volumes.size(), 0);
-        for (std::size_t b = 0; b < volumes.size(); ++b)
-            is_much[b] = is_whole_[b] == 0 && changes_much(b, volumes, most) ? 1 : 0;
-        std::vector<std::uint8_t> is_answered(volumes.size(), 0);
-        bool any = false;
-        for (const std::vector<std::size_t>& front : fronts()) {
-            const auto in_ring = [&](std::int32_t ring) {
-                return std::count_if(front.begin(), front.end(),
-                                     [&](std::size_t at) { return taken_[at].ring == ring; });
-            };
-            const std::size_t block = index(taken_[front[0]].place.block);
-            if (in_ring(kJudgedRing) <= in_ring(1) && (is_much[block] == 0 || in_ring(2) == 0))
-                continue;
-            for (const std::size_t at : front)
-                kept_.push_back(taken_[at].place);
-            any = true;
-            is_answered[block] = 1;
-        }
-        sort_unique(kept_);
-        for (std::size_t b = 0; b < volumes.size(); ++b) {
-            if (is_much[b] == 0 || is_answered[b] != 0) continue;
-            is_whole_[b] = 1;
-            any = true;
-        }
-        taken_.clear();
-        return any;
-    }
-
-    /// The blocks that stay as they are somewhere.
-    std::vector<std::int32_t> kept_blocks() const {
-        std::vector<std::int32_t> made;
-        for (const BlockNode& place : kept_)
-            made.push_back(place.block);
-        for (std::size_t b = 0; b < is_whole_.size(); ++b) {
-            if (is_whole_[b] != 0) made.push_back(static_cast<std::int32_t>(b));
-        }
-        sort_unique(made);
-        return made;
-    }
-
-private:
-    /// A block at a node.
-    struct BlockNode {
-        std::int32_t block, node;
-        auto operator<=>(const BlockNode&) const = default;
-    };
-    /// Where a block was given up, and in which ring: 1 if it was so nowhere beside it before.
-    struct Taken {
-        BlockNode place;
-        std::int32_t ring;
-        auto operator<=>(const Taken&) const = default;
-    };
-
-    /// Calls visit(block) for the blocks that a removal takes volume from, or gives it to.
-    template <class Visit>
-    void for_blocks(const PillarLevels& levels, const PillarLevels::Removal& removal,
-                    const Visit& visit) const {
-        for (const std::size_t p : pillars_[index(removal.node)]) {
-            const std::int32_t rock = input_.heights.rock(p);
-            if (rock < 0) continue;
-            const auto [below, above] = levels.blocks_at(p, rock, removal.height);
-            if (below == above) continue;
-            for (const std::int32_t block : {below, above}) {
-                if (block >= 0) visit(block);
-            }
-        }
-    }
-
-    /// Where a place stands among those that were taken; their number if it is none.
-    std::size_t found(const BlockNode& place) const {
-        const auto at = std::lower_bound(taken_.begin(), taken_.end(), Taken{place, 0});
-        return at != taken_.end() && at->place == place
-                   ? static_cast<std::size_t>(at - taken_.begin())
-                   : taken_.size();
-    }
-
-    /// Calls visit(which of the taken) for those beside a place.
-    template <class Visit>
-    void for_taken_around(const BlockNode& place, const Visit& visit) const {
-        for (const std::int32_t t : triangles_[index(place.node)]) {
-            for (const std::int32_t node : input_.plan.corners(index(t))) {
-                const std::size_t other = found({place.block, node});
-                if (other < taken_.size()) visit(other);
-            }
-        }
-    }
-
-    /// The places that were taken in one piece.
-    std::vector<std::vector<std::size_t>> fronts() const {
-        std::vector<std::vector<std::size_t>> made;
-        std::vector<std::uint8_t> is_seen(taken_.size(), 0);
-        for (std::size_t start = 0; start < taken_.size(); ++start) {
-            if (is_seen[start] != 0) continue;
-            is_seen[start] = 1;
-            std::vector<std::size_t> front{start};
-            for (std::size_t k = 0; k < front.size(); ++k) {
-                for_taken_around(taken_[front[k]].place, [&](std::size_t other) {
-                    if (is_seen[other] != 0) return;
-                    is_seen[other] = 1;
-                    front.push_back(other);
-                });
-            }
-            made.push_back(std::move(front));
-        }
-        return made;
-    }
-
-    const ColumnInput& input_;
-    std::vector<double> volumes_;
-    double least_ = 0;                    ///< what every block may lose or gain
-    Buckets<std::size_t> pillars_;        ///< of each node
-    Buckets<std::int32_t> triangles_;     ///< around each node
-    std::vector<Taken> taken_;            ///< sorted
-    std::vector<BlockNode> kept_;         ///< sorted
-    std::vector<std::uint8_t> is_whole_;  ///< of each block: it is kept everywhere
-};
-
 constexpr int kWeakRounds = 30;
+constexpr int kJudgedRound = 6;        ///< from then on no block may lose more than in the first
+constexpr double kMostOfAll = 0.0005;  ///< that and less of all volumes every block may change by
 constexpr int kRelaxations = 40;
 // Rounds that leave no fewer failing elements than the best one.
 constexpr int kIdleMoves = 10;           ///< with moves of heights
@@ -242,13 +64,19 @@ public:
           layering_(layering),
           progress_(progress),
           levels_(input, layering),
+          pillars_(bucketize<std::size_t>(plan_.nodes(),
+                                          [&](const auto& put) {
+                                              for (std::size_t p = 0; p < plan_.pillar_count(); ++p)
+                                                  put(index(plan_.pillar_node(p)), p);
+                                          })),
           has_flat_base_(plan_.nodes(), 0) {
         for (std::size_t p = 0; p < plan_.pillar_count(); ++p) {
             if (input.heights.rock(p) >= 0 && input.heights.surfaces(p)[0] == kBase)
                 has_flat_base_[index(plan_.pillar_node(p))] = 1;
         }
         refill();
-        limits_.emplace(input_, filling_->columns.mesh.volumes);
+        volumes_ = filling_->columns.mesh.volumes;
+        is_whole_.assign(volumes_.size(), 0);
         is_narrow_ = narrow_strips(plan_, filling_->columns.fronts);
     }
 
@@ -256,11 +84,28 @@ public:
     /// first, because they make faces steep; then heights move, which changes no block; then both,
     /// for what checkMesh still fails with all its options; at last what it fails without any.
     void run() {
-        remove_weak_ends();
+        // Thin ends of layers, whose elements have inner faces in two directions only or lean, end
+        // one element earlier.
+        remove_all([&] { return filling_->quality.weak(is_narrow_); }, false, kWeakRounds,
+                   kMostOfBlock);
         relax_steep_faces(1);
         repair_failing();
-        join_skewed();
-        filling_->columns.mesh.kept = limits_->kept_blocks();
+        // Elements that are too thin for how steep they are become one with the next in their
+        // columns, in all blocks again; what no removal repairs is reported.
+        const auto was_whole = std::exchange(is_whole_, std::vector<std::uint8_t>(volumes_.size()));
+        ElementQuality::SkewedFaces skewed;
+        remove_all(
+            [&] {
+                skewed = filling_->quality.skewed(layering_.divided);
+                return std::move(skewed.removals);
+            },
+            true, INT_MAX, kMostIfSkewed);
+        LayeredMesh& made = filling_->columns.mesh;
+        made.skewed = {skewed.faces, skewed.most, skewed.place, std::move(skewed.tall)};
+        for (std::size_t b = 0; b < is_whole_.size(); ++b) {
+            if (was_whole[b] != 0 || is_whole_[b] != 0)
+                made.kept.push_back(static_cast<std::int32_t>(b));
+        }
     }
 
     /// Faces on steps, and points of those heights that elements have.
@@ -296,51 +141,84 @@ private:
     };
     void refill() { filling_.emplace(*this); }
 
-    /// Thin ends of layers, whose elements have inner faces in two directions only or lean, end one
-    /// element earlier.
-    void remove_weak_ends() {
+    /// Removes heights, in rounds, until no more are found. Where the end of a layer is given up
+    /// because of its shape, the next one may be no better: in a layer of even thickness a hole of
+    /// a few nodes would grow ring by ring until nothing is left. Where layers taper, fewer heights
+    /// follow from round to round. So a block that loses more in a late round than in the first,
+    /// or more than a share of itself in all, is left as it was, and all begins again.
+    /// @param several  of one node in one round  @param most  the share
+    template <class Find>
+    void remove_all(const Find& find, bool several, int rounds, double most) {
         const PillarLevels start = levels_;
-        do {
-            for (int round = 0; round < kWeakRounds; ++round) {
-                auto weak = filling_->quality.weak(is_narrow_);
-                if (!remove(weak)) break;
+        std::vector<std::size_t> first;
+        for (int round = 1; round <= rounds; ++round) {
+            auto removals = find();
+            leave_whole(removals);
+            std::vector<std::size_t> count(volumes_.size(), 0);
+            for (const PillarLevels::Removal& removal : removals)
+                for_blocks(removal, [&](std::int32_t block) { ++count[index(block)]; });
+            if (round == 1) first = count;
+            if (levels_.remove(plan_, removals, several) == 0) return;
+            refill();
+            bool any = false;
+            for (std::size_t b = 0; b < count.size(); ++b) {
+                const bool grows = round >= kJudgedRound && count[b] > first[b];
+                if (is_whole_[b] != 0 || (!grows && !changes_much(b, most))) continue;
+                is_whole_[b] = 1;
+                any = true;
             }
-        } while (takes_back(start, kMostOfBlock));
+            if (!any) continue;
+            levels_ = start;
+            refill();
+            round = 0;
+        }
     }
 
-    bool remove(ElementQuality::Removals& removals, bool several = false) {
-        limits_->limit(levels_, removals);
-        limits_->note(levels_, removals);
-        if (levels_.remove(plan_, removals, several) == 0) return false;
-        refill();
-        return true;
+    /// Leaves out removals that would change a block that stays as it is.
+    void leave_whole(std::vector<PillarLevels::Removal>& removals) const {
+        std::erase_if(removals, [&](const PillarLevels::Removal& removal) {
+            bool is_kept = false;
+            for_blocks(removal, [&](std::int32_t b) { is_kept |= is_whole_[index(b)] != 0; });
+            return is_kept;
+        });
     }
 
-    /// Whether a step took too much, so that it begins again where it did.
-    bool takes_back(const PillarLevels& start, double most) {
-        if (!limits_->take_back(filling_->columns.mesh.volumes, most)) return false;
-        levels_ = start;
-        refill();
-        return true;
+    /// Calls visit(block) for the blocks that a removal takes volume from, or gives it to.
+    template <class Visit>
+    void for_blocks(const PillarLevels::Removal& removal, const Visit& visit) const {
+        for (const std::size_t p : pillars_[index(removal.node)]) {
+            const std::int32_t rock = input_.heights.rock(p);
+            if (rock < 0) continue;
+            const auto [below, above] = levels_.blocks_at(p, rock, removal.height);
+            if (below == above) continue;
+            for (const std::int32_t block : {below, above}) {
+                if (block >= 0) visit(block);
+            }
+        }
+    }
+
+    /// Whether a block has changed by more than repairs may cost: a share of itself, and a little
+    /// of all volumes.
+    bool changes_much(std::size_t block, double most) const {
+        const double all = std::accumulate(volumes_.begin(), volumes_.end(), 0.0);
+        return std::abs(filling_->columns.mesh.volumes[block] - volumes_[block]) >
+               std::max(most * volumes_[block], kMostOfAll * all);
     }
 
     /// Faces that are steep, so that the centers of neighbors lie far from the direction across
-    /// them, are made less steep: at first all heights of a node move, then each for itself.
+    /// them, are made less steep.
     /// @param reach  minimum thicknesses: how far heights move at most
     void relax_steep_faces(double reach) {
         const double thickness = layering_.minimum_thickness;
-        std::vector<std::uint8_t> is_moved;
+        std::vector<std::uint8_t> is_moved(plan_.nodes(), 1);
         bool any = false;
-        for (const bool alone : {false, true}) {
-            is_moved.assign(plan_.nodes(), 1);
-            for (int round = 0; round < kRelaxations; ++round) {
-                const auto moves = filling_->quality.steep(is_moved);
-                is_moved.assign(plan_.nodes(), 0);
-                if (!levels_.relax_heights(moves, reach * thickness, thickness, alone,
-                                           has_flat_base_, is_moved))
-                    break;
-                any = true;
-            }
+        for (int round = 0; round < kRelaxations; ++round) {
+            const auto moves = filling_->quality.steep(is_moved);
+            is_moved.assign(plan_.nodes(), 0);
+            if (!levels_.relax_heights(moves, reach * thickness, thickness, has_flat_base_,
+                                       is_moved))
+                break;
+            any = true;
         }
         if (any) refill();
     }
@@ -366,7 +244,7 @@ private:
             if (idle == kIdleMoves) {
                 levels_ = best;
             } else if (!is_first) {
-                limits_->limit(levels_, failing);
+                leave_whole(failing);
                 levels_.remove(plan_, failing);
             }
             if (!is_first) refill();
@@ -385,24 +263,9 @@ private:
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             changed += std::abs(filling_->columns.mesh.volumes[b] - volumes[b]);
             total += volumes[b];
-            if (limits_->changes_much(b, filling_->columns.mesh.volumes, kMostOfBlock)) return true;
+            if (changes_much(b, kMostOfBlock)) return true;
         }
         return changed > kMostRepaired * total;
-    }
-
-    /// Elements that are too thin for how steep they are become one with the next in their columns,
-    /// until there are none; what no removal repairs is reported.
-    void join_skewed() {
-        const PillarLevels start = levels_;
-        do {
-            for (;;) {
-                auto skewed = filling_->quality.skewed(layering_.divided);
-                if (remove(skewed.removals, true)) continue;
-                filling_->columns.mesh.skewed = {skewed.faces, skewed.most, skewed.place,
-                                                 std::move(skewed.tall)};
-                break;
-            }
-        } while (takes_back(start, kMostIfSkewed));
     }
 
     const ColumnInput& input_;
@@ -411,7 +274,9 @@ private:
     Progress* progress_;
     PillarLevels levels_;
     std::optional<Filling> filling_;
-    std::optional<RepairLimits> limits_;
+    std::vector<double> volumes_;              ///< of each block, before the first repair
+    std::vector<std::uint8_t> is_whole_;       ///< of each block: it stays as it is
+    const Buckets<std::size_t> pillars_;       ///< of each node
     std::vector<std::uint8_t> is_narrow_;      ///< of each triangle, before the first repair
     std::vector<std::uint8_t> has_flat_base_;  ///< of each node
 };

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "simulation/outside_faces.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,104 +19,8 @@ namespace realmodel::simulation {
 
 namespace {
 
-// Flatter ones would be under-determined: one of their faces is outside, where checkMesh sees none.
-constexpr double kLeastOfCovers = 0.003;
-
-template <std::size_t N>
-bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
-    return std::ranges::all_of(wanted, [&](std::int32_t v) { return has(corners, v); });
-}
-
-}  // namespace
-
-OutsideCovers::OutsideCovers(FilledMesh& mesh)
-    : mesh_(mesh),
-      tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
-      triangles_at_(rows_at(mesh, mesh.triangles)),
-      tetrahedra_(mesh.tetrahedra),
-      triangles_(mesh.triangles),
-      is_taken_(mesh.tetrahedra.size(), 0) {}
-
-bool OutsideCovers::add(std::span<const std::int32_t> corners, const Vec3& at) {
-    struct OuterTriangle {
-        std::int32_t row, region;
-    };
-    std::vector<OuterTriangle> outer;
-    std::vector<std::int32_t> inner;
-    for (const std::int32_t f : triangles_at_[index(corners[0])]) {
-        if (!has_all(triangles_[index(f)], corners)) continue;
-        const auto [first, second] =
-            elements_beside(tetrahedra_, tetrahedra_at_[index(corners[0])], triangles_[index(f)]);
-        for (const std::int32_t t : {first, second})
-            if (t >= 0 && is_taken_[index(t)] != 0) return false;
-        if (second < 0)
-            outer.push_back({f, mesh_.region[index(first)]});
-        else
-            inner.push_back(f);
-    }
-    // the edges that two of these faces share, and the triangles inside that end there
-    struct SharedEdge {
-        std::array<std::int32_t, 2> edge;
-        std::vector<std::int32_t> regions, inside;
-    };
-    std::vector<SharedEdge> hinges;
-    for (const OuterTriangle& face : outer) {
-        const auto& own = triangles_[index(face.row)];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (std::ranges::find(corners, own[i]) != corners.end()) continue;
-            const auto edge = unordered(own[(i + 1) % 3], own[(i + 2) % 3]);
-            auto hinge = std::ranges::find(hinges, edge, &SharedEdge::edge);
-            if (hinge == hinges.end()) hinge = hinges.insert(hinge, {edge, {}, {}});
-            hinge->regions.push_back(face.region);
-        }
-    }
-    const auto has_two = [](const SharedEdge& hinge) { return hinge.regions.size() == 2; };
-    if (!std::ranges::all_of(hinges, has_two)) return false;
-    for (const std::int32_t f : inner)
-        for (SharedEdge& hinge : hinges)
-            if (has_all(triangles_[index(f)], hinge.edge)) hinge.inside.push_back(f);
-
-    const std::int32_t added = checked_number(mesh_.points.size(), "points");
-    mesh_.points.push_back(at);
-    const auto covered = [&](const OuterTriangle& face) {
-        const auto& [a, b, c] = triangles_[index(face.row)];
-        return std::array{a, b, c, added};
-    };
-    const auto is_good = [&](const OuterTriangle& face) {
-        return six_volumes(mesh_, covered(face)) > 0 &&
-               roundness(mesh_, covered(face)) >= kLeastOfCovers;
-    };
-    if (!std::ranges::all_of(outer, is_good)) {
-        mesh_.points.pop_back();
-        return false;
-    }
-    for (const std::int32_t v : corners)
-        for (const std::int32_t t : tetrahedra_at_[index(v)])
-            is_taken_[index(t)] = 1;
-    for (const OuterTriangle& face : outer) {
-        mesh_.tetrahedra.push_back(covered(face));
-        mesh_.region.push_back(face.region);
-        for (const std::int32_t v : corners.subspan(1)) {
-            mesh_.triangles.push_back(with(triangles_[index(face.row)], v, added));
-            mesh_.surface.push_back(mesh_.surface[index(face.row)]);
-        }
-        mesh_.triangles[index(face.row)] = with(triangles_[index(face.row)], corners[0], added);
-    }
-    for (const SharedEdge& hinge : hinges) {
-        // A boundary, or a kept surface within a region. A region that only touches the outside
-        // along the edge is not between the new elements.
-        if (hinge.regions[0] == hinge.regions[1] && hinge.inside.size() != 1) continue;
-        mesh_.triangles.push_back({hinge.edge[0], hinge.edge[1], added});
-        mesh_.surface.push_back(mesh_.surface[index(hinge.inside[0])]);
-    }
-    return true;
-}
-
-namespace {
-
 constexpr double kSamePatch = 0.64;       ///< cosine between normals within a patch: 50 degrees
 constexpr double kOnPatch = 1e-9;         ///< of the largest coordinate: what rounding may do
-constexpr double kTurned = 0.25;          ///< of the reach: what a face turned by 90 degrees is off
 constexpr double kLeastRoundness = 0.01;  ///< roundness that elements keep, if they had it
 constexpr std::size_t kMostPlaces = 64;
 constexpr int kSortings = 8;
@@ -200,19 +102,6 @@ public:
             return a.patch == b.patch;
         };
         found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
-        return found;
-    }
-
-    /// How far a face is turned from the nearest triangle of a patch: 1 minus the cosine.
-    double turn(std::int32_t patch, const Vec3& p, const Vec3& normal) const {
-        double least = HUGE_VAL, found = 1;
-        tree_.find(around(p), [&](std::int32_t t) {
-            if (patch_[index(t)] != patch) return;
-            const double far = length(minus(nearest_on_triangle(triangles_[index(t)].at, p), p));
-            if (far >= least) return;
-            least = far;
-            found = 1 - dot(normal, triangles_[index(t)].normal);
-        });
         return found;
     }
 
@@ -325,12 +214,12 @@ public:
     }
 
     /// Whether a corner was moved.
-    bool run(double reach, Progress* progress) {
+    bool run(Progress* progress) {
         bool any = false;
         for (std::size_t i = 0; i < faces_.size(); ++i) {
             poll(progress, i);
             const auto& corners = mesh_.triangles[faces_[i]];
-            const auto patch = patch_of(corners, reach);
+            const auto patch = patch_of(corners);
             if (!patch) continue;
             mesh_.surface[faces_[i]] = outside_.surface(*patch);
             for (const std::int32_t v : corners)
@@ -342,15 +231,15 @@ public:
     /// Covers what is still off its patch where no corner may move: edges from one patch to
     /// another by a point of both, corners that are on none.
     /// @return whether anything was
-    bool cover(double reach, Progress* progress) {
+    bool cover(Progress* progress) {
         bool any = false;
-        OutsideCovers covers(mesh_);
+        TetrahedraRound covers(mesh_);
         for (std::size_t i = 0; i < faces_.size(); ++i) {
             poll(progress, i);
             const auto corners = mesh_.triangles[faces_[i]];
             if (std::ranges::any_of(corners, [&](auto v) { return index(v) >= near_.size(); }))
                 continue;  // new
-            const auto patch = patch_of(corners, reach);
+            const auto patch = patch_of(corners);
             if (!patch) continue;
             for (const std::int32_t v : corners) {
                 const auto& own = near_[index(v)];
@@ -371,18 +260,18 @@ public:
     }
 
 private:
-    bool cover(OutsideCovers& covers, const std::array<std::int32_t, 2>& edge,
+    bool cover(TetrahedraRound& covers, const std::array<std::int32_t, 2>& edge,
                const std::array<std::int32_t, 2>& patches) const {
         const Vec3 middle =
             times(0.5, plus(mesh_.points[index(edge[0])], mesh_.points[index(edge[1])]));
         return std::ranges::any_of(outside_.places_on(patches[0], middle), [&](const Vec3& place) {
-            return is_on(outside_.patches_near(place), patches[1]) && covers.add(edge, place);
+            return is_on(outside_.patches_near(place), patches[1]) && covers.cover(edge, place);
         });
     }
-    bool cover(OutsideCovers& covers, std::int32_t v, std::int32_t patch) const {
+    bool cover(TetrahedraRound& covers, std::int32_t v, std::int32_t patch) const {
         return std::ranges::any_of(
             outside_.places_on(patch, mesh_.points[index(v)]),
-            [&](const Vec3& place) { return covers.add(std::array{v}, place); });
+            [&](const Vec3& place) { return covers.cover(std::array{v}, place); });
     }
 
     void look_around(std::int32_t v) {
@@ -397,20 +286,14 @@ private:
         return distance(near, patch) <= outside_.rounding();
     }
 
-    /// The patch that all corners of a face are nearest to, and that lies as the face does.
-    std::optional<std::int32_t> patch_of(const std::array<std::int32_t, 3>& face,
-                                         double reach) const {
-        const auto at = [&](std::size_t i) { return mesh_.points[index(face[i])]; };
-        const Vec3 normal = unit(triangle_normal(at(0), at(1), at(2)));
-        const Vec3 middle = middle_of(at(0), at(1), at(2));
+    /// The patch that all corners of a face are nearest to.
+    std::optional<std::int32_t> patch_of(const std::array<std::int32_t, 3>& face) const {
         std::optional<std::int32_t> best;
         double least = HUGE_VAL;
         for (const NearPatch& near : near_[index(face[0])]) {
             double far = near.distance;
             for (const std::int32_t v : face)
                 far = std::max(far, distance(near_[index(v)], near.patch));
-            if (!(far < least)) continue;
-            far += kTurned * reach * outside_.turn(near.patch, middle, normal);
             if (!(far < least)) continue;
             least = far;
             best = near.patch;
@@ -455,9 +338,9 @@ void sort_outside_faces(FilledMesh& mesh, const ComplexView& model,
     const Outside outside(model, triangles, reach);
     for (int covering = 0;; ++covering) {
         OutsideSorter sorter(mesh, outside);
-        for (int round = 0; round < kSortings && sorter.run(reach, progress); ++round) {
+        for (int round = 0; round < kSortings && sorter.run(progress); ++round) {
         }
-        if (covering == kCoverings || !sorter.cover(reach, progress)) return;
+        if (covering == kCoverings || !sorter.cover(progress)) return;
     }
 }
 

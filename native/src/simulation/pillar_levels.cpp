@@ -443,56 +443,31 @@ std::size_t PillarLevels::remove(const PlanTopology& plan, std::vector<Removal>&
 }
 
 bool PillarLevels::relax_heights(const std::vector<Move>& moves, double most, double gap,
-                                 bool alone, std::span<const std::uint8_t> has_flat_base,
+                                 std::span<const std::uint8_t> has_flat_base,
                                  std::span<std::uint8_t> is_moved) {
     constexpr double kLeast = 1e-3;  // of `most`: what is worth another round
-    struct Asked {
-        double by = 0;
-        std::int32_t count = 0, lowest = INT32_MAX;
-    };
-    std::vector<Asked> asked(alone ? height_.size() : node_offset_.size() - 1);
+    std::vector<std::pair<double, std::int32_t>> asked(height_.size());  // sums and numbers
     for (const Move& move : moves) {
-        const auto n = index(move.node);
-        Asked& own = asked[alone ? node_offset_[n] + index(move.height) : n];
-        own.by += move.by;
-        ++own.count;
-        own.lowest = std::min(own.lowest, move.height);
+        auto& [by, count] = asked[node_offset_[index(move.node)] + index(move.height)];
+        by += move.by;
+        ++count;
     }
     bool any = false;
     for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
         const std::size_t first = node_offset_[n], end = node_offset_[n + 1];
-        const auto move = [&](std::size_t at, double by) {
+        for (std::size_t at = has_flat_base[n] != 0 ? first + 1 : first; at < end; ++at) {
+            const auto [by, count] = asked[at];
+            if (count == 0) continue;
             const double own = height_[at];
-            if (has_flat_base[n] != 0 && at == first) return;
-            double to = std::clamp(own + by, first_height_[at] - most, first_height_[at] + most);
+            double to =
+                std::clamp(own + by / count, first_height_[at] - most, first_height_[at] + most);
             if (at > first) to = std::max(to, std::min(own, height_[at - 1] + gap));
             if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - gap));
-            if (std::abs(to - own) < kLeast * gap) return;
+            if (std::abs(to - own) < kLeast * gap) continue;
             height_[at] = to;
             is_moved[n] = 1;
             any = true;
-        };
-        if (alone) {
-            for (std::size_t at = first; at < end; ++at) {
-                if (asked[at].count > 0) move(at, asked[at].by / asked[at].count);
-            }
-            continue;
         }
-        if (asked[n].count == 0) continue;
-        const double by = asked[n].by / asked[n].count, bottom = height_[first],
-                     span = height_[first + index(asked[n].lowest)] - bottom;
-        const auto share = [&](std::size_t at) {
-            return has_flat_base[n] == 0 ? 1 : std::min(1.0, (height_[at] - bottom) / span);
-        };
-        // what moves first makes room for the next
-        if (by < 0) {
-            for (std::size_t at = first; at < end; ++at)
-                move(at, share(at) * by);
-        } else {
-            for (std::size_t at = end; at-- > first;)
-                move(at, share(at) * by);
-        }
-        assert(std::is_sorted(&height_[first], &height_[first] + (end - first)));
     }
     return any;
 }

@@ -8,6 +8,7 @@
 #include "base/counting_sort.hpp"
 #include "base/vectors.hpp"
 #include "exact/orientation.hpp"
+#include "meshing/improvement.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "simulation/plan_topology.hpp"
 
@@ -22,8 +23,6 @@ using Triangle = std::array<std::int32_t, 3>;
 constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180;
 constexpr double kSharpAngle = 25.0 * std::numbers::pi / 180;  ///< made larger, if it can be
 constexpr int kImprovements = 12;
-/// Of an edge: how far nodes are moved where the middle of their neighbors is no better.
-constexpr double kStep = 0.05;
 
 double least_angle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
     double least = std::numbers::pi;
@@ -64,10 +63,6 @@ private:
     bool is_inner_step(HalfEdge edge) const {
         return !mesh_.is_border(edge) && edges_.is_step(mesh_.from(edge), mesh_.to(edge));
     }
-    std::ptrdiff_t border_edges(std::int32_t triangle) const {
-        const auto& twins = mesh_.twins[index(triangle)];
-        return std::count(twins.begin(), twins.end(), HalfEdge::none());
-    }
     std::int32_t add_node(const PlanPoint& p) {
         mesh_.points.push_back(p);
         return static_cast<std::int32_t>(mesh_.points.size()) - 1;
@@ -88,27 +83,12 @@ private:
     }
 
     void remove_border_corners() {
-        std::vector<std::int32_t> corners;
-        for (std::size_t t = 0; t < triangles(); ++t) {
-            const auto number = static_cast<std::int32_t>(t);
-            if (border_edges(number) == 2) corners.push_back(number);
-        }
-        std::vector<std::uint8_t> is_changed(triangles(), 0);
-        for (const std::int32_t t : corners) {
-            HalfEdge inner(t, 0);
-            while (mesh_.is_border(inner))
-                inner = inner.next();
-            const std::int32_t other = mesh_.twin(inner).triangle();
-            is_changed[index(t)] = 1;
-            if (is_changed[index(other)] == 0 && is_free(inner) && border_edges(other) <= 1 &&
-                angle_after_flip(inner) >= kLeastAngle) {
-                flip(inner);
-                is_changed[index(other)] = 1;
-            } else {
-                const auto [a, b, c] = mesh_.corners[index(t)];
-                mesh_.divide(t, add_node(middle_of(at(a), at(b), at(c))));
-                is_changed.resize(triangles(), 1);
-            }
+        const std::size_t count = triangles();
+        for (std::size_t t = 0; t < count; ++t) {
+            const auto& twins = mesh_.twins[t];
+            if (std::count(twins.begin(), twins.end(), HalfEdge::none()) != 2) continue;
+            const auto [a, b, c] = mesh_.corners[t];
+            mesh_.divide(static_cast<std::int32_t>(t), add_node(middle_of(at(a), at(b), at(c))));
         }
     }
 
@@ -219,78 +199,29 @@ private:
                (mesh_.is_border(edge.next()) && mesh_.is_border(twin.prev()));
     }
 
-    /// The triangles at free nodes with a sharp angle around them.
-    Buckets<std::int32_t> around_sharp_nodes() const {
-        std::vector<std::uint8_t> is_wanted(mesh_.points.size(), 0);
+    /// Moves nodes at sharp angles to where their triangles are best.
+    bool move_nodes() {
+        std::vector<std::uint8_t> is_sharp(mesh_.points.size(), 0);
         for (const Triangle& t : mesh_.corners) {
             if (angle_of(t) > kSharpAngle) continue;
             for (const std::int32_t n : t)
-                is_wanted[index(n)] = 1;
+                is_sharp[index(n)] = 1;
         }
-        mesh_.for_each_edge([&](HalfEdge edge) {
-            if (!is_free(edge))
-                is_wanted[index(mesh_.from(edge))] = is_wanted[index(mesh_.to(edge))] = 0;
-        });
-        return bucketize<std::int32_t>(mesh_.points.size(), [&](const auto& put) {
-            mesh_.for_each_edge([&](HalfEdge edge) {
-                const auto n = index(mesh_.from(edge));
-                if (is_wanted[n] != 0) put(n, edge.triangle());
-            });
-        });
-    }
-
-    bool move_nodes() {
-        const auto around = around_sharp_nodes();
+        if (std::ranges::find(is_sharp, 1) == is_sharp.end()) return false;
+        mesh_.for_each_edge([&](HalfEdge edge) { mesh_.fix(edge, !is_free(edge)); });
+        meshing::SizeField size(1);
+        meshing::Valences valences(mesh_, size);
+        meshing::StarMoves moves(valences);
         bool any = false;
-        for (std::size_t n = 0; n < around.size(); ++n) {
-            if (!around[n].empty() && move(static_cast<std::int32_t>(n), around[n])) any = true;
+        for (std::size_t n = 0; n < is_sharp.size(); ++n) {
+            const auto node = static_cast<std::int32_t>(n);
+            if (is_sharp[n] == 0 || valences.is_fixed(node)) continue;
+            const PlanPoint start = at(node);
+            moves.free(node);
+            moves.move(node);
+            any = any || at(node) != start;
         }
         return any;
-    }
-
-    /// Moves a node to the middle of its neighbors, part of the way, or a little in any direction,
-    /// where that makes the least angle around it larger.
-    bool move(std::int32_t node, std::span<const std::int32_t> around) {
-        PlanPoint middle{};
-        for (const std::int32_t t : around) {
-            for (const std::int32_t corner : mesh_.corners[index(t)]) {
-                if (corner == node) continue;
-                for (std::size_t axis = 0; axis < 2; ++axis)
-                    middle[axis] += at(corner)[axis] / (2.0 * static_cast<double>(around.size()));
-            }
-        }
-        const auto least_around = [&] {
-            double least = std::numbers::pi;
-            for (const std::int32_t t : around) {
-                const Triangle& own = mesh_.corners[index(t)];
-                if (exact::orient2d(at(own[0]), at(own[1]), at(own[2])) <= 0) return 0.0;
-                least = std::min(least, angle_of(own));
-            }
-            return least;
-        };
-        PlanPoint& here = mesh_.points[index(node)];
-        const PlanPoint start = here;
-        PlanPoint best = start;
-        double largest = 1.01 * least_around();
-        const auto try_at = [&](const PlanPoint& p) {
-            here = p;
-            const double own = least_around();
-            if (own <= largest) return;
-            largest = own;
-            best = p;
-        };
-        for (const double share : {1.0, 0.5, 0.25})
-            try_at(moved(start, share, minus(middle, start)));
-        if (best == start) {
-            const auto [a, b, c] = mesh_.corners[index(around[0])];
-            const double step = kStep * distance(at(a), at(b));
-            for (const double x : {-step, 0.0, step}) {
-                for (const double y : {-step, 0.0, step})
-                    try_at({start[0] + x, start[1] + y});
-            }
-        }
-        here = best;
-        return best != start;
     }
 
     std::ptrdiff_t sharp_triangles() const {

@@ -60,8 +60,8 @@ struct Pillars {
 };
 
 /// Makes a planar mesh fit for columns, in this order:
-/// 1. Border triangles with two edges outside are flipped where that leaves no sharp angle, else
-///    divided: an element there would have neighbors in one direction only.
+/// 1. Border triangles with two edges outside are divided: an element there would have neighbors in
+///    one direction only.
 /// 2. Triangles that steps bound are divided until each has at most one edge on a step, and the
 ///    corner across from it has one pillar.
 /// 3. Sharp angles, which the first two leave behind, are made larger by flips and moves of nodes

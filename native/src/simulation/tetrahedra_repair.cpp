@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
+#include "simulation/element_quality.hpp"
 
 namespace realmodel::simulation {
 
@@ -21,264 +21,216 @@ using Tetrahedron = std::array<std::int32_t, 4>;
 using Triangle = std::array<std::int32_t, 3>;
 
 constexpr int kMostRounds = 20;
-constexpr std::int32_t kGone = INT32_MIN;  ///< the surface of a triangle that is no longer one
-constexpr double kFlatCorner = 0.87;       ///< cosine between normals: 30 degrees
+// Flatter ones would be under-determined: one of their faces is outside, where checkMesh sees none.
+constexpr double kLeastOfCovers = 0.003;
 
 Triangle opposite(const Tetrahedron& corners, std::size_t corner) {
     Triangle face{};
     for (std::size_t i = 0, at = 0; i < 4; ++i)
         if (i != corner) face[at++] = corners[i];
-    std::sort(face.begin(), face.end());
     return face;
 }
 
-/// Keeps the rows, and their labels, of which is_kept holds.
-template <class Rows, class IsKept>
-void keep(Rows& rows, std::vector<std::int32_t>& labels, const IsKept& is_kept) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!is_kept(i)) continue;
-        rows[kept] = rows[i];
-        labels[kept++] = labels[i];
-    }
-    rows.resize(kept);
-    labels.resize(kept);
+template <std::size_t N>
+bool has_all(const std::array<std::int32_t, N>& corners, std::span<const std::int32_t> wanted) {
+    return std::ranges::all_of(
+        wanted, [&](std::int32_t v) { return std::ranges::find(corners, v) != corners.end(); });
 }
 
-/// The unit normal, outward, of the face across from a corner.
-Vec3 normal(const FilledMesh& mesh, const Tetrahedron& corners, std::size_t corner) {
-    std::array<Vec3, 3> at{};
-    for (std::size_t i = 0, k = 0; i < 4; ++i)
-        if (i != corner) at[k++] = mesh.points[index(corners[i])];
-    Vec3 n = triangle_normal(at[0], at[1], at[2]);
-    const double size = length(n);
-    const bool is_inward = dot(n, minus(mesh.points[index(corners[corner])], at[0])) > 0;
-    for (double& x : n)
-        x /= is_inward ? -size : size;
-    return n;
+template <std::size_t N>
+std::array<std::int32_t, N> with(std::array<std::int32_t, N> corners, std::int32_t old,
+                                 std::int32_t instead) {
+    std::replace(corners.begin(), corners.end(), old, instead);
+    return corners;
 }
 
-/// One round: what is divided does not touch what else is divided.
-class Round {
-public:
-    explicit Round(FilledMesh& mesh)
-        : mesh_(mesh),
-          tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
-          triangles_at_(rows_at(mesh, mesh.triangles)),
-          tetrahedra_(mesh.tetrahedra),
-          triangles_(mesh.triangles),
-          is_taken_(mesh.tetrahedra.size(), 0),
-          is_gone_(mesh.tetrahedra.size(), 0) {}
-
-    /// Whether anything was divided.
-    bool run(Progress* progress) {
-        bool any = false;
-        const std::size_t count = mesh_.tetrahedra.size();
-        for (std::size_t t = 0; t < count; ++t) {
-            poll(progress, t);
-            if (is_taken_[t] != 0) continue;
-            const Tetrahedron corners = mesh_.tetrahedra[t];
-            // corners across from faces of the outside, then the others
-            std::array<std::int32_t, 4> order{};
-            std::size_t outer = 0, inner = 4;
-            for (std::size_t i = 0; i < 4; ++i) {
-                if (is_outside(corners, i, t))
-                    order[outer++] = corners[i];
-                else
-                    order[--inner] = corners[i];
-            }
-            // Two outer faces share the edge of the two last corners, and the edge of the first two
-            // is inside; three share the last corner, and the face of the others is inside.
-            if (outer < 2 || outer > 3) continue;
-            std::vector<std::int32_t> inside(order.begin(), order.begin() + 2);
-            if (outer == 3) inside.push_back(order[2]);
-            any |= give_up(t, inside) || divide(inside);
-        }
-        drop_gone();
-        return any;
+/// Divides a row at a new point between some of its corners.
+template <class Rows>
+void split(Rows& rows, std::vector<std::int32_t>& labels, std::size_t row,
+           std::span<const std::int32_t> between, std::int32_t added) {
+    const auto corners = rows[row];
+    rows[row] = with(corners, between[0], added);
+    for (const std::int32_t v : between.subspan(1)) {
+        rows.push_back(with(corners, v, added));
+        labels.push_back(labels[row]);
     }
+}
 
-private:
-    /// Whether no other tetrahedron has the face.
-    bool is_outside(const Tetrahedron& corners, std::size_t corner, std::size_t own) const {
-        const Triangle face = opposite(corners, corner);
-        return std::ranges::all_of(
-            elements_beside(tetrahedra_, tetrahedra_at_[index(face[0])], face),
-            [&](std::int32_t t) { return t < 0 || index(t) == own || is_gone_[index(t)] != 0; });
-    }
-
-    /// Leaves out a tetrahedron whose faces outside are nearly one plane: they are on one surface,
-    /// and the others, inside until now, take their place.
-    bool give_up(std::size_t t, const std::vector<std::int32_t>& inside) {
-        const Tetrahedron corners = mesh_.tetrahedra[t];
-        std::vector<Vec3> normals;
-        std::vector<Triangle> old_faces, new_faces;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const bool is_outer =
-                std::find(inside.begin(), inside.end(), corners[i]) != inside.end();
-            (is_outer ? old_faces : new_faces).push_back(opposite(corners, i));
-            if (is_outer) normals.push_back(normal(mesh_, corners, i));
-        }
-        for (std::size_t i = 0; i < normals.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (!(dot(normals[i], normals[j]) > kFlatCorner)) return false;
-        std::vector<std::size_t> rows;
-        for (const std::int32_t f : triangles_at_[index(inside[0])]) {
-            const Triangle& face = triangles_[index(f)];
-            // what is inside must not be on the outside, or a boundary, elsewhere
-            const bool is_own =
-                has(corners, face[0]) && has(corners, face[1]) && has(corners, face[2]);
-            if (!is_own && has(face, inside[1])) return false;
-        }
-        for (const Triangle& face : new_faces)
-            if (row_of(face)) return false;
-        for (const Triangle& face : old_faces) {
-            const auto row = row_of(face);
-            if (!row || mesh_.surface[*row] != mesh_.surface[*row_of(old_faces[0])]) return false;
-            rows.push_back(*row);
-        }
-        for (const std::int32_t v : corners)
-            for (const std::int32_t other : tetrahedra_at_[index(v)])
-                is_taken_[index(other)] = 1;
-        is_gone_[t] = 1;
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (i >= new_faces.size()) {
-                mesh_.surface[rows[i]] = kGone;
-                continue;
-            }
-            // seen from outside: the other way round than from the tetrahedron that is left out
-            Triangle face = new_faces[i];
-            std::int32_t fourth = corners[0];
-            for (const std::int32_t v : corners)
-                if (!has(face, v)) fourth = v;
-            if (six_volumes(mesh_, {face[0], face[1], face[2], fourth}) < 0)
-                std::swap(face[0], face[1]);
-            mesh_.triangles[rows[i]] = face;
-        }
-        return true;
-    }
-
-    /// The row of a face with sorted corners among the triangles.
-    std::optional<std::size_t> row_of(const Triangle& sorted) const {
-        for (const std::int32_t f : triangles_at_[index(sorted[0])]) {
-            const Triangle& face = mesh_.triangles[index(f)];
-            if (mesh_.surface[index(f)] != kGone && has(face, sorted[0]) && has(face, sorted[1]) &&
-                has(face, sorted[2]))
-                return index(f);
-        }
-        return std::nullopt;
-    }
-
-    void drop_gone() {
-        is_gone_.resize(mesh_.tetrahedra.size(), 0);
-        keep(mesh_.tetrahedra, mesh_.region, [&](std::size_t t) { return is_gone_[t] == 0; });
-        keep(mesh_.triangles, mesh_.surface,
-             [&](std::size_t f) { return mesh_.surface[f] != kGone; });
-    }
-
-    /// A new point in the middle of an edge or a face; everything that has it is divided.
-    bool divide(const std::vector<std::int32_t>& middle_of) {
-        const auto has_all = [&](const auto& corners) {
-            return std::all_of(middle_of.begin(), middle_of.end(),
-                               [&](std::int32_t v) { return has(corners, v); });
-        };
-        std::vector<std::int32_t> around;
-        for (const std::int32_t t : tetrahedra_at_[index(middle_of[0])]) {
-            if (!has_all(tetrahedra_[index(t)])) continue;
-            if (is_taken_[index(t)] != 0) return false;
-            around.push_back(t);
-        }
-        Vec3 middle{};
-        for (const std::int32_t v : middle_of)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                middle[axis] +=
-                    mesh_.points[index(v)][axis] / static_cast<double>(middle_of.size());
-        const std::int32_t added = checked_number(mesh_.points.size(), "points");
-        mesh_.points.push_back(middle);
-        for (const std::int32_t t : around) {
-            for (const std::int32_t v : middle_of) {
-                if (!(six_volumes(mesh_, with(mesh_.tetrahedra[index(t)], v, added)) > 0)) {
-                    mesh_.points.pop_back();
-                    return false;
-                }
-            }
-        }
-        for (const std::int32_t t : around) {
-            is_taken_[index(t)] = 1;
-            split(mesh_.tetrahedra, mesh_.region, index(t), middle_of, added);
-        }
-        for (const std::int32_t f : triangles_at_[index(middle_of[0])])
-            if (has_all(mesh_.triangles[index(f)]))
-                split(mesh_.triangles, mesh_.surface, index(f), middle_of, added);
-        return true;
-    }
-
-    template <class Rows>
-    static void split(Rows& rows, std::vector<std::int32_t>& labels, std::size_t row,
-                      const std::vector<std::int32_t>& middle_of, std::int32_t added) {
-        const auto corners = rows[row];
-        rows[row] = with(corners, middle_of[0], added);
-        for (std::size_t i = 1; i < middle_of.size(); ++i) {
-            rows.push_back(with(corners, middle_of[i], added));
-            labels.push_back(labels[row]);
-        }
-    }
-
-    FilledMesh& mesh_;
-    // as they were before the round
-    const Buckets<std::int32_t> tetrahedra_at_, triangles_at_;
-    const std::vector<Tetrahedron> tetrahedra_;
-    const std::vector<Triangle> triangles_;
-    std::vector<std::uint8_t> is_taken_, is_gone_;
-};
-
-/// Leaves out tetrahedra that share no face with another.
+/// Leaves out tetrahedra that share no face with another, and points that nothing has then.
 void drop_single(FilledMesh& mesh) {
-    using Side = std::pair<Triangle, std::int32_t>;
-    std::vector<Side> faces;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    const Buckets<std::int32_t> around = rows_at(mesh, mesh.tetrahedra);
+    const auto is_outside = [&](const Triangle& face) {
+        return elements_beside(mesh.tetrahedra, around[index(face[0])], face)[1] < 0;
+    };
+    std::vector<std::uint8_t> is_single;
+    for (const Tetrahedron& corners : mesh.tetrahedra) {
+        bool all = true;
         for (std::size_t i = 0; i < 4; ++i)
-            faces.emplace_back(opposite(mesh.tetrahedra[t], i), static_cast<std::int32_t>(t));
-    std::sort(faces.begin(), faces.end());
-    std::vector<std::uint8_t> has_neighbor(mesh.tetrahedra.size(), 0);
-    for (const auto equal : groups_of(faces, &Side::first)) {
-        if (equal.size() == 1) continue;
-        for (const auto& [face, t] : equal)
-            has_neighbor[index(t)] = 1;
+            all = all && is_outside(opposite(corners, i));
+        is_single.push_back(all);
     }
-    if (std::find(has_neighbor.begin(), has_neighbor.end(), 0) == has_neighbor.end()) return;
-    std::vector<Triangle> lost;
-    for (const auto& [face, t] : faces)
-        if (has_neighbor[index(t)] == 0) lost.push_back(face);
-    keep(mesh.triangles, mesh.surface, [&](std::size_t f) {
-        Triangle face = mesh.triangles[f];
-        std::sort(face.begin(), face.end());
-        return !std::binary_search(lost.begin(), lost.end(), face);
-    });
-    keep(mesh.tetrahedra, mesh.region, [&](std::size_t t) { return has_neighbor[t] != 0; });
-}
-
-void drop_unused_points(FilledMesh& mesh) {
+    if (std::ranges::find(is_single, 1) == is_single.end()) return;
+    std::vector<std::uint8_t> is_lost;
+    for (const Triangle& face : mesh.triangles)
+        is_lost.push_back(
+            is_single[index(elements_beside(mesh.tetrahedra, around[index(face[0])], face)[0])]);
     std::vector<std::int32_t> number(mesh.points.size(), -1);
-    for (const Tetrahedron& corners : mesh.tetrahedra)
-        for (const std::int32_t v : corners)
-            number[index(v)] = 0;
-    std::size_t used = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] < 0) continue;
-        number[v] = static_cast<std::int32_t>(used);
-        mesh.points[used++] = mesh.points[v];
-    }
-    mesh.points.resize(used);
-    for (Tetrahedron& corners : mesh.tetrahedra)
-        for (std::int32_t& v : corners)
-            v = number[index(v)];
-    for (Triangle& corners : mesh.triangles)
-        for (std::int32_t& v : corners)
-            v = number[index(v)];
+    std::vector<Vec3> points;
+    const auto keep = [&](auto& rows, std::vector<std::int32_t>& labels, const auto& is_gone) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (is_gone[i] != 0) continue;
+            for (std::int32_t& v : rows[i]) {
+                std::int32_t& own = number[index(v)];
+                if (own < 0) {
+                    own = static_cast<std::int32_t>(points.size());
+                    points.push_back(mesh.points[index(v)]);
+                }
+                v = own;
+            }
+            rows[count] = rows[i];
+            labels[count++] = labels[i];
+        }
+        rows.resize(count);
+        labels.resize(count);
+    };
+    keep(mesh.tetrahedra, mesh.region, is_single);
+    keep(mesh.triangles, mesh.surface, is_lost);
+    mesh.points = std::move(points);
 }
 
 }  // namespace
+
+TetrahedraRound::TetrahedraRound(FilledMesh& mesh)
+    : mesh_(mesh),
+      tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
+      triangles_at_(rows_at(mesh, mesh.triangles)),
+      tetrahedra_(mesh.tetrahedra),
+      triangles_(mesh.triangles),
+      is_taken_(mesh.tetrahedra.size(), 0) {}
+
+std::array<std::int32_t, 2> TetrahedraRound::beside(const Triangle& face) const {
+    return elements_beside(tetrahedra_, tetrahedra_at_[index(face[0])], face);
+}
+
+bool TetrahedraRound::divide_corners(Progress* progress) {
+    bool any = false;
+    for (std::size_t t = 0; t < tetrahedra_.size(); ++t) {
+        poll(progress, t);
+        if (is_taken_[t] != 0) continue;
+        // corners across from faces of the outside, then the others
+        Tetrahedron order{};
+        std::size_t outer = 0, inner = 4;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const bool is_outside = beside(opposite(tetrahedra_[t], i))[1] < 0;
+            order[is_outside ? outer++ : --inner] = tetrahedra_[t][i];
+        }
+        // Two outer faces share the edge of the two last corners, and the edge of the first two is
+        // inside; three share the last corner, and the face of the others is inside.
+        if (outer == 2 || outer == 3) any |= divide(std::span(order).first(outer));
+    }
+    return any;
+}
+
+bool TetrahedraRound::divide(std::span<const std::int32_t> between) {
+    std::vector<std::int32_t> around;
+    for (const std::int32_t t : tetrahedra_at_[index(between[0])]) {
+        if (!has_all(tetrahedra_[index(t)], between)) continue;
+        if (is_taken_[index(t)] != 0) return false;
+        around.push_back(t);
+    }
+    Vec3 middle{};
+    for (const std::int32_t v : between)
+        middle = moved(middle, 1 / static_cast<double>(between.size()), mesh_.points[index(v)]);
+    const std::int32_t added = checked_number(mesh_.points.size(), "points");
+    mesh_.points.push_back(middle);
+    for (const std::int32_t t : around) {
+        for (const std::int32_t v : between) {
+            if (!(six_volumes(mesh_, with(tetrahedra_[index(t)], v, added)) > 0)) {
+                mesh_.points.pop_back();
+                return false;
+            }
+        }
+    }
+    for (const std::int32_t t : around) {
+        is_taken_[index(t)] = 1;
+        split(mesh_.tetrahedra, mesh_.region, index(t), between, added);
+    }
+    for (const std::int32_t f : triangles_at_[index(between[0])])
+        if (has_all(mesh_.triangles[index(f)], between))
+            split(mesh_.triangles, mesh_.surface, index(f), between, added);
+    return true;
+}
+
+bool TetrahedraRound::cover(std::span<const std::int32_t> corners, const Vec3& at) {
+    struct OuterTriangle {
+        std::int32_t row, region;
+    };
+    std::vector<OuterTriangle> outer;
+    std::vector<std::int32_t> inner;
+    for (const std::int32_t f : triangles_at_[index(corners[0])]) {
+        if (!has_all(triangles_[index(f)], corners)) continue;
+        const auto [first, second] = beside(triangles_[index(f)]);
+        for (const std::int32_t t : {first, second})
+            if (t >= 0 && is_taken_[index(t)] != 0) return false;
+        if (second < 0)
+            outer.push_back({f, mesh_.region[index(first)]});
+        else
+            inner.push_back(f);
+    }
+    // the edges that two of these faces share, and the triangles inside that end there
+    struct SharedEdge {
+        std::array<std::int32_t, 2> edge;
+        std::vector<std::int32_t> regions, inside;
+    };
+    std::vector<SharedEdge> hinges;
+    for (const OuterTriangle& face : outer) {
+        const auto& own = triangles_[index(face.row)];
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (std::ranges::find(corners, own[i]) != corners.end()) continue;
+            const auto edge = unordered(own[(i + 1) % 3], own[(i + 2) % 3]);
+            auto hinge = std::ranges::find(hinges, edge, &SharedEdge::edge);
+            if (hinge == hinges.end()) hinge = hinges.insert(hinge, {edge, {}, {}});
+            hinge->regions.push_back(face.region);
+        }
+    }
+    const auto has_two = [](const SharedEdge& hinge) { return hinge.regions.size() == 2; };
+    if (!std::ranges::all_of(hinges, has_two)) return false;
+    for (const std::int32_t f : inner)
+        for (SharedEdge& hinge : hinges)
+            if (has_all(triangles_[index(f)], hinge.edge)) hinge.inside.push_back(f);
+
+    const std::int32_t added = checked_number(mesh_.points.size(), "points");
+    mesh_.points.push_back(at);
+    const auto covered = [&](const OuterTriangle& face) {
+        const auto& [a, b, c] = triangles_[index(face.row)];
+        return std::array{a, b, c, added};
+    };
+    const auto is_good = [&](const OuterTriangle& face) {
+        return six_volumes(mesh_, covered(face)) > 0 &&
+               roundness(mesh_, covered(face)) >= kLeastOfCovers;
+    };
+    if (!std::ranges::all_of(outer, is_good)) {
+        mesh_.points.pop_back();
+        return false;
+    }
+    for (const std::int32_t v : corners)
+        for (const std::int32_t t : tetrahedra_at_[index(v)])
+            is_taken_[index(t)] = 1;
+    for (const OuterTriangle& face : outer) {
+        mesh_.tetrahedra.push_back(covered(face));
+        mesh_.region.push_back(face.region);
+        split(mesh_.triangles, mesh_.surface, index(face.row), corners, added);
+    }
+    for (const SharedEdge& hinge : hinges) {
+        // A boundary, or a kept surface within a region. A region that only touches the outside
+        // along the edge is not between the new elements.
+        if (hinge.regions[0] == hinge.regions[1] && hinge.inside.size() != 1) continue;
+        mesh_.triangles.push_back({hinge.edge[0], hinge.edge[1], added});
+        mesh_.surface.push_back(mesh_.surface[index(hinge.inside[0])]);
+    }
+    return true;
+}
 
 double six_volumes(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
     const auto at = [&](std::size_t i) { return mesh.points[index(corners[i])]; };
@@ -290,19 +242,16 @@ std::array<std::int32_t, 2> elements_beside(std::span<const Tetrahedron> element
                                             const Triangle& face) {
     std::array<std::int32_t, 2> beside{-1, -1};
     std::size_t count = 0;
-    for (const std::int32_t t : at_corner) {
-        const auto has_corner = [&](std::int32_t v) { return has(elements[index(t)], v); };
-        if (count < 2 && std::ranges::all_of(face, has_corner)) beside[count++] = t;
-    }
+    for (const std::int32_t t : at_corner)
+        if (count < 2 && has_all(elements[index(t)], face)) beside[count++] = t;
     assert(count > 0);
     return beside;
 }
 
 void divide_corner_tetrahedra(FilledMesh& mesh, Progress* progress) {
-    for (int round = 0; round < kMostRounds && Round(mesh).run(progress); ++round) {
-    }
+    for (int round = 0; round < kMostRounds; ++round)
+        if (!TetrahedraRound(mesh).divide_corners(progress)) break;
     drop_single(mesh);
-    drop_unused_points(mesh);
 }
 
 namespace {
@@ -401,23 +350,13 @@ private:
 }  // namespace
 
 double roundness(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
-    std::array<Vec3, 4> area{};
-    double mean = 0;
+    std::array<Vec3, 4> areas{};
     for (std::size_t i = 0; i < 4; ++i) {
-        const Vec3& a = mesh.points[index(corners[(i + 1) % 4])];
-        area[i] = triangle_normal(a, mesh.points[index(corners[(i + 2) % 4])],
-                                  mesh.points[index(corners[(i + 3) % 4])]);
-        mean += length(area[i]) / 4;
+        const auto [a, b, c] = opposite(corners, i);
+        areas[i] =
+            triangle_normal(mesh.points[index(a)], mesh.points[index(b)], mesh.points[index(c)]);
     }
-    if (!(mean > 0)) return 0;
-    std::array<Vec3, 3> sum{};
-    for (const Vec3& n : area) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j)
-                sum[i][j] += n[i] * n[j] / (mean * mean);
-        }
-    }
-    return dot(sum[0], cross(sum[1], sum[2])) / 8;
+    return determinant_of(areas);
 }
 
 double least_roundness(const FilledMesh& mesh, std::span<const std::int32_t> elements) {

@@ -2,14 +2,17 @@
 // Repairs of tetrahedra that solvers compute badly on: those in corners, and flat ones.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/vectors.hpp"
+#include "realmodel/complex.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
+#include "simulation/boundary_faces.hpp"
 
 namespace realmodel::simulation {
 
@@ -33,25 +36,39 @@ Buckets<std::int32_t> rows_at(const FilledMesh& mesh, const Rows& rows) {
     });
 }
 
-/// Whether an element or a face has a corner.
-template <std::size_t N>
-bool has(const std::array<std::int32_t, N>& corners, std::int32_t v) {
-    return std::find(corners.begin(), corners.end(), v) != corners.end();
-}
-
-/// It with another corner in the place of one.
-template <std::size_t N>
-std::array<std::int32_t, N> with(std::array<std::int32_t, N> corners, std::int32_t old,
-                                 std::int32_t instead) {
-    std::replace(corners.begin(), corners.end(), old, instead);
-    return corners;
-}
-
 /// The elements beside a face, the second -1 if it is outside.
 /// @param at_corner  the elements at one of its corners
 std::array<std::int32_t, 2> elements_beside(std::span<const std::array<std::int32_t, 4>> elements,
                                             std::span<const std::int32_t> at_corner,
                                             const std::array<std::int32_t, 3>& face);
+
+/// One round of changes of a mesh: none touches what another one has changed.
+class TetrahedraRound {
+public:
+    explicit TetrahedraRound(FilledMesh& mesh);
+
+    /// Divides tetrahedra with two or three faces outside, with their neighbors.
+    /// @return whether any was
+    bool divide_corners(Progress* progress);
+
+    /// Fills a dent of the outside: a new point above a corner or an edge of the outside, and
+    /// tetrahedra between it and the faces outside that meet there, each of the region of its face.
+    /// Boundaries that end there go on to the new point.
+    /// @return whether it was done: none may be turned or flat
+    bool cover(std::span<const std::int32_t> corners, const Vec3& at);
+
+private:
+    std::array<std::int32_t, 2> beside(const std::array<std::int32_t, 3>& face) const;
+    /// A new point in the middle of an edge or a face; everything that has it is divided.
+    bool divide(std::span<const std::int32_t> between);
+
+    FilledMesh& mesh_;
+    // as they were before the round
+    const Buckets<std::int32_t> tetrahedra_at_, triangles_at_;
+    const std::vector<std::array<std::int32_t, 4>> tetrahedra_;
+    const std::vector<std::array<std::int32_t, 3>> triangles_;
+    std::vector<std::uint8_t> is_taken_;
+};
 
 /// Makes flat tetrahedra thicker by moving their corners: those inside regions as far as it takes,
 /// those inside of one surface between regions by half of `tolerance` at most, no others. No
@@ -67,5 +84,15 @@ double roundness(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corn
 
 /// The least of some elements, at most 1; 0 where one of them has no volume.
 double least_roundness(const FilledMesh& mesh, std::span<const std::int32_t> elements);
+
+/// Gives each outside face of the mesh the surface of the exact outside face that it comes from.
+/// Corners that are off it (where a sharp edge is cut short, or flat elements were left out) move
+/// onto it where the elements around stay positive, or are covered by new elements, so that walls
+/// and flat bases stay in their planes.
+/// @param reach  how far corners may lie from the face that they come from, and move
+/// @throws Cancelled
+void sort_outside_faces(FilledMesh& mesh, const ComplexView& model,
+                        std::span<const BoundaryTriangle> triangles, double reach,
+                        Progress* progress);
 
 }  // namespace realmodel::simulation

@@ -12,7 +12,6 @@
 
 #include "../sanitized.hpp"
 #include "realmodel/base/errors.hpp"
-#include "simulation/outside_faces.hpp"
 #include "simulation/tetrahedra_repair.hpp"
 
 namespace realmodel::simulation {
@@ -292,7 +291,7 @@ double volume_of_all(const FilledMesh& mesh) {
 
 TEST(OutsideCoversTest, ACornerIsCoveredByBothRegionsThatMeetThere) {
     FilledMesh mesh = octahedron({0, 0, 0}, true);
-    ASSERT_TRUE(OutsideCovers(mesh).add(std::array{0}, {2, 0, 0}));
+    ASSERT_TRUE(TetrahedraRound(mesh).cover(std::array{0}, {2, 0, 0}));
     expect_valid(mesh);
     // the faces of a region are a triangle of area 1, seen along x; the new point is 1 farther out
     EXPECT_NEAR(volume(mesh, 0), 2.0 / 3 + 1.0 / 3, 1e-12);
@@ -306,9 +305,9 @@ TEST(OutsideCoversTest, ACornerIsCoveredByBothRegionsThatMeetThere) {
 
 TEST(OutsideCoversTest, AnEdgeIsCoveredByTheRegionsOfItsFaces) {
     FilledMesh mesh = octahedron({0, 0, 0}, true);
-    OutsideCovers covers(mesh);
-    ASSERT_TRUE(covers.add(std::array{0, 1}, {0.8, 0.8, 0}));
-    EXPECT_FALSE(covers.add(std::array{1}, {0, 1.5, 0}));  // touches what was covered
+    TetrahedraRound covers(mesh);
+    ASSERT_TRUE(covers.cover(std::array{0, 1}, {0.8, 0.8, 0}));
+    EXPECT_FALSE(covers.cover(std::array{1}, {0, 1.5, 0}));  // touches what was covered
     expect_valid(mesh);
     EXPECT_NEAR(volume_of_all(mesh), 4.0 / 3 + 0.6 / 3, 1e-12);
     EXPECT_NEAR(volume(mesh, 1), volume(mesh, 0), 1e-12);
@@ -318,7 +317,7 @@ TEST(OutsideCoversTest, AnEdgeIsCoveredByTheRegionsOfItsFaces) {
 TEST(OutsideCoversTest, NothingIsCoveredByTurnedOrFlatElements) {
     FilledMesh mesh = octahedron({0, 0, 0}, true);
     for (const double x : {0.5, 1.0, 1.0001}) {
-        EXPECT_FALSE(OutsideCovers(mesh).add(std::array{0}, {x, 0, 0}));
+        EXPECT_FALSE(TetrahedraRound(mesh).cover(std::array{0}, {x, 0, 0}));
         EXPECT_EQ(mesh.points.size(), 7);
     }
     EXPECT_NEAR(volume_of_all(mesh), 4.0 / 3, 1e-12);

@@ -61,7 +61,7 @@ TEST(PillarsTest, ANodeWhereTheRegionTouchesItselfHasTwo) {
     EXPECT_EQ(pillars.is_divided, (std::vector<std::uint8_t>{1, 0, 0, 0, 0}));
 }
 
-TEST(PlanAdaptionTest, BorderCornersAreFlippedOrDivided) {
+TEST(PlanAdaptionTest, BorderCornersAreDivided) {
     const PlanLines none;
     for (const double far : {2.0, 9.0}) {  // an edge to there would be too sharp
         meshing::FlatMesh mesh({{{0, 0}, {1, -2}, {2, 0}, {1, far}, {4, 3}, {-2, 3}},
