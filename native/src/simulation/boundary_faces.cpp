@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -18,6 +18,7 @@
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
 #include "simulation/column_heights.hpp"
+#include "simulation/traces.hpp"
 #include "spatial/hash_grid.hpp"
 #include "spatial/plan_tiles.hpp"
 
@@ -138,76 +139,6 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
 
 namespace {
 
-/// Edges that meet, taken apart into lines.
-class EdgeGraph {
-public:
-    EdgeGraph(const ComplexView& model, std::span<const Edge> edges) : model_(model) {
-        for (const auto& [a, b] : edges) {
-            neighbors_[a].push_back(b);
-            neighbors_[b].push_back(a);
-        }
-    }
-
-    /// Corners where no line goes straight on, then those where lines meet; each by number.
-    std::array<std::vector<std::int32_t>, 2> corners() {
-        std::array<std::vector<std::int32_t>, 2> found;
-        for (const auto& [v, others] : neighbors_) {
-            bool goes_on = false;
-            for (std::size_t i = 0; i < others.size(); ++i)
-                for (std::size_t j = 0; j < i; ++j)
-                    goes_on = goes_on || is_straight(v, others[i], others[j]);
-            if (others.size() == 2 && goes_on) continue;
-            found[goes_on || others.size() < 2 ? 1 : 0].push_back(v);
-            corners_.insert(v);
-        }
-        return found;
-    }
-
-    /// Lines from corner to corner, or closed, the longest first.
-    std::vector<std::vector<std::int32_t>> lines() {
-        std::vector<std::pair<double, std::vector<std::int32_t>>> found;
-        for (const bool from_corners : {true, false}) {
-            for (const auto& [v, others] : neighbors_) {
-                if (corners_.contains(v) != from_corners) continue;
-                for (const std::int32_t next : others)
-                    if (take({v, next})) found.push_back(walk(v, next));
-            }
-        }
-        std::stable_sort(found.begin(), found.end(),
-                         [](const auto& a, const auto& b) { return a.first > b.first; });
-        std::vector<std::vector<std::int32_t>> lines;
-        for (auto& [size, line] : found)
-            lines.push_back(std::move(line));
-        return lines;
-    }
-
-private:
-    bool is_straight(std::int32_t v, std::int32_t a, std::int32_t b) const {
-        const Point u = minus(model_.vertex(a), model_.vertex(v));
-        const Point w = minus(model_.vertex(b), model_.vertex(v));
-        return dot(u, w) < kStraight * length(u) * length(w);
-    }
-    bool take(const Edge& edge) { return taken_.insert(unordered(edge[0], edge[1])).second; }
-    std::pair<double, std::vector<std::int32_t>> walk(std::int32_t from, std::int32_t to) {
-        std::vector<std::int32_t> line{from, to};
-        while (!corners_.contains(line.back()) && line.back() != from) {
-            const auto& others = neighbors_.at(line.back());
-            const std::int32_t next = others[0] == line[line.size() - 2] ? others[1] : others[0];
-            if (!take({line.back(), next})) break;
-            line.push_back(next);
-        }
-        double size = 0;
-        for (std::size_t i = 1; i < line.size(); ++i)
-            size += length(minus(model_.vertex(line[i]), model_.vertex(line[i - 1])));
-        return {size, std::move(line)};
-    }
-
-    const ComplexView& model_;
-    std::map<std::int32_t, std::vector<std::int32_t>> neighbors_;
-    std::set<std::int32_t> corners_;
-    std::set<Edge> taken_;
-};
-
 /// A piece of a line; its size is its length where edges are as long as anywhere, and more where
 /// they are shorter.
 struct LinePiece {
@@ -262,11 +193,47 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
     const auto add = [&](const Point& p) {
         if (spaced.add(p, kNearest * length_at(lengths, p))) found.push_back(p);
     };
-    EdgeGraph graph(model, sharp_edges);
-    for (const auto& corners : graph.corners())
-        for (const std::int32_t v : corners)
+    std::vector<std::int32_t> vertices;
+    for (const Edge& edge : sharp_edges)
+        vertices.insert(vertices.end(), edge.begin(), edge.end());
+    sort_unique(vertices);
+    const auto number = [&](std::int32_t v) {
+        return static_cast<std::int32_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
+    };
+    const EdgeGraph graph(vertices.size(), transformed(sharp_edges, [&](const Edge& edge) {
+                              return Edge{number(edge[0]), number(edge[1])};
+                          }));
+    // corners where no line goes straight on, then those where lines meet
+    std::array<std::vector<std::int32_t>, 2> corners;
+    std::vector<std::uint8_t> is_corner;
+    for (std::size_t p = 0; p < vertices.size(); ++p) {
+        const auto own = graph.at[p];
+        const auto way = [&](std::size_t i) {
+            const auto end = index(graph.other(own[i], static_cast<std::int32_t>(p)));
+            return minus(model.vertex(vertices[end]), model.vertex(vertices[p]));
+        };
+        bool goes_on = false;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const Point u = way(i), w = way(j);
+                goes_on = goes_on || dot(u, w) < kStraight * length(u) * length(w);
+            }
+        }
+        is_corner.push_back(own.size() != 2 || !goes_on);
+        if (is_corner[p] != 0) corners[goes_on || own.size() < 2 ? 1 : 0].push_back(vertices[p]);
+    }
+    for (const auto& some : corners)
+        for (const std::int32_t v : some)
             add(model.vertex(v));
-    for (const auto& line : graph.lines())
+    std::vector<std::pair<double, std::vector<std::int32_t>>> lines;
+    for (const auto& chain : graph.chains(is_corner)) {
+        auto& [size, line] = lines.emplace_back();
+        line = transformed(chain, [&](std::int32_t p) { return vertices[index(p)]; });
+        for (std::size_t i = 1; i < line.size(); ++i)
+            size += length(minus(model.vertex(line[i]), model.vertex(line[i - 1])));
+    }
+    std::ranges::stable_sort(lines, std::greater<>(), [](const auto& line) { return line.first; });
+    for (const auto& [size, line] : lines)
         for (const Point& p : parts_of(model, line, lengths))
             add(p);
     return found;

@@ -48,16 +48,17 @@ double local_length(const PlanPoint& p, double edge_length, std::span<const Line
 }
 
 using Link = std::array<std::int32_t, 2>;
-/// What lies along a link.
+/// What lies along a link between two anchors: a block that ends there, or -1: a step.
 struct LinkUse {
-    bool is_step = false;
-    std::vector<std::int32_t> ending;
+    Link link;
+    std::int32_t block;
+    auto operator<=>(const LinkUse&) const = default;
 };
 
-/// The anchors that lines run along, and what ends along each pair.
-std::map<Link, LinkUse> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
-                                       const meshing::ConstrainedTriangulation& delaunay,
-                                       Progress* progress) {
+/// The anchors that lines run along, and what is along each pair, sorted.
+std::vector<LinkUse> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
+                                    const meshing::ConstrainedTriangulation& delaunay,
+                                    Progress* progress) {
     std::vector<std::vector<std::int32_t>> neighbors(anchors.size());
     for (const auto& t : delaunay.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -84,7 +85,7 @@ std::map<Link, LinkUse> linked_anchors(const Traces& traces, std::span<const Pla
         }
         return from;
     };
-    std::map<Link, LinkUse> links;
+    std::vector<LinkUse> links;
     std::int32_t at = 0;
     std::size_t count = 0;
     for (const Traces::Segment& segment : traces.segments) {
@@ -109,16 +110,11 @@ std::map<Link, LinkUse> linked_anchors(const Traces& traces, std::span<const Pla
                 }
             }
             if (next < 0) break;
-            LinkUse& use = links[unordered(here, next)];
-            if (segment.block < 0) {
-                use.is_step = true;
-            } else if (std::find(use.ending.begin(), use.ending.end(), segment.block) ==
-                       use.ending.end()) {
-                use.ending.push_back(segment.block);
-            }
+            links.push_back({unordered(here, next), std::max(segment.block, -1)});
             here = next;
         }
     }
+    sort_unique(links);
     return links;
 }
 
@@ -126,8 +122,7 @@ std::map<Link, LinkUse> linked_anchors(const Traces& traces, std::span<const Pla
 std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& blocks,
                                    std::span<const PlanPoint> anchors,
                                    const meshing::ConstrainedTriangulation& delaunay,
-                                   const std::map<Link, LinkUse>& links,
-                                   const Execution& execution) {
+                                   std::span<const LinkUse> links, const Execution& execution) {
     constexpr std::array<std::array<double, 3>, 7> kShares{{{1. / 3, 1. / 3, 1. / 3},
                                                             {.6, .2, .2},
                                                             {.2, .6, .2},
@@ -153,7 +148,8 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t n = delaunay.neighbors[t][i];
-            if (links.contains(unordered(triangles[t][i], triangles[t][(i + 1) % 3]))) continue;
+            const Link edge = unordered(triangles[t][i], triangles[t][(i + 1) % 3]);
+            if (!items_with_key(links, edge, &LinkUse::link).empty()) continue;
             if (n >= 0) {
                 faces.join(static_cast<std::int32_t>(t), n);
             } else {
@@ -247,7 +243,7 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     if (delaunay.triangles.empty()) {
         throw InputError("nothing", "the model is smaller in plan than the edge length");
     }
-    auto links = linked_anchors(traces, lines.points, delaunay, execution.progress);
+    const auto links = linked_anchors(traces, lines.points, delaunay, execution.progress);
     const auto rocks = rocks_of(model, blocks, lines.points, delaunay, links, execution);
     std::map<Link, Link> sides;  // the rock masses left and right of each link
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
@@ -258,12 +254,14 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
         }
     }
     lines.ending_offsets.push_back(0);
-    for (auto& [link, use] : links) {
+    for (const auto along : groups_of(links, &LinkUse::link)) {
+        const Link& link = along[0].link;
         const auto& [left, right] = sides.at(link);
         if (left < 0 && right < 0) continue;
-        lines.segments.push_back({link[0], link[1], left, right, use.is_step || left != right});
-        std::sort(use.ending.begin(), use.ending.end());
-        lines.ending_blocks.insert(lines.ending_blocks.end(), use.ending.begin(), use.ending.end());
+        lines.segments.push_back(
+            {link[0], link[1], left, right, along[0].block < 0 || left != right});
+        for (const LinkUse& use : along)
+            if (use.block >= 0) lines.ending_blocks.push_back(use.block);
         lines.ending_offsets.push_back(static_cast<std::int32_t>(lines.ending_blocks.size()));
     }
     for (const Traces::Segment& s : traces.segments) {

@@ -117,43 +117,18 @@ namespace {
 constexpr double kNearerOnSteps = 0.7;
 constexpr double kCornerTurn = 0.35;  ///< radians: a wall that turns by more has a corner
 
-/// The traces as a graph: each pair of ends is one edge, whatever ends or steps there.
-struct Graph {
-    struct TraceEdge {
-        std::int32_t from, to;
-        bool is_step, is_of_top;
-    };
-    std::vector<TraceEdge> edges;
-    Buckets<std::int32_t> at;  ///< the edges at each point
-
-    explicit Graph(const Traces& traces) {
-        for (const auto equal : groups_of(traces.segments, &Traces::Segment::ends)) {
-            TraceEdge& edge =
-                edges.emplace_back(TraceEdge{equal[0].ends[0], equal[0].ends[1], false, false});
-            for (const Traces::Segment& s : equal) {
-                edge.is_of_top = edge.is_of_top || s.block == Traces::kOfTop;
-                edge.is_step = edge.is_step || s.block < 0;
-            }
-        }
-        at = bucketize<std::int32_t>(traces.points.size(), [&](const auto& put) {
-            for (std::size_t e = 0; e < edges.size(); ++e) {
-                put(index(edges[e].from), static_cast<std::int32_t>(e));
-                put(index(edges[e].to), static_cast<std::int32_t>(e));
-            }
-        });
-    }
-    std::int32_t other(std::int32_t edge, std::int32_t point) const {
-        const TraceEdge& e = edges[index(edge)];
-        return e.from == point ? e.to : e.from;
-    }
+/// What lies along each edge of traces, whatever ends or steps there.
+struct EdgeUse {
+    bool is_step = false, is_of_top = false;
 };
 
 /// How sharply the steps and walls at a point turn: pi at an end, 0 where they go straight on or
 /// there are none.
-double turn_of_steps(const Traces& traces, const Graph& graph, std::int32_t point) {
+double turn_of_steps(const Traces& traces, const EdgeGraph& graph, std::span<const EdgeUse> uses,
+                     std::int32_t point) {
     std::vector<std::array<double, 2>> directions;
     for (const std::int32_t e : graph.at[index(point)]) {
-        if (!graph.edges[index(e)].is_step) continue;
+        if (!uses[index(e)].is_step) continue;
         const PlanPoint &p = traces.points[index(point)],
                         &q = traces.points[index(graph.other(e, point))];
         const double length = distance(p, q);
@@ -173,43 +148,59 @@ double turn_of_steps(const Traces& traces, const Graph& graph, std::int32_t poin
     return sharpest;
 }
 
-/// A run of edges between two points where lines begin, end or meet.
-std::vector<std::vector<std::int32_t>> chains_of(const Graph& graph,
-                                                 const std::vector<std::uint8_t>& ends) {
-    std::vector<std::vector<std::int32_t>> chains;
-    std::vector<std::uint8_t> used(graph.edges.size(), 0);
+}  // namespace
+
+EdgeGraph::EdgeGraph(std::size_t points, std::vector<std::array<std::int32_t, 2>> of)
+    : edges(std::move(of)), at(bucketize<std::int32_t>(points, [&](const auto& put) {
+          for (std::size_t e = 0; e < edges.size(); ++e) {
+              for (const std::int32_t point : edges[e])
+                  put(index(point), static_cast<std::int32_t>(e));
+          }
+      })) {}
+
+std::vector<std::vector<std::int32_t>> EdgeGraph::chains(
+    std::span<const std::uint8_t> is_end) const {
+    std::vector<std::vector<std::int32_t>> made;
+    std::vector<std::uint8_t> used(edges.size(), 0);
     const auto walk = [&](std::int32_t start, std::int32_t edge) {
-        std::vector<std::int32_t> chain{start};
+        std::vector<std::int32_t>& chain = made.emplace_back(1, start);
         while (edge >= 0) {
             used[index(edge)] = 1;
-            const std::int32_t next = graph.other(edge, chain.back());
+            const std::int32_t next = other(edge, chain.back());
             chain.push_back(next);
             edge = -1;
-            if (ends[index(next)]) break;
-            for (const std::int32_t e : graph.at[index(next)]) {
-                if (!used[index(e)]) edge = e;
+            if (is_end[index(next)] != 0) break;
+            for (const std::int32_t e : at[index(next)]) {
+                if (used[index(e)] == 0) edge = e;
             }
         }
-        chains.push_back(std::move(chain));
     };
     for (const bool only_ends : {true, false}) {
-        for (std::size_t p = 0; p < graph.at.size(); ++p) {
-            if (only_ends && !ends[p]) continue;
-            for (const std::int32_t e : graph.at[p]) {
-                if (!used[index(e)]) walk(static_cast<std::int32_t>(p), e);
+        for (std::size_t p = 0; p < at.size(); ++p) {
+            if (only_ends && is_end[p] == 0) continue;
+            for (const std::int32_t e : at[p]) {
+                if (used[index(e)] == 0) walk(static_cast<std::int32_t>(p), e);
             }
         }
     }
-    return chains;
+    return made;
 }
-
-}  // namespace
 
 std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     const std::function<double(const PlanPoint&)>& spacing,
                                     Progress* progress) {
     if (traces.points.empty()) return {};
-    const Graph graph(traces);
+    std::vector<std::array<std::int32_t, 2>> edges;
+    std::vector<EdgeUse> uses;
+    for (const auto equal : groups_of(traces.segments, &Traces::Segment::ends)) {
+        edges.push_back(equal[0].ends);
+        EdgeUse& use = uses.emplace_back();
+        for (const Traces::Segment& s : equal) {
+            use.is_of_top = use.is_of_top || s.block == Traces::kOfTop;
+            use.is_step = use.is_step || s.block < 0;
+        }
+    }
+    const EdgeGraph graph(traces.points.size(), std::move(edges));
     double widest = 0;
     for (const PlanPoint& p : traces.points)
         widest = std::max(widest, spacing(p));
@@ -230,7 +221,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
     std::vector<std::pair<double, std::int32_t>> corners;
     std::vector<std::uint8_t> is_end(traces.points.size(), 0);
     for (std::size_t p = 0; p < traces.points.size(); ++p) {
-        const double turn = turn_of_steps(traces, graph, static_cast<std::int32_t>(p));
+        const double turn = turn_of_steps(traces, graph, uses, static_cast<std::int32_t>(p));
         if (turn > kCornerTurn) corners.emplace_back(-turn, static_cast<std::int32_t>(p));
         is_end[p] = turn > kCornerTurn || graph.at[p].size() != 2;
     }
@@ -238,7 +229,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
     for (const auto& [turn, p] : corners)
         add(traces.points[index(p)]);
 
-    const auto chains = chains_of(graph, is_end);
+    const auto chains = graph.chains(is_end);
     std::vector<double> lengths(chains.size(), 0);
     std::vector<int> kinds(chains.size(), 2);
     for (std::size_t c = 0; c < chains.size(); ++c) {
@@ -246,7 +237,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
             const std::int32_t from = chains[c][i], to = chains[c][i + 1];
             for (const std::int32_t e : graph.at[index(from)]) {
                 if (graph.other(e, from) != to) continue;
-                const Graph::TraceEdge& edge = graph.edges[index(e)];
+                const EdgeUse& edge = uses[index(e)];
                 kinds[c] = std::min(kinds[c], edge.is_of_top ? 0 : edge.is_step ? 1 : 2);
             }
             lengths[c] += distance(traces.points[index(from)], traces.points[index(to)]);

@@ -4,8 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/meshing/triangulation.hpp"
@@ -37,5 +40,19 @@ Traces traces_of(const ComplexView& model, Progress* progress);
 std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     const std::function<double(const PlanPoint&)>& spacing,
                                     Progress* progress);
+
+/// Edges between points, and which of them each point has.
+struct EdgeGraph {
+    std::vector<std::array<std::int32_t, 2>> edges;
+    Buckets<std::int32_t> at;
+
+    EdgeGraph(std::size_t points, std::vector<std::array<std::int32_t, 2>> of);
+    std::int32_t other(std::int32_t edge, std::int32_t point) const {
+        const auto& [from, to] = edges[index(edge)];
+        return from == point ? to : from;
+    }
+    /// The points of all runs of edges from end to end, then of those that are closed.
+    std::vector<std::vector<std::int32_t>> chains(std::span<const std::uint8_t> is_end) const;
+};
 
 }  // namespace realmodel::simulation
