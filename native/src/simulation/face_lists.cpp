@@ -2,10 +2,10 @@
 #include "realmodel/simulation/face_lists.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
+#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -31,47 +31,6 @@ std::span<const std::int32_t> loop_of(const FaceLoops& faces, std::int64_t face)
 
 constexpr std::size_t kCells = 2048;  ///< described at a time
 constexpr std::size_t kFaces = 8192;  ///< put in order at a time
-
-/// Numbers, each once, by a table of remainders that fits the nearest cache.
-class Distinct {
-public:
-    void clear() {
-        values_.clear();
-        ++round_;
-    }
-    void add(std::int32_t value) {
-        if (values_.size() > kMost) {  // of cells like these there are few
-            values_.push_back(value);
-            return;
-        }
-        for (auto at = static_cast<std::uint32_t>(value);; ++at) {
-            ValueSlot& slot = slots_[at % kSlots];
-            if (slot.round != round_) {
-                slot = {round_, value};
-                values_.push_back(value);
-                return;
-            }
-            if (slot.value == value) return;
-        }
-    }
-    /// In ascending order.
-    std::span<const std::int32_t> sorted() {
-        std::sort(values_.begin(), values_.end());
-        if (values_.size() > kMost)
-            values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
-        return values_;
-    }
-
-private:
-    static constexpr std::size_t kSlots = 256, kMost = 64;
-    struct ValueSlot {
-        std::uint64_t round = 0;
-        std::int32_t value = 0;
-    };
-    std::array<ValueSlot, kSlots> slots_;
-    std::vector<std::int32_t> values_;
-    std::uint64_t round_ = 0;
-};
 
 }  // namespace
 
@@ -103,7 +62,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
     parallel_ranges(cells, kCells, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         std::int64_t* number = made.faces.data() + first_number[from / kCells];
         auto& corners = vertices[from / kCells];
-        Distinct distinct;
+        std::vector<std::int32_t> distinct;
         for (std::size_t c = from; c < to; ++c) {
             const auto own = sides_of(c);
             distinct.clear();
@@ -113,12 +72,11 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
                 *number++ = static_cast<std::int64_t>(loop.size());
                 number = (side & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
                                          : std::reverse_copy(loop.begin(), loop.end(), number);
-                for (const std::int32_t vertex : loop)
-                    distinct.add(vertex);
+                distinct.insert(distinct.end(), loop.begin(), loop.end());
             }
-            const auto found = distinct.sorted();
-            corners.insert(corners.end(), found.begin(), found.end());
-            made.counts[c] = static_cast<std::int64_t>(found.size());
+            sort_unique(distinct);
+            corners.insert(corners.end(), distinct.begin(), distinct.end());
+            made.counts[c] = static_cast<std::int64_t>(distinct.size());
         }
     });
     std::vector<std::size_t> first_corner;
