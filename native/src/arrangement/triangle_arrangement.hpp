@@ -143,6 +143,8 @@ private:
     using SegmentPair = std::array<SpacePointId, 4>;
     using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
+    struct LineRange;
+    struct BoxedSegments;
 
     ArrangedTriangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
     int orientation(const ArrangedTriangle& t, SpacePointId a, SpacePointId b,
@@ -160,21 +162,19 @@ private:
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
-    template <class Visit>
-    void each_triangle(const Execution& execution, const Visit& visit) const;
-    std::vector<std::int32_t> large_triangles(std::span<const std::int32_t> among) const;
+    std::vector<std::int32_t> all_triangles() const;
+    template <class Count>
+    static std::vector<std::vector<LineRange>> line_chunks(std::span<const std::int32_t> among,
+                                                           const Count& count);
+    template <class Prepared, class Visit>
+    void each_range(const std::vector<std::vector<LineRange>>& chunks, const Execution& execution,
+                    const Visit& visit) const;
     void sort_all(const Execution& execution);
-    std::vector<SegmentPair> crossing_segments(const ArrangedTriangle& t) const;
-    struct LargeTriangle;
-    std::vector<SegmentPair> crossing_segments(const LargeTriangle& large,
-                                               const Execution& execution) const;
     bool do_cross(const ArrangedTriangle& t, const SegmentPair& pair) const;
     void intersect_segments(const Execution& execution);
     std::vector<std::vector<Edge>> exchange_points(const Execution& execution);
-    void messages_of(std::int32_t triangle, NodesOnLines& nodes_on, std::vector<Message>& messages,
-                     std::vector<Edge>& edges);
-    void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
-                     std::size_t end, std::vector<Message>& messages, std::vector<Edge>& edges);
+    void messages_of(const LineRange& range, const NodesOnLines& nodes_on,
+                     std::vector<Message>& messages, std::vector<Edge>& edges);
     class RegionFinder;
     void find_all_regions(std::vector<std::vector<Edge>>& edges, const Execution& execution);
 

@@ -20,11 +20,8 @@ using spatial::Box;
 
 namespace {
 
-/// So many triangles, or lines of a large one, are one piece of work.
+/// So many lines of triangles are one piece of work.
 constexpr std::size_t kChunk = 1 << 8;
-/// So many points or segments make a triangle a large one: its lines are shared among threads, and
-/// found by a tree.
-constexpr std::size_t kLarge = 1 << 9;
 
 /// Rounding keeps the order of numbers: what has no point in common with the box of rounded points
 /// has none with the exact ones.
@@ -34,36 +31,77 @@ Box box_of(const exact::SpacePoints& points, std::span<const SpacePointId> corne
 
 }  // namespace
 
-/// Calls visit(number) for all triangles, those of a chunk one after another on one thread.
-template <class Visit>
-void TriangleArrangement::each_triangle(const Execution& execution, const Visit& visit) const {
-    parallel_ranges(triangles_.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            visit(i);
+std::vector<std::int32_t> TriangleArrangement::all_triangles() const {
+    std::vector<std::int32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+}
+
+/// Some lines of a triangle: all of them, unless they are many.
+struct TriangleArrangement::LineRange {
+    std::int32_t triangle;
+    std::size_t begin, end;
+    std::int32_t shared = -1;  ///< which of the triangles that are in several chunks
+};
+
+/// The lines of some triangles, count(triangle) of each, in pieces of work of about the same size.
+template <class Count>
+std::vector<std::vector<TriangleArrangement::LineRange>> TriangleArrangement::line_chunks(
+    std::span<const std::int32_t> among, const Count& count) {
+    std::vector<std::vector<LineRange>> chunks;
+    std::size_t lines = kChunk;  // of the last chunk
+    std::int32_t shared = 0;
+    for (const std::int32_t triangle : among) {
+        const std::size_t own = count(triangle);
+        const bool is_shared = own > 2 * kChunk;
+        for (std::size_t begin = 0; begin < own; begin += kChunk) {
+            if (is_shared || lines >= kChunk) {
+                chunks.emplace_back();
+                lines = 0;
+            }
+            const std::size_t end = is_shared ? std::min(own, begin + kChunk) : own;
+            chunks.back().push_back({triangle, begin, end, is_shared ? shared : -1});
+            lines += is_shared ? kChunk : own;
+            if (!is_shared) break;
+        }
+        shared += is_shared ? 1 : 0;
+    }
+    return chunks;
+}
+
+/// Calls visit(chunk, range, prepared) for all ranges, those of a chunk one after another on one
+/// thread. What is prepared for a triangle is made once.
+template <class Prepared, class Visit>
+void TriangleArrangement::each_range(const std::vector<std::vector<LineRange>>& chunks,
+                                     const Execution& execution, const Visit& visit) const {
+    std::vector<std::int32_t> shared;
+    for (const auto& chunk : chunks) {
+        if (chunk[0].shared == static_cast<std::int32_t>(shared.size()))
+            shared.push_back(chunk[0].triangle);
+    }
+    std::vector<std::optional<Prepared>> prepared(shared.size());
+    parallel_chunks(
+        shared.size(), execution,
+        [&](std::size_t i) { prepared[i].emplace(*this, triangles_[index(shared[i])]); }, 0.02);
+    parallel_chunks(chunks.size(), execution, [&](std::size_t i) {
+        for (const LineRange& range : chunks[i]) {
+            if (range.shared >= 0) {
+                visit(i, range, *prepared[index(range.shared)]);
+            } else {
+                visit(i, range, Prepared(*this, triangles_[index(range.triangle)]));
+            }
+        }
     });
 }
 
 /// Finds the nodes of one triangle on lines in it.
 class TriangleArrangement::NodesOnLines {
 public:
-    explicit NodesOnLines(const TriangleArrangement& arrangement)
-        : arrangement_(arrangement), points_(arrangement.points_) {}
     NodesOnLines(const TriangleArrangement& arrangement, const ArrangedTriangle& t)
-        : NodesOnLines(arrangement) {
-        take(t);
-    }
-
-    /// Goes on to another triangle.
-    void take(const ArrangedTriangle& t) {
-        t_ = &t;
-        axis_ = (t.axis + 1) % 3;
-        tree_.reset();
-        in_order_.assign(t.points.begin(), t.points.end());
-        if (in_order_.size() > kLarge) {
-            tree_.emplace(transformed(in_order_, [this](SpacePointId p) {
-                return box_of(points_, {&p, 1});
-            }));
-            return;
+        : arrangement_(arrangement), points_(arrangement.points_), t_(t), in_order_(t.points) {
+        const Box box = box_of(points_, t.corners);
+        for (std::size_t k = 1; k < 3; ++k) {
+            if (box.high[k] - box.low[k] > box.high[axis_] - box.low[axis_]) axis_ = k;
         }
         std::sort(in_order_.begin(), in_order_.end(), [this](SpacePointId p, SpacePointId q) {
             return std::pair(coordinate(p), p) < std::pair(coordinate(q), q);
@@ -77,20 +115,13 @@ public:
         const auto visit = [&](SpacePointId p) {
             if (is_between(p, a, b)) found.push_back(p);
         };
-        std::ranges::for_each(t_->corners, visit);
-        const auto visit_point = [&](SpacePointId p) {
-            if (std::ranges::find(t_->corners, p) == t_->corners.end()) visit(p);
-        };
-        if (tree_) {
-            tree_->find(box_of(points_, line),
-                        [&](std::int32_t i) { visit_point(in_order_[index(i)]); });
-        } else {
-            const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
-            auto next =
-                std::lower_bound(in_order_.begin(), in_order_.end(), low,
-                                 [this](SpacePointId p, double x) { return coordinate(p) < x; });
-            for (; next != in_order_.end() && coordinate(*next) <= high; ++next)
-                visit_point(*next);
+        std::ranges::for_each(t_.corners, visit);
+        const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
+        auto next =
+            std::lower_bound(in_order_.begin(), in_order_.end(), low,
+                             [this](SpacePointId p, double x) { return coordinate(p) < x; });
+        for (; next != in_order_.end() && coordinate(*next) <= high; ++next) {
+            if (std::ranges::find(t_.corners, *next) == t_.corners.end()) visit(*next);
         }
         if (found.size() < 2) return;
         const int direction = compare(points_, a, b);
@@ -108,35 +139,21 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             if (r[k] < std::min(s[k], e[k]) || r[k] > std::max(s[k], e[k])) return false;
         }
-        if (!points_.was_constructed_on(p, a, b) && arrangement_.orientation(*t_, a, b, p) != 0)
+        if (!points_.was_constructed_on(p, a, b) && arrangement_.orientation(t_, a, b, p) != 0)
             return false;
         return compare(points_, a, p) * compare(points_, p, b) > 0;
     }
 
     const TriangleArrangement& arrangement_;
     const exact::SpacePoints& points_;
-    const ArrangedTriangle* t_ = nullptr;
-    std::size_t axis_ = 0;
-    /// The triangle's points: in the order of one coordinate, unless there is a tree of them.
-    std::vector<SpacePointId> in_order_;
-    std::optional<spatial::BoxTree> tree_;
+    const ArrangedTriangle& t_;
+    std::size_t axis_ = 0;                ///< along which the triangle is longest
+    std::vector<SpacePointId> in_order_;  ///< its points, in the order of that coordinate
 };
-
-/// Those of some triangles that have many points or segments.
-std::vector<std::int32_t> TriangleArrangement::large_triangles(
-    std::span<const std::int32_t> among) const {
-    std::vector<std::int32_t> found;
-    for (const std::int32_t triangle : among) {
-        const ArrangedTriangle& t = triangles_[index(triangle)];
-        if (t.facing != 0 && std::max(t.points.size(), t.segments.size()) > kLarge)
-            found.push_back(triangle);
-    }
-    return found;
-}
 
 /// Puts the points and segments of all triangles in order, each once.
 void TriangleArrangement::sort_all(const Execution& execution) {
-    each_triangle(execution, [this](std::size_t i) {
+    parallel_each(triangles_.size(), execution, [this](std::size_t i) {
         sort_unique(triangles_[i].points);
         sort_unique(triangles_[i].segments);
     });
@@ -150,45 +167,31 @@ bool TriangleArrangement::do_cross(const ArrangedTriangle& t, const SegmentPair&
            orientation(t, c, d, a) * orientation(t, c, d, b) < 0;
 }
 
-namespace {
-
-/// Segments of a triangle with the boxes around them, in the order of one coordinate of these. Of
-/// those with the same ends, which follow one another and come from triangles in one plane, the
+/// The segments of a triangle with the boxes around them, in the order of one coordinate of these.
+/// Of those with the same ends, which follow one another and come from triangles in one plane, the
 /// first.
-template <class Segment>
-struct BoxedSegment {
-    const Segment* segment;
-    Box box;
-};
+struct TriangleArrangement::BoxedSegments {
+    struct Boxed {
+        const SharedSegment* segment;
+        Box box;
+    };
 
-template <class Segment>
-std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& points,
-                                                  const std::vector<Segment>& segments,
-                                                  std::size_t axis) {
-    std::vector<BoxedSegment<Segment>> boxed;
-    boxed.reserve(segments.size());
-    for (const Segment& s : segments) {
-        if (boxed.empty() || boxed.back().segment->ends != s.ends)
-            boxed.push_back({&s, box_of(points, s.ends)});
+    BoxedSegments(const TriangleArrangement& arrangement, const ArrangedTriangle& t)
+        : axis((t.axis + 1) % 3) {
+        in_order.reserve(t.segments.size());
+        for (const SharedSegment& s : t.segments) {
+            if (in_order.empty() || in_order.back().segment->ends != s.ends)
+                in_order.push_back({&s, box_of(arrangement.points_, s.ends)});
+        }
+        std::sort(in_order.begin(), in_order.end(), [this](const Boxed& s, const Boxed& r) {
+            const double x = s.box.low[axis], y = r.box.low[axis];
+            return x != y ? x < y : *s.segment < *r.segment;
+        });
     }
-    std::sort(boxed.begin(), boxed.end(), [axis](const auto& s, const auto& r) {
-        const double x = s.box.low[axis], y = r.box.low[axis];
-        return x != y ? x < y : *s.segment < *r.segment;
-    });
-    return boxed;
-}
 
-/// make(i) for all i, on all threads.
-template <class Item, class Make>
-std::vector<std::optional<Item>> made_for_all(std::size_t count, const Execution& execution,
-                                              const Make& make) {
-    std::vector<std::optional<Item>> made(count);
-    parallel_chunks(
-        count, execution, [&](std::size_t i) { made[i].emplace(make(i)); }, 0.02);
-    return made;
-}
-
-}  // namespace
+    std::size_t axis;
+    std::vector<Boxed> in_order;
+};
 
 /// Where two triangles lie in one plane, what meets one of them there divides the other as well,
 /// whether or not the two were asked for.
@@ -230,87 +233,31 @@ void TriangleArrangement::exchange_segments() {
         clip_segment(segment.ends[0], segment.ends[1], of, into);
 }
 
-/// Pairs of segments of one triangle that cross each other.
-std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
-    const ArrangedTriangle& t) const {
-    std::vector<SegmentPair> found;
-    if (t.facing == 0 || t.segments.size() < 2) return found;
-    const std::size_t axis = (t.axis + 1) % 3;
-    const auto boxed = boxed_segments(points_, t.segments, axis);
-    for (std::size_t i = 0; i < boxed.size(); ++i) {
-        const auto [a, b] = boxed[i].segment->ends;
-        for (std::size_t j = i + 1; j < boxed.size(); ++j) {
-            if (boxed[j].box.low[axis] > boxed[i].box.high[axis]) break;
-            if (!boxed[i].box.meets(boxed[j].box)) continue;
-            const auto [c, d] = boxed[j].segment->ends;
-            if (do_cross(t, {a, b, c, d})) found.push_back({a, b, c, d});
-        }
-    }
-    return found;
-}
-
-/// The segments of a large triangle, which are found by a tree.
-struct TriangleArrangement::LargeTriangle {
-    LargeTriangle(const exact::SpacePoints& points, std::int32_t of, const ArrangedTriangle& t)
-        : number(of),
-          boxed(boxed_segments(points, t.segments, (t.axis + 1) % 3)),
-          tree(transformed(boxed, &BoxedSegment<SharedSegment>::box)) {}
-
-    std::int32_t number;
-    std::vector<BoxedSegment<SharedSegment>> boxed;
-    spatial::BoxTree tree;
-};
-
-/// The same, in the same order, of a large triangle.
-std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
-    const LargeTriangle& large, const Execution& execution) const {
-    const ArrangedTriangle& t = triangles_[index(large.number)];
-    const auto& boxed = large.boxed;
-    return found_in_ranges<SegmentPair>(
-        boxed.size(), kChunk, execution,
-        [&](std::size_t begin, std::size_t end, std::vector<SegmentPair>& found) {
-            std::vector<std::size_t> near;
-            for (std::size_t i = begin; i < end; ++i) {
-                near.clear();
-                large.tree.find(boxed[i].box, [&](std::int32_t j) {
-                    if (index(j) > i) near.push_back(index(j));
-                });
-                std::sort(near.begin(), near.end());
-                const auto [a, b] = boxed[i].segment->ends;
-                for (const std::size_t j : near) {
-                    const auto [c, d] = boxed[j].segment->ends;
-                    if (do_cross(t, {a, b, c, d})) found.push_back({a, b, c, d});
-                }
-            }
-        },
-        0.02);
-}
-
 /// Notes where segments of one triangle cross each other: only where the triangles of a group do
 /// cross.
 void TriangleArrangement::intersect_segments(const Execution& execution) {
-    std::vector<std::vector<SegmentPair>> found(triangles_.size());
-    each_triangle(execution, [&](std::size_t i) {
-        if (triangles_[i].segments.size() <= kLarge) found[i] = crossing_segments(triangles_[i]);
+    const auto chunks = line_chunks(all_triangles(), [this](std::int32_t i) -> std::size_t {
+        const ArrangedTriangle& t = triangles_[index(i)];
+        return t.facing == 0 || t.segments.size() < 2 ? 0 : t.segments.size();
     });
-    std::vector<std::int32_t> with_many;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (triangles_[i].facing != 0 && triangles_[i].segments.size() > kLarge)
-            with_many.push_back(static_cast<std::int32_t>(i));
-    }
-    auto large = made_for_all<LargeTriangle>(with_many.size(), execution, [&](std::size_t i) {
-        return LargeTriangle(points_, with_many[i], triangles_[index(with_many[i])]);
-    });
-    for (auto& own : large) {
-        found[index(own->number)] = crossing_segments(*own, execution);
-        own.reset();
-    }
-    std::vector<std::pair<std::size_t, SegmentPair>> pairs;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        for (const SegmentPair& pair : found[i])
-            pairs.push_back({i, pair});
-        found[i] = {};
-    }
+    std::vector<std::vector<std::pair<std::size_t, SegmentPair>>> found(chunks.size());
+    each_range<BoxedSegments>(
+        chunks, execution,
+        [&](std::size_t chunk, const LineRange& range, const BoxedSegments& segments) {
+            const auto& [axis, boxed] = segments;
+            const ArrangedTriangle& t = triangles_[index(range.triangle)];
+            for (std::size_t i = range.begin; i < std::min(range.end, boxed.size()); ++i) {
+                const auto [a, b] = boxed[i].segment->ends;
+                for (std::size_t j = i + 1; j < boxed.size(); ++j) {
+                    if (boxed[j].box.low[axis] > boxed[i].box.high[axis]) break;
+                    if (!boxed[i].box.meets(boxed[j].box)) continue;
+                    const auto [c, d] = boxed[j].segment->ends;
+                    if (do_cross(t, {a, b, c, d}))
+                        found[chunk].push_back({index(range.triangle), {a, b, c, d}});
+                }
+            }
+        });
+    const auto pairs = concatenated(found);
     // where they do is found on all threads and numbered in order
     constexpr std::size_t kAtOnce = 1 << 14;
     std::vector<exact::SpacePoints::Reduced> at;
@@ -331,22 +278,11 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
     }
 }
 
-/// The points on the edges and segments of a triangle, for the others that share these; and what
-/// they divide it into.
-void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
+/// The points on some lines of a triangle, for the others that share these; and what they divide
+/// the lines into.
+void TriangleArrangement::messages_of(const LineRange& range, const NodesOnLines& nodes_on,
                                       std::vector<Message>& messages, std::vector<Edge>& edges) {
-    const ArrangedTriangle& t = triangles_[index(triangle)];
-    // of a triangle without area one corner may lie on the edge between the others
-    if (t.points.empty() && t.facing != 0) return;
-    nodes_on.take(t);
-    edges.clear();
-    messages_of(triangle, nodes_on, 0, t.line_count(), messages, edges);
-}
-
-/// The points on some lines of a triangle.
-void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
-                                      std::size_t begin, std::size_t end,
-                                      std::vector<Message>& messages, std::vector<Edge>& edges) {
+    const std::int32_t triangle = range.triangle;
     const ArrangedTriangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
         const ArrangedTriangle& other = triangles_[index(to)];
@@ -357,7 +293,7 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
         messages.push_back({to, p});
     };
     std::vector<SpacePointId> on;
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
         const auto [a, b] = t.line(i);
         nodes_on.find({a, b}, on);
         SpacePointId last = a;
@@ -389,38 +325,26 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
 std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchange_points(
     const Execution& execution) {
     std::vector<std::vector<Edge>> edges(triangles_.size());
-    std::vector<std::int32_t> changed(triangles_.size());
-    std::iota(changed.begin(), changed.end(), 0);
+    std::vector<std::int32_t> changed = all_triangles();
     while (!changed.empty()) {
-        std::vector<std::vector<Message>> messages((changed.size() + kChunk - 1) / kChunk);
-        const std::vector<std::int32_t> large = large_triangles(changed);
-        parallel_ranges(changed.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-            NodesOnLines nodes_on(*this);
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!std::ranges::binary_search(large, changed[i]))
-                    messages_of(changed[i], nodes_on, messages[begin / kChunk],
-                                edges[index(changed[i])]);
-            }
+        // of a triangle without area one corner may lie on the edge between the others
+        const auto chunks = line_chunks(changed, [this](std::int32_t i) -> std::size_t {
+            const ArrangedTriangle& t = triangles_[index(i)];
+            return t.points.empty() && t.facing != 0 ? 0 : t.line_count();
         });
-        auto nodes_on_large = made_for_all<NodesOnLines>(
-            large.size(), execution,
-            [&](std::size_t i) { return NodesOnLines(*this, triangles_[index(large[i])]); });
-        for (std::size_t which = 0; which < large.size(); ++which) {
-            const std::int32_t triangle = large[which];
-            const ArrangedTriangle& t = triangles_[index(triangle)];
-            const std::size_t first = messages.size();
-            const std::size_t chunks = (t.line_count() + kChunk - 1) / kChunk;
-            messages.resize(first + chunks);
-            std::vector<std::vector<Edge>> own(chunks);
-            parallel_ranges(
-                t.line_count(), kChunk, execution,
-                [&](std::size_t begin, std::size_t end) {
-                    messages_of(triangle, *nodes_on_large[which], begin, end,
-                                messages[first + begin / kChunk], own[begin / kChunk]);
-                },
-                0.02);
-            edges[index(triangle)] = concatenated(own);
-            nodes_on_large[which].reset();
+        for (const std::int32_t triangle : changed)
+            edges[index(triangle)].clear();
+        std::vector<std::vector<Message>> messages(chunks.size());
+        std::vector<std::vector<Edge>> of_shared(chunks.size());  // each the only one of its chunk
+        each_range<NodesOnLines>(
+            chunks, execution,
+            [&](std::size_t chunk, const LineRange& range, const NodesOnLines& nodes_on) {
+                messages_of(range, nodes_on, messages[chunk],
+                            range.shared >= 0 ? of_shared[chunk] : edges[index(range.triangle)]);
+            });
+        for (std::size_t i = 0; i < chunks.size(); ++i) {
+            auto& own = edges[index(chunks[i][0].triangle)];
+            own.insert(own.end(), of_shared[i].begin(), of_shared[i].end());
         }
         changed.clear();
         for (const auto& chunk : messages) {
@@ -533,27 +457,26 @@ Regions joined(std::vector<Regions>& ranges, const Execution& execution) {
 /// @param edges  of each triangle, as exchange_points() gives them
 void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges,
                                            const Execution& execution) {
-    std::vector<std::int32_t> all(triangles_.size());
-    std::iota(all.begin(), all.end(), 0);
-    const std::vector<std::int32_t> large = large_triangles(all);
-    // large triangles are ranges of their own, and begun first
-    std::vector<std::array<std::size_t, 2>> ranges;
-    std::vector<std::size_t> order;
-    for (std::size_t begin = 0, next = 0; begin < triangles_.size(); begin = ranges.back()[1]) {
-        const std::size_t to = next < large.size() ? index(large[next]) : triangles_.size();
-        if (to == begin) {
-            order.insert(order.begin() + static_cast<std::ptrdiff_t>(next++), ranges.size());
-            ranges.push_back({begin, begin + 1});
-        } else {
-            order.push_back(ranges.size());
-            ranges.push_back({begin, std::min(to, begin + kChunk)});
-        }
+    // those of triangles with many lines are begun first
+    struct Range {
+        std::size_t lines, begin, end;
+    };
+    std::vector<Range> ranges;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+        const std::size_t lines = edges[i].size() + 1;
+        if (ranges.empty() || ranges.back().lines + lines > 4 * kChunk) ranges.push_back({0, i, i});
+        ranges.back().lines += lines;
+        ranges.back().end = i + 1;
     }
+    std::vector<std::size_t> order(ranges.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater<>(),
+                             [&](std::size_t r) { return ranges[r].lines; });
     std::vector<Regions> found(ranges.size());
     parallel_workers(ranges.size(), execution, [&] {
         return [&, finder = RegionFinder(*this)](std::size_t at) mutable {
             const std::size_t r = order[at];
-            for (std::size_t i = ranges[r][0]; i < ranges[r][1]; ++i)
+            for (std::size_t i = ranges[r].begin; i < ranges[r].end; ++i)
                 finder.add_regions(static_cast<std::int32_t>(i), edges[i], found[r]);
         };
     });
