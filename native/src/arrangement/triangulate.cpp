@@ -9,9 +9,12 @@
 #include <optional>
 
 #include "base/algorithms.hpp"
+#include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "exact/orientation.hpp"
+#include "spatial/box_tree.hpp"
 #include "spatial/corner_grid.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::arrangement {
 
@@ -24,170 +27,251 @@ double twice_loop_area(const Loop& loop) {
     return sum;
 }
 
-/// A ring of corners that ears are cut from.
-class Ring {
+/// Loops joined into a ring of corners that ears are cut from.
+class EarClipping {
 public:
-    using Triangle = std::array<LoopCorner, 3>;
-
-    Ring(const PlanePosition& rounding, const CornerTurns& turns, std::vector<Triangle>& triangles)
-        : rounding_(rounding), turns_(turns), triangles_(triangles) {}
-
-    /// @param sides  of its corners; ears on one side alone are cut off first. Empty: not known
-    void take(const Loop& outline, std::span<const std::int8_t> sides = {}) {
-        entry_ = append(outline);
-        sides_ = sides;
-    }
-    /// `others`: loops that the bridge must not cross, the hole among them.
-    void join_hole(const Loop& hole, std::span<const Loop> others);
-    /// False where an ear had to be cut off that is none.
-    bool cut_ears();
+    EarClipping(std::span<const Loop> loops, const PlanePosition& rounding,
+                const CornerTurns& turns, EarChoice choice,
+                std::vector<std::array<std::int32_t, 3>>& triangles, Progress* progress);
+    bool run();
 
 private:
+    static constexpr std::int32_t kNone = -1, kNoEar = -2;
+    static constexpr std::size_t kGridFrom = 64;
+
+    /// A corner in the ring. Those at the ends of a bridge are there twice, once for each side.
     struct Link {
         LoopCorner corner;
+        std::int32_t number;  ///< of the corner
         std::int32_t previous, next;
+        std::int32_t again = kNone;          ///< the same corner at the other side of a bridge
+        std::int32_t queued = kNone;         ///< its position in the queue
+        std::int32_t first_waiting = kNone;  ///< in `waiting_`: who waits until it is cut off
+        bool is_in_ring = false;
     };
     /// What is asked of an ear: less and less, as long as none is found.
     enum class EarTest {
-        kOneSide,  ///< its corners are on one side, and it is fat
-        kFat,      ///< it has an area whatever rounding does; no corner lies in it or just beyond
-        kProper,   ///< it turns left; no corner that does not turn left lies in it or on its border
-        kStrict,   ///< it turns left; no such corner lies in it
-        kNone      ///< it has three different nodes
+        kRound,   ///< it is fat, and neither of the two next corners lies in its circle
+        kFat,     ///< it has an area whatever rounding does; no corner lies in it or just beyond
+        kProper,  ///< it turns left; no corner that does not turn left lies in it or on its border
+        kStrict,  ///< it turns left; no such corner lies in it
+        kNone     ///< it has three different nodes
     };
-    static constexpr std::size_t kGridFrom = 64;
 
     Link& link(std::int32_t i) { return links_[index(i)]; }
     const PlanePosition& at(std::int32_t i) { return link(i).corner.at; }
-    NodeId node(std::int32_t i) { return link(i).corner.node; }
-
-    std::int32_t append(const Loop& loop);
-    std::int32_t find_bridge(const LoopCorner& from, std::span<const Loop> others);
-    bool inside_corner(std::int32_t corner, const LoopCorner& p);
-    bool is_hidden(const LoopCorner& p, const LoopCorner& q, std::span<const Loop> others);
     int turn(std::int32_t a, std::int32_t b, std::int32_t c) {
+        if (is_exact()) {
+            if (const auto known = exact::orient2d_filter(at(a), at(b), at(c))) return *known;
+        }
         return turns_(link(a).corner, link(b).corner, link(c).corner);
     }
-    bool is_ear(std::int32_t tip, EarTest test);
-    bool blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, EarTest test);
-    EarTest first_test() const { return sides_.empty() ? EarTest::kFat : EarTest::kOneSide; }
+    int turn_at(std::int32_t i) { return turn(link(i).previous, i, link(i).next); }
+    bool is_exact() const { return rounding_ == PlanePosition{0, 0}; }
+    /// Exact corners at one place are one node.
+    bool are_same(const LoopCorner& p, const LoopCorner& q) const {
+        return p.node == q.node || (is_exact() && p.at == q.at);
+    }
+    bool are_same(std::int32_t i, std::int32_t k) {
+        return are_same(link(i).corner, link(k).corner);
+    }
+    template <class Visit>
+    void visit_ring(std::int32_t first, const Visit& visit) {
+        std::int32_t i = first;
+        do {
+            visit(i);
+            i = link(i).next;
+        } while (i != first);
+    }
+
+    void join_holes(std::span<const std::int32_t> holes);
+    void join(std::int32_t hole, std::int32_t outer);
+    bool opens_towards(std::int32_t corner, const LoopCorner& p);
+    bool hides(const LoopCorner& a, const LoopCorner& b, const LoopCorner& p, const LoopCorner& q);
     void enter_corners();
+    void enqueue(std::int32_t tip);
+    void enqueue_all(std::int32_t from);
+    std::int32_t blocker_of(std::int32_t tip, EarTest test);
+    bool blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, EarTest test);
+    bool is_in_circle(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c);
+    void cut(std::int32_t tip);
+    std::int32_t drop_path(std::int32_t from);
     void remove(std::int32_t i);
 
     PlanePosition rounding_;
     const CornerTurns& turns_;
-    std::vector<Triangle>& triangles_;
+    EarChoice choice_;
+    std::vector<std::array<std::int32_t, 3>>& triangles_;
+    Progress* progress_;
+    bool is_clean_ = true;
     std::vector<Link> links_;
-    std::span<const std::int8_t> sides_;
-    std::int32_t entry_ = -1;
-    std::size_t count_ = 0;
-    std::optional<spatial::CornerGrid> grid_;  ///< of the ring's corners, where they are many
+    std::size_t count_ = 0;                    ///< of the ring's corners
+    std::optional<spatial::CornerGrid> grid_;  ///< of these, where they are many
+    std::vector<std::int32_t> queue_;          ///< tips to be cut off, from `begin_` on
+    std::size_t begin_ = 0;
+    std::vector<std::array<std::int32_t, 2>> waiting_;  ///< a tip, and the next that waits
 };
 
-std::int32_t Ring::append(const Loop& loop) {
-    const auto first = static_cast<std::int32_t>(links_.size());
-    const auto size = static_cast<std::int32_t>(loop.size());
-    for (std::int32_t i = 0; i < size; ++i) {
-        links_.push_back({loop[index(i)], first + (i + size - 1) % size, first + (i + 1) % size});
+EarClipping::EarClipping(std::span<const Loop> loops, const PlanePosition& rounding,
+                         const CornerTurns& turns, EarChoice choice,
+                         std::vector<std::array<std::int32_t, 3>>& triangles, Progress* progress)
+    : rounding_(rounding),
+      turns_(turns),
+      choice_(choice),
+      triangles_(triangles),
+      progress_(progress) {
+    std::vector<std::int32_t> holes;  // the leftmost corner of each
+    for (const Loop& loop : loops) {
+        const auto first = static_cast<std::int32_t>(links_.size());
+        const auto size = static_cast<std::int32_t>(loop.size());
+        for (std::int32_t i = 0; i < size; ++i) {
+            links_.push_back(
+                {loop[index(i)], first + i, first + (i + size - 1) % size, first + (i + 1) % size});
+        }
+        if (first == 0) continue;
+        const auto leftmost = std::ranges::min_element(loop, {}, &LoopCorner::at);
+        holes.push_back(first + static_cast<std::int32_t>(leftmost - loop.begin()));
     }
-    count_ += loop.size();
-    return first;
+    count_ = links_.size();
+    visit_ring(0, [this](std::int32_t i) { link(i).is_in_ring = true; });
+    if (!holes.empty()) {
+        // what lies left of a hole is joined before it
+        std::ranges::sort(holes, {}, [this](std::int32_t i) { return std::pair(at(i), i); });
+        join_holes(holes);
+    }
 }
 
 /// Whether the way from a corner towards p begins inside of the ring.
-bool Ring::inside_corner(std::int32_t corner, const LoopCorner& p) {
+bool EarClipping::opens_towards(std::int32_t corner, const LoopCorner& p) {
     const LoopCorner &a = link(link(corner).previous).corner, &b = link(corner).corner,
                      &c = link(link(corner).next).corner;
     if (turns_(a, b, c) > 0) return turns_(a, b, p) > 0 && turns_(b, c, p) > 0;
     return turns_(a, b, p) > 0 || turns_(b, c, p) > 0;
 }
 
-/// Whether an edge of the ring, or of the other loops, crosses the way from p to q or ends on it.
-bool Ring::is_hidden(const LoopCorner& p, const LoopCorner& q, std::span<const Loop> others) {
-    const auto crosses = [&](const LoopCorner& a, const LoopCorner& b) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (std::max(a.at[k], b.at[k]) < std::min(p.at[k], q.at[k]) ||
-                std::min(a.at[k], b.at[k]) > std::max(p.at[k], q.at[k]))
-                return false;
-        }
-        const bool a_is_end = a.node == p.node || a.node == q.node;
-        const bool b_is_end = b.node == p.node || b.node == q.node;
-        if (a_is_end && b_is_end) return true;
-        if (a_is_end || b_is_end) {  // only an edge along the way hides its other end
-            const LoopCorner& other = a_is_end ? b : a;
-            if (turns_(p, q, other) != 0) return false;
-            for (std::size_t k = 0; k < 2; ++k) {
-                if (p.at[k] != q.at[k])
-                    return (other.at[k] > std::min(p.at[k], q.at[k])) &&
-                           (other.at[k] < std::max(p.at[k], q.at[k]));
-            }
-            return false;
-        }
+/// Whether an edge from a to b crosses the way from p to q or ends on it.
+bool EarClipping::hides(const LoopCorner& a, const LoopCorner& b, const LoopCorner& p,
+                        const LoopCorner& q) {
+    const bool a_is_end = are_same(a, p) || are_same(a, q);
+    const bool b_is_end = are_same(b, p) || are_same(b, q);
+    if (a_is_end && b_is_end) return true;
+    if (!a_is_end && !b_is_end)
         return turns_(p, q, a) * turns_(p, q, b) <= 0 && turns_(a, b, p) * turns_(a, b, q) <= 0;
-    };
-    std::int32_t i = entry_;
-    do {
-        if (crosses(link(i).corner, link(link(i).next).corner)) return true;
-        i = link(i).next;
-    } while (i != entry_);
-    for (const Loop& loop : others) {
-        for (std::size_t k = 0; k < loop.size(); ++k) {
-            if (crosses(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0])) return true;
+    const LoopCorner& other = a_is_end ? b : a;  // only an edge along the way hides its other end
+    if (turns_(p, q, other) != 0) return false;
+    const std::size_t k = p.at[0] != q.at[0] ? 0 : 1;
+    return other.at[k] > std::min(p.at[k], q.at[k]) && other.at[k] < std::max(p.at[k], q.at[k]);
+}
+
+/// Joins each hole to the nearest corner of the ring that its leftmost one touches or can see.
+void EarClipping::join_holes(std::span<const std::int32_t> holes) {
+    std::vector<PlanePosition> places;
+    std::vector<std::array<LoopCorner, 2>> edges;
+    std::vector<spatial::Box> boxes;
+    for (const Link& own : links_) {
+        places.push_back(own.corner.at);
+        edges.push_back({own.corner, link(own.next).corner});
+        boxes.emplace_back().include(own.corner.at);
+        boxes.back().include(edges.back()[1].at);
+    }
+    const spatial::NearestPoints corners(places);
+    const spatial::BoxTree tree(std::move(boxes));
+    std::vector<std::array<LoopCorner, 2>> bridges;
+    std::vector<spatial::Neighbor> nearest;
+    for (const std::int32_t hole : holes) {
+        if (progress_ != nullptr) progress_->check();
+        const LoopCorner from = link(hole).corner;
+        const auto sees = [&](const LoopCorner& to) {
+            spatial::Box way;
+            way.include(from.at);
+            way.include(to.at);
+            const auto is_hidden_by = [&](const std::array<LoopCorner, 2>& edge) {
+                return hides(edge[0], edge[1], from, to);
+            };
+            return std::ranges::none_of(bridges, is_hidden_by) &&
+                   !tree.any(way, [&](std::int32_t i) { return is_hidden_by(edges[index(i)]); });
+        };
+        std::int32_t outer = kNone, nearest_in_ring = kNone;
+        for (std::size_t done = 0; outer == kNone && done < places.size(); done = nearest.size()) {
+            corners.find(from.at, std::min(places.size(), 4 * done + 8), nearest);
+            for (std::size_t k = done; outer == kNone && k < nearest.size(); ++k) {
+                for (std::int32_t i = nearest[k].point; i != kNone; i = link(i).again) {
+                    if (!link(i).is_in_ring) break;
+                    if (nearest_in_ring == kNone) nearest_in_ring = i;
+                    const bool fits = are_same(i, hole)
+                                          ? opens_towards(i, link(link(hole).next).corner)
+                                          : opens_towards(i, from) && sees(link(i).corner);
+                    if (!fits) continue;
+                    outer = i;
+                    break;
+                }
+            }
         }
+        if (outer == kNone) {  // rounding has put the hole over the outline
+            is_clean_ = false;
+            outer = nearest_in_ring;
+        }
+        bridges.push_back({from, link(outer).corner});
+        join(hole, outer);
     }
-    return false;
 }
 
-/// The nearest corner of the ring that a hole's corner can be joined with.
-std::int32_t Ring::find_bridge(const LoopCorner& from, std::span<const Loop> others) {
-    std::vector<std::pair<double, std::int32_t>> nearest;
-    std::int32_t i = entry_;
-    do {
-        if (node(i) == from.node) return i;  // the hole touches the ring
-        nearest.push_back({distance(at(i), from.at), i});
-        i = link(i).next;
-    } while (i != entry_);
-    std::sort(nearest.begin(), nearest.end());
-    for (const auto& [way, corner] : nearest) {
-        if (inside_corner(corner, from) && !is_hidden(from, link(corner).corner, others))
-            return corner;
+void EarClipping::join(std::int32_t hole, std::int32_t outer) {
+    visit_ring(hole, [this](std::int32_t i) { link(i).is_in_ring = true; });
+    if (are_same(hole, outer)) {  // the two take each other's way on
+        std::swap(link(hole).next, link(outer).next);
+        link(link(hole).next).previous = hole;
+        link(link(outer).next).previous = outer;
+        return;
     }
-    return nearest[0].second;  // rounding has put the hole over the outline
-}
-
-void Ring::join_hole(const Loop& hole, std::span<const Loop> others) {
-    const auto leftmost = std::ranges::min_element(hole, {}, &LoopCorner::at);
-    const std::int32_t outer = find_bridge(*leftmost, others);
-    const std::int32_t inner = append(hole) + static_cast<std::int32_t>(leftmost - hole.begin());
-    // both ends of the bridge stand in the ring twice, once for each of its sides
     const auto outer_again = static_cast<std::int32_t>(links_.size());
+    const std::int32_t hole_again = outer_again + 1;
     links_.push_back(link(outer));
-    const auto inner_again = static_cast<std::int32_t>(links_.size());
-    links_.push_back(link(inner));
+    links_.push_back(link(hole));
     count_ += 2;
+    link(outer).again = outer_again;
+    link(hole).again = hole_again;
     link(link(outer).next).previous = outer_again;
-    link(link(inner).previous).next = inner_again;
-    link(outer).next = inner;
-    link(inner).previous = outer;
-    link(inner_again).next = outer_again;
-    link(outer_again).previous = inner_again;
+    link(link(hole).previous).next = hole_again;
+    link(outer).next = hole;
+    link(hole).previous = outer;
+    link(hole_again).next = outer_again;
+    link(outer_again).previous = hole_again;
 }
 
-void Ring::enter_corners() {
+/// Of exact corners only those that do not turn left can be in the way: of those in an ear, the one
+/// farthest from its diagonal does not.
+void EarClipping::enter_corners() {
     if (count_ <= kGridFrom) return;
     std::vector<spatial::CornerGrid::Member> corners;
-    std::int32_t i = entry_;
-    do {
-        corners.push_back({at(i), i});
-        i = link(i).next;
-    } while (i != entry_);
+    visit_ring(0, [&](std::int32_t i) {
+        if (!is_exact() || turn_at(i) <= 0) corners.push_back({at(i), i});
+    });
     grid_.emplace(std::move(corners), links_.size());
 }
 
-void Ring::remove(std::int32_t i) {
-    const Link gone = link(i);
+/// To the end of the queue: going round spreads the ears, which makes fewer needles.
+void EarClipping::enqueue(std::int32_t tip) {
+    link(tip).queued = static_cast<std::int32_t>(queue_.size());
+    queue_.push_back(tip);
+}
+
+void EarClipping::enqueue_all(std::int32_t from) {
+    queue_.clear();
+    begin_ = 0;
+    waiting_.clear();
+    visit_ring(from, [this](std::int32_t i) {
+        link(i).first_waiting = kNone;
+        enqueue(i);
+    });
+}
+
+void EarClipping::remove(std::int32_t i) {
+    Link& gone = link(i);
     link(gone.previous).next = gone.next;
     link(gone.next).previous = gone.previous;
+    gone.is_in_ring = false;
+    gone.queued = kNone;
     if (grid_) grid_->remove(i);
     --count_;
 }
@@ -195,14 +279,15 @@ void Ring::remove(std::int32_t i) {
 /// Whether a corner of the ring lies in the triangle a, tip, c, so that it cannot be cut off. At
 /// first one is in the way, too, that rounding may have put just beyond an edge which it only
 /// touches: what is left without that edge would be turned over.
-bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c,
-                  EarTest test) {
-    if (other == a || other == tip || other == c) return false;
-    const NodeId own = node(other);
-    if (own == node(a) || own == node(tip) || own == node(c)) return false;
+bool EarClipping::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c,
+                         EarTest test) {
+    const NodeId node = link(other).corner.node;
+    for (const std::int32_t own : {a, tip, c})
+        if (node == link(own).corner.node) return false;
+    const bool is_fat = test <= EarTest::kFat;
     const auto is_beyond = [&](std::int32_t p, std::int32_t q, int turned) {
         return turned < 0 &&
-               (test != EarTest::kFat ||
+               (!is_fat || is_exact() ||
                 twice_area(at(p), at(q), at(other)) < -slack(at(p), at(q), at(other), rounding_));
     };
     const int ab = turn(a, tip, other);
@@ -211,29 +296,40 @@ bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int
     if (is_beyond(tip, c, bc)) return false;
     const int ca = turn(c, a, other);
     if (is_beyond(c, a, ca)) return false;
+    if (are_same(other, a) || are_same(other, tip) || are_same(other, c)) return false;
     if (test == EarTest::kStrict && (ab == 0 || bc == 0 || ca == 0)) return false;
     // where a corner that turns left lies inside, one that does not lies inside as well
-    return test == EarTest::kFat || turn(link(other).previous, other, link(other).next) <= 0;
+    return is_fat || turn_at(other) <= 0;
 }
 
-bool Ring::is_ear(std::int32_t tip, EarTest test) {
+/// In doubles: it decides how good the triangle is, not whether it is one.
+bool EarClipping::is_in_circle(std::int32_t other, std::int32_t a, std::int32_t tip,
+                               std::int32_t c) {
+    const PlanePosition u = minus(at(a), at(tip)), v = minus(at(c), at(tip)),
+                        p = minus(at(other), at(tip));
+    const double twice = 2 * cross(v, u), u2 = dot(u, u), v2 = dot(v, v);
+    const PlanePosition center{(v2 * u[1] - u2 * v[1]) / twice, (u2 * v[0] - v2 * u[0]) / twice};
+    return squared_distance(p, center) < (1 - 1e-9) * dot(center, center) &&
+           twice_area(at(c), at(other), at(a)) > 0;
+}
+
+/// What keeps a tip from being cut off: a corner, or that it makes no such triangle (kNoEar).
+std::int32_t EarClipping::blocker_of(std::int32_t tip, EarTest test) {
     const std::int32_t a = link(tip).previous, c = link(tip).next;
-    if (test == EarTest::kOneSide) {
-        if (sides_[index(a)] != sides_[index(tip)] || sides_[index(tip)] != sides_[index(c)])
-            return false;
-        test = EarTest::kFat;
-    }
-    if (node(a) == node(tip) || node(tip) == node(c) || node(a) == node(c)) return false;
-    if (test == EarTest::kNone) return true;
-    if (turn(a, tip, c) <= 0) return false;
-    if (test == EarTest::kFat &&
+    if (are_same(a, tip) || are_same(tip, c) || are_same(a, c)) return kNoEar;
+    if (test == EarTest::kNone) return kNone;
+    if (turn(a, tip, c) <= 0) return kNoEar;
+    if (test <= EarTest::kFat && !is_exact() &&
         twice_area(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
-        return false;
+        return kNoEar;
+    if (test == EarTest::kRound) {
+        for (const std::int32_t other : {link(a).previous, link(c).next})
+            if (is_in_circle(other, a, tip, c)) return other;
+    }
     if (!grid_) {
-        for (std::int32_t other = link(c).next; other != a; other = link(other).next) {
-            if (blocks(other, a, tip, c, test)) return false;
-        }
-        return true;
+        for (std::int32_t other = link(c).next; other != a; other = link(other).next)
+            if (blocks(other, a, tip, c, test)) return other;
+        return kNone;
     }
     // A little more than the triangle: what rounding may have put just beyond it counts, too.
     const auto outward = [&](std::int32_t i) {
@@ -244,48 +340,80 @@ bool Ring::is_ear(std::int32_t tip, EarTest test) {
         }
         return p;
     };
-    return !grid_->any_in_triangle(outward(a), outward(tip), outward(c),
-                                   [&](const spatial::CornerGrid::Member& other) {
-                                       return blocks(other.number, a, tip, c, test);
-                                   });
+    std::int32_t blocker = kNone;
+    grid_->any_in_triangle(outward(a), outward(tip), outward(c),
+                           [&](const spatial::CornerGrid::Member& other) {
+                               if (!blocks(other.number, a, tip, c, test)) return false;
+                               blocker = other.number;
+                               return true;
+                           });
+    return blocker;
 }
 
-bool Ring::cut_ears() {
-    bool clean = true;
-    [[maybe_unused]] const std::size_t corners = count_ + triangles_.size();
-    enter_corners();
-    EarTest test = first_test();
-    std::int32_t tip = entry_, stop = entry_;
-    while (count_ > 2) {
-        if (is_ear(tip, test)) {
-            const std::int32_t a = link(tip).previous, c = link(tip).next;
-            triangles_.push_back({link(a).corner, link(tip).corner, link(c).corner});
-            clean = clean && test != EarTest::kNone;
-            remove(tip);
-            test = first_test();
-            tip = stop = link(c).next;  // leaving out the next corner makes fewer needles
-            continue;
-        }
-        tip = link(tip).next;
-        if (tip != stop) continue;
-        if (test != EarTest::kNone) {
-            test = static_cast<EarTest>(static_cast<int>(test) + 1);
-            continue;
-        }
-        clean = false;
-        // Only paths that run back over themselves are left: from such a turn both edges go.
-        while (node(tip) != node(link(tip).next) &&
-               node(link(tip).previous) != node(link(tip).next))
-            tip = link(tip).next;
-        const std::int32_t beyond = link(tip).next;
-        if (node(tip) != node(beyond)) remove(beyond);
-        stop = link(beyond).next;
-        remove(tip);
-        tip = stop;
-        test = first_test();
+void EarClipping::cut(std::int32_t tip) {
+    const std::int32_t a = link(tip).previous, c = link(tip).next;
+    triangles_.push_back({link(a).number, link(tip).number, link(c).number});
+    remove(tip);
+    for (const std::int32_t i : {a, c}) {
+        if (grid_ && is_exact() && turn_at(i) > 0) grid_->remove(i);
+        enqueue(i);
     }
-    assert(!clean || triangles_.size() + 2 == corners);
-    return clean;
+    for (std::int32_t w = link(tip).first_waiting; w != kNone; w = waiting_[index(w)][1]) {
+        const std::int32_t other = waiting_[index(w)][0];
+        if (link(other).is_in_ring && link(other).queued == kNone) enqueue(other);
+    }
+}
+
+/// Where only paths that run back over themselves are left: from such a turn both edges go.
+/// @return what follows
+std::int32_t EarClipping::drop_path(std::int32_t from) {
+    std::int32_t tip = from;
+    while (!are_same(tip, link(tip).next) && !are_same(link(tip).previous, link(tip).next))
+        tip = link(tip).next;
+    const std::int32_t beyond = link(tip).next;
+    if (!are_same(tip, beyond)) remove(beyond);
+    remove(tip);
+    return link(beyond).next;
+}
+
+bool EarClipping::run() {
+    enter_corners();
+    const EarTest first = choice_ == EarChoice::kRound ? EarTest::kRound : EarTest::kFat;
+    EarTest test = first;
+    std::int32_t from = 0;
+    enqueue_all(from);
+    for (std::size_t step = 0; count_ > 2; ++step) {
+        poll(progress_, step);
+        if (begin_ == queue_.size()) {
+            if (choice_ == EarChoice::kRound && test == EarTest::kFat) return false;
+            if (test != EarTest::kNone) {
+                test = static_cast<EarTest>(static_cast<int>(test) + 1);
+            } else {
+                is_clean_ = false;
+                from = drop_path(from);
+                test = first;
+            }
+            enqueue_all(from);
+            continue;
+        }
+        const std::int32_t tip = queue_[begin_++];
+        if (link(tip).queued != static_cast<std::int32_t>(begin_) - 1) continue;
+        link(tip).queued = kNone;
+        const std::int32_t blocker = blocker_of(tip, test);
+        if (blocker >= 0) {
+            waiting_.push_back({tip, link(blocker).first_waiting});
+            link(blocker).first_waiting = static_cast<std::int32_t>(waiting_.size()) - 1;
+        }
+        if (blocker != kNone) continue;
+        is_clean_ = is_clean_ && test != EarTest::kNone;
+        from = link(link(tip).next).next;
+        cut(tip);
+        if (test > EarTest::kFat) {  // there may be better ones again
+            test = first;
+            enqueue_all(from);
+        }
+    }
+    return is_clean_;
 }
 
 bool contains(const Loop& loop, const LoopCorner& p, const CornerTurns& turns) {
@@ -330,13 +458,10 @@ int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const Loop
     return exact::orient2d(a.at, b.at, c.at);
 }
 
-bool triangulate_beside(const Loop& loop, std::span<const std::int8_t> sides,
-                        const PlanePosition& rounding,
-                        std::vector<std::array<LoopCorner, 3>>& triangles) {
-    const CornerTurns turns;
-    Ring ring(rounding, turns, triangles);
-    ring.take(loop, sides);
-    return ring.cut_ears();
+bool cut_ears(std::span<const Loop> loops, const PlanePosition& rounding, const CornerTurns& turns,
+              EarChoice choice, std::vector<std::array<std::int32_t, 3>>& triangles,
+              Progress* progress) {
+    return EarClipping(loops, rounding, turns, choice, triangles, progress).run();
 }
 
 bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
@@ -358,20 +483,14 @@ bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
     }
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (areas[i] <= 0) continue;
-        Ring ring(rounding, turns, triangles);
-        ring.take(loops[i]);
-        const auto left = [&](std::size_t hole) {
-            return std::ranges::min_element(loops[hole], {}, &LoopCorner::at)->at;
-        };
-        std::sort(holes[i].begin(), holes[i].end(), [&](std::size_t a, std::size_t b) {
-            return std::pair(left(a), a) < std::pair(left(b), b);
-        });
-        std::vector<Loop> others;
+        std::vector<Loop> own{loops[i]};
         for (const std::size_t hole : holes[i])
-            others.push_back(loops[hole]);
-        for (const std::size_t hole : holes[i])
-            ring.join_hole(loops[hole], others);
-        clean = ring.cut_ears() && clean;
+            own.push_back(loops[hole]);
+        const std::vector<LoopCorner> corners = concatenated(own);
+        std::vector<std::array<std::int32_t, 3>> ears;
+        clean = cut_ears(own, rounding, turns, EarChoice::kAny, ears) && clean;
+        for (const auto& [a, b, c] : ears)
+            triangles.push_back({corners[index(a)], corners[index(b)], corners[index(c)]});
     }
     return clean;
 }
@@ -445,7 +564,7 @@ public:
 
     void write(Polygons& result) {
         for (std::size_t i = 0; i < polygons_.size(); ++i) {
-            if (find(static_cast<std::int32_t>(i)) != static_cast<std::int32_t>(i)) continue;
+            if (polygons_[i].empty()) continue;
             for (const LoopCorner& c : polygons_[i])
                 result.nodes.push_back(c.node);
             result.close();

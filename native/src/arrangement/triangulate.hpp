@@ -6,6 +6,7 @@
 
 #include "arrangement/polygons.hpp"
 #include "exact/space_points.hpp"
+#include "realmodel/base/progress.hpp"
 
 namespace realmodel::arrangement {
 
@@ -42,10 +43,26 @@ private:
     const PointOf& point_of_;
 };
 
+/// Which ears are cut off, and which before others.
+enum class EarChoice : std::uint8_t {
+    kAny,   ///< fat ones first, in the end any: whatever loops look like, all corners get triangles
+    kRound  ///< true ears only, first those that are hardly flipped when edges are made Delaunay
+};
+
+/// Cuts the ears off an outline (counter-clockwise) and holes in it (clockwise; one may be a slit
+/// of two corners), which are joined to it by bridges (G. H. Meisters 1975; D. Eberly,
+/// "Triangulation by ear clipping", 2002). Corners in the way are found in nested grids, and a tip
+/// that cannot be cut off waits for the one in its way.
+/// @param loops      the outline first
+/// @param triangles  corners, counted through all loops, are appended
+/// @return whether all are ears, and each hole saw a corner to be joined with
+/// @throws Cancelled
+bool cut_ears(std::span<const Loop> loops, const PlanePosition& rounding, const CornerTurns& turns,
+              EarChoice choice, std::vector<std::array<std::int32_t, 3>>& triangles,
+              Progress* progress = nullptr);
+
 /// Divides the region that loops bound (outlines counter-clockwise, holes clockwise; a hole may be
-/// a slit of two corners) into triangles without new nodes, by cutting off ears (G. H. Meisters
-/// 1975), with holes joined to their outline by bridges (D. Eberly, "Triangulation by ear
-/// clipping", 2002).
+/// a slit of two corners) into triangles without new nodes, by cutting off ears.
 ///
 /// Each edge of each loop belongs to exactly one triangle, and every other edge to two, whatever
 /// the loops look like: where rounding has made them cross, triangles may overlap by as much, but
@@ -54,13 +71,6 @@ private:
 /// pass over themselves.
 bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
                  std::vector<std::array<LoopCorner, 3>>& triangles, const CornerTurns& turns = {});
-
-/// The same for one loop, of whose corners is known on which side of something they lie: triangles
-/// on one side are cut off first, so that few are left that reach across.
-/// @param sides  of the loop's corners
-bool triangulate_beside(const Loop& loop, std::span<const std::int8_t> sides,
-                        const PlanePosition& rounding,
-                        std::vector<std::array<LoopCorner, 3>>& triangles);
 
 /// The same region in convex polygons, up to `rounding`: triangles merged wherever that leaves a
 /// convex one (S. Hertel and K. Mehlhorn 1983). `slits` are edges that must stay, as (lesser,

@@ -47,7 +47,6 @@ using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
 using arrangement::triangulate;
-using arrangement::triangulate_beside;
 using arrangement::View;
 
 /// Sides of a cutter: above it or outside of it, on it, below it or inside.

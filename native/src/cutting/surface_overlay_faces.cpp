@@ -264,7 +264,7 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
         if (sides[i] != sides[i == 0 ? sides.size() - 1 : i - 1]) changes.push_back(i);
     }
     if (changes.size() != 2 || !is_convex(loop, rounding)) {
-        triangulate_beside(loop, sides, rounding, triangles);
+        triangulate(std::span(&loop, 1), rounding, triangles);
         parts.add(face, triangles);
         return;
     }

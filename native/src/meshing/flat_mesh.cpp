@@ -24,7 +24,9 @@ void FlatMesh::link() {
     for_each_edge([&](HalfEdge edge) {
         if (!twin(edge).is_none()) return;
         for (const HalfEdge other : leaving[static_cast<std::size_t>(to(edge))]) {
-            if (to(other) == from(edge)) join(edge, other);
+            if (to(other) != from(edge) || !twin(other).is_none()) continue;
+            join(edge, other);
+            break;
         }
     });
 }

@@ -161,42 +161,6 @@ TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosedAndTurnsNothingOver) {
     }
 }
 
-TEST(Triangulate, FewTrianglesReachAcross) {
-    Corners corners;
-    std::vector<PlanePosition> round;
-    for (int i = 0; i < 24; ++i)
-        round.push_back(
-            {std::cos(0.1 + i * 0.2617993877991494), std::sin(0.1 + i * 0.2617993877991494)});
-    // the second winds about the line between the sides
-    for (const auto& positions :
-         {round,
-          std::vector<PlanePosition>{{-2, 0}, {1, 0}, {1, 1}, {-1, 2}, {2, 2}, {2, 3}, {-2, 3}}}) {
-        const Loop loop = corners.loop(positions);
-        std::vector<std::int8_t> sides;
-        for (const PlanePosition& p : positions)
-            sides.push_back(p[0] > 0 ? 1 : -1);
-        std::vector<std::array<LoopCorner, 3>> any, found;
-        EXPECT_TRUE(triangulate(std::span(&loop, 1), {1e-12, 1e-12}, any));
-        EXPECT_TRUE(triangulate_beside(loop, sides, {1e-12, 1e-12}, found));
-        EXPECT_EQ(found.size(), positions.size() - 2);
-        const auto across = [](const auto& triangles) {
-            return std::ranges::count_if(triangles, [](const auto& t) {
-                const bool first = t[0].at[0] > 0;
-                return (t[1].at[0] > 0) != first || (t[2].at[0] > 0) != first;
-            });
-        };
-        EXPECT_LE(across(found), across(any));
-        if (positions.size() == round.size()) {
-            EXPECT_EQ(across(found), 2);
-            EXPECT_GT(across(any), 2);
-        }
-        double area = 0;
-        for (const auto& t : found)
-            area += signed_area({t[0].at, t[1].at, t[2].at});
-        EXPECT_NEAR(area, signed_area(positions), 1e-12);
-    }
-}
-
 constexpr PlanePosition kNoRounding{0, 0}, kTenth{0.1, 0.1};
 
 /// Nodes from 0 on at some positions.
