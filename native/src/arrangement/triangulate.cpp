@@ -120,6 +120,12 @@ EarClipping::EarClipping(std::span<const Loop> loops, const PlanePosition& round
       choice_(choice),
       triangles_(triangles),
       progress_(progress) {
+    std::size_t corners = 0;
+    for (const Loop& loop : loops)
+        corners += loop.size();
+    links_.reserve(corners + 2 * loops.size());
+    queue_.reserve(3 * corners);
+    triangles_.reserve(triangles_.size() + corners + 2 * loops.size());
     std::vector<std::int32_t> holes;  // the leftmost corner of each
     for (const Loop& loop : loops) {
         const auto first = static_cast<std::int32_t>(links_.size());

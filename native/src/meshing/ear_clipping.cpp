@@ -37,6 +37,7 @@ std::optional<Triangles> by_ears(std::span<const Ring> rings, Progress* progress
     std::int32_t corner = 0;
     for (const Ring& ring : rings) {
         arrangement::Loop& loop = loops.emplace_back();
+        loop.reserve(ring.size());
         const std::size_t begin = numbers.size();
         double area = 0;
         for (const PlanPoint& p : ring) {
