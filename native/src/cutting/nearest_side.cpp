@@ -3,44 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/space_cells.hpp"
 #include "base/algorithms.hpp"
 #include "exact/orientation.hpp"
 #include "exact/space_points.hpp"
+#include "exact/triangle_distances.hpp"
 
 namespace realmodel::cutting {
 
 using spatial::Box;
 
 namespace {
-
-constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
-
-/// The point of a triangle that is nearest to p (C. Ericson, "Real-time collision detection", 2005,
-/// section 5.1.5).
-Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
-                             const Position& c) {
-    const Position ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return a;
-    const Position bp = minus(p, b);
-    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return b;
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return moved(a, d1 / (d1 - d3), ab);
-    const Position cp = minus(p, c);
-    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return c;
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return moved(a, d2 / (d2 - d6), ac);
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return moved(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c, b));
-    const double share = 1 / (va + vb + vc);
-    return moved(moved(a, vb * share, ab), vc * share, ac);
-}
 
 /// 1 where a triangle turns counter-clockwise seen from p, or p is in its plane; -1 else.
 std::int8_t side_of(const std::array<Position, 3>& t, const Position& p) {
@@ -94,88 +70,91 @@ NearestSide::NearestSide(const CutterSurface& surface, const Execution& executio
     }
 }
 
-/// Whether a point of a triangle is on one of its border edges, but for rounding.
-bool NearestSide::is_on_border(std::int32_t triangle, const Position& q) const {
-    constexpr double kOnEdge = 1e-12;  // of its squared length: squared distance
-    const auto own = corners(triangle);
+/// The border edges of a triangle that may come as near to a point: bit i for that after corner i.
+unsigned NearestSide::border_within(std::int32_t triangle, const Position& p,
+                                    double distance) const {
+    unsigned edges = border_[index(triangle)];
+    const auto at = corners(triangle);
     for (std::size_t i = 0; i < 3; ++i) {
-        if ((border_[index(triangle)] & (1U << i)) == 0) continue;
-        const Position line = minus(own[(i + 1) % 3], own[i]), off = minus(q, own[i]);
-        const double square = dot(line, line), share = dot(off, line) / square;
-        if (dot(off, off) - share * share * square <= kOnEdge * square) return true;
+        const Position &from = at[i], &to = at[(i + 1) % 3];
+        if ((edges >> i & 1U) != 0 && exact::distance_bounds(p, {from, to, to}).low > distance)
+            edges &= ~(1U << i);
     }
-    return false;
+    return edges;
 }
 
 std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     struct NearTriangle {
-        double distance;
-        std::int32_t triangle;
-        Position at;
+        double least_distance;
+        std::int32_t number;
     };
-    // mostly one is nearest, which needs no memory and is compared with none
+    // mostly only one may be nearest, which needs no memory
     std::optional<NearTriangle> first;
     std::vector<NearTriangle> others;
     double least = HUGE_VAL;
     tree_.approach(
-        p, [&least] { return least * (1 + kAlike); },
+        p, [&least] { return least * least * (1 + 0x1p-40); },
         [&](std::int32_t t) {
-            const auto own = corners(t);
-            const Position at = nearest_in_triangle(p, own[0], own[1], own[2]);
-            const Position away = minus(p, at);
-            const double distance = dot(away, away);
-            if (distance > least * (1 + kAlike)) return;
-            least = std::min(least, distance);
-            if (!first || (others.empty() && first->distance > least * (1 + kAlike)))
-                first = {distance, t, at};
+            const auto [low, high] = exact::distance_bounds(p, corners(t));
+            if (low > least) return;
+            least = std::min(least, high);
+            if (!first || (others.empty() && first->least_distance > least))
+                first = {low, t};
             else
-                others.push_back({distance, t, at});
+                others.push_back({low, t});
         });
     if (!first) return kAbove;
-    std::int32_t best = -1;
-    double best_square = 0;
-    const auto compare = [&](const NearTriangle& one) {
-        if (one.distance > least * (1 + kAlike)) return;
-        if (at_border != nullptr && is_on_border(one.triangle, one.at)) *at_border = true;
-        double square = 0;
-        if (!others.empty()) {
-            const Position normal = polygon_normal(corners(one.triangle));
-            square = std::abs(dot(normal, minus(p, one.at))) /
-                     std::sqrt(std::max(dot(normal, normal), 1e-300));
-        }
-        if (best < 0 || square > best_square || (square == best_square && one.triangle < best)) {
-            best = one.triangle;
-            best_square = square;
-        }
+    const auto border_near = [&](std::int32_t t) {
+        return at_border == nullptr ? 0U : border_within(t, p, least);
     };
-    compare(*first);
-    std::ranges::for_each(others, compare);
-    return side_of(corners(best), p);
+    if (others.empty() && border_near(first->number) == 0)
+        return side_of(corners(first->number), p);
+    others.push_back(*first);
+    std::ranges::sort(others, {}, &NearTriangle::number);
+    std::vector<exact::MarkedTriangle> triangles;
+    std::vector<std::int8_t> sides;
+    for (const NearTriangle& one : others) {
+        if (one.least_distance > least) continue;
+        triangles.push_back({corners(one.number), border_near(one.number)});
+        sides.push_back(side_of(triangles.back().corners, p));
+    }
+    const auto are_equal = [&sides] {
+        return std::ranges::adjacent_find(sides, std::not_equal_to<>()) == sides.end();
+    };
+    const bool may_be_at_border =
+        std::ranges::any_of(triangles, [](const auto& t) { return t.edges != 0; });
+    if (!may_be_at_border && are_equal()) return sides[0];
+    const auto nearest = exact::nearest_triangles(p, triangles);
+    if (nearest.are_on_edge) *at_border = true;
+    const auto only_nearest = [&nearest](auto& list) {
+        list = transformed(nearest.numbers, [&list](std::size_t i) { return list[i]; });
+    };
+    only_nearest(sides);
+    if (are_equal()) return sides[0];
+    only_nearest(triangles);
+    return sides[exact::farthest_plane(p, triangles)];
 }
 
 std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double radius) const {
     constexpr double kRounding = 0x1p-40;  // of lengths and of products of these
-    constexpr double kOnEdge = 0x1p-19;    // of its length: farther than is_on_border has it
     double least = HUGE_VAL;
-    const auto square_to = [&](const std::array<Position, 3>& own) {
-        const Position away = minus(center, nearest_in_triangle(center, own[0], own[1], own[2]));
-        return dot(away, away);
-    };
     tree_.approach(
-        center, [&least] { return least; },
-        [&](std::int32_t t) { least = std::min(least, square_to(corners(t))); });
-    if (!(radius * radius < least)) return std::nullopt;
+        center, [&least] { return least * least * (1 + kRounding); },
+        [&](std::int32_t t) {
+            least = std::min(least, exact::distance_bounds(center, corners(t)).high);
+        });
+    if (!(radius < least)) return std::nullopt;
     // what is nearest to a position in the ball is no farther from its center than this
-    const double reach = (std::sqrt(least) + 2 * radius) * (1 + kAlike);
+    const double reach = (least + 2 * radius) * (1 + kRounding);
     std::optional<std::int8_t> side;
     bool is_certain = true;
     tree_.approach(
-        center, [&] { return is_certain ? reach * reach : -1.0; },
+        center, [&] { return is_certain ? reach * reach * (1 + kRounding) : -1.0; },
         [&](std::int32_t t) {
-            const auto own = corners(t);
-            if (square_to(own) > reach * reach) return;
-            const Position ab = minus(own[1], own[0]), ac = minus(own[2], own[0]);
-            const Position normal = cross(ab, ac), off = minus(center, own[0]);
+            const auto [a, b, c] = corners(t);
+            if (exact::distance_bounds(center, {a, b, c}).low > reach) return;
+            const Position ab = minus(b, a), ac = minus(c, a);
+            const Position normal = cross(ab, ac), off = minus(center, a);
             const double distance = dot(normal, off);
             const double least_distance = radius * length(normal) + kRounding * length(ab) *
                                                                         length(ac) *
@@ -184,13 +163,7 @@ std::optional<std::int8_t> NearestSide::of_ball(const Position& center, double r
             is_certain &=
                 std::abs(distance) > least_distance && side.value_or(own_side) == own_side;
             side = own_side;
-            for (std::size_t i = 0; i < 3; ++i) {
-                if ((border_[index(t)] & (1U << i)) == 0) continue;
-                const Position line = minus(own[(i + 1) % 3], own[i]);
-                const double size = length(line);
-                is_certain &= length(cross(line, minus(center, own[i]))) >
-                              (reach + kOnEdge * size) * size * (1 + kRounding);
-            }
+            is_certain &= border_within(t, center, reach) == 0;
         });
     return is_certain ? side : std::nullopt;
 }

@@ -15,8 +15,8 @@ public:
     explicit NearestSide(const CutterSurface& surface, const Execution& execution = {1, nullptr});
 
     /// Of any surface: the side of the triangle that is nearest; of several that are, of the one
-    /// seen most squarely. Exact with regard to that triangle; on its plane is above.
-    /// @param at_border  set to whether a border edge is nearest, of triangles that share vertices
+    /// seen most squarely: whose plane is farthest. Exact; on its plane is above.
+    /// @param at_border  set where a border edge is nearest, of triangles that share vertices
     std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
     /// The same of all positions in a ball, where that needs no look at each and no border edge is
     /// nearest to any.
@@ -41,7 +41,7 @@ private:
     std::array<Position, 3> corners(std::int32_t triangle) const {
         return surface_.corners(index(triangle));
     }
-    bool is_on_border(std::int32_t triangle, const Position& q) const;
+    unsigned border_within(std::int32_t triangle, const Position& p, double distance) const;
 
     const CutterSurface& surface_;
     spatial::BoxTree tree_;

@@ -26,6 +26,41 @@ TEST(NearestSide, BeyondItsBorderTheTriangleSeenMostSquarelyTellsTheSide) {
     EXPECT_EQ(NearestSide(bent)({-1, 0, 0.5}), kBelow);  // it is that one's turn
 }
 
+TEST(NearestSide, OfLimbsThatAreNearlyOneTheNearerTellsTheSide) {
+    // a level sheet that turns back under itself, as far away as the last place of 1
+    for (const double gap : {1e-3, 1e-10, 1e-15, 0x1p-53}) {
+        const CutterSurface fold{{{0, 0, 0}, {8, -8, 0}, {8, 8, 0}, {8, -8, -gap}, {8, 8, -gap}},
+                                 {{0, 1, 2}, {0, 4, 3}}};
+        const NearestSide side(fold);
+        for (const double x : {1.0, 2.5, 4.0}) {
+            EXPECT_EQ(side({x, 0.25, 1}), kAbove) << gap;
+            EXPECT_EQ(side({x, 0.25, -1}), kAbove) << gap;  // the lower limb is upside down
+            EXPECT_EQ(side({x, 0.25, -gap * x / 16}), kBelow) << gap;
+        }
+    }
+}
+
+TEST(NearestSide, ABorderIsNearestWhereItsPointIs) {
+    const NearestSide side(kRidge);
+    const auto is_at_border = [&side](const Position& p) {
+        bool at_border = false;
+        side(p, &at_border);
+        return at_border;
+    };
+    EXPECT_FALSE(is_at_border({0, 0, 1}));   // the ridge
+    EXPECT_TRUE(is_at_border({0, 9, 1}));    // its end
+    EXPECT_TRUE(is_at_border({4, 0, -12}));  // beyond a corner
+    // the foot is on a border edge, or beside it by less than a millionth of its length
+    const CutterSurface square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                               {{0, 1, 2}, {0, 2, 3}}};
+    const NearestSide level(square);
+    for (const double y : {0.0, -0x1p-60, 0x1p-60, 1e-9}) {
+        bool at_border = false;
+        EXPECT_EQ(level({0.5, y, 1}, &at_border), kAbove);
+        EXPECT_EQ(at_border, y <= 0);
+    }
+}
+
 TEST(NearestSide, OneUnitInTheLastPlaceOffTheTriangleIsTold) {
     const CutterSurface slope{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0, 1, 2}}};
     const NearestSide side(slope);

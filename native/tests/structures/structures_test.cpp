@@ -432,6 +432,23 @@ TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
               (std::vector<std::int8_t>{-1, 1}));
 }
 
+TEST(SidesOfPoints, OfLimbsThatAreNearlyOneTheNearerCounts) {
+    for (const double gap : {1e-3, 1e-10, 1e-14}) {
+        OwnedSurface fold;  // a level sheet with a limb under it
+        for (const auto& [x, y] : {std::array{-9.0, -9.0}, {9.0, -9.0}, {9.0, 9.0}, {-9.0, 9.0}})
+            fold.vertex(x, y, 0);
+        fold.vertex(0, 9, -gap);
+        fold.vertex(0, -9, -gap);
+        fold.triangle(0, 1, 2);
+        fold.triangle(0, 2, 3);
+        fold.triangle(1, 4, 2);
+        fold.triangle(1, 5, 4);
+        const std::array points{5.0, 0.0, 1.0, 4.0, -3.0, 1.0, 7.0, 5.0, 1.0};
+        EXPECT_EQ(sides_of_points(std::array{fault(fold)}, points, {1, nullptr}),
+                  (std::vector<std::int8_t>{1, 1, 1}));
+    }
+}
+
 TEST(SidesOfPoints, BeyondTheFaultThatItEndsAtAFaultGoesOnInItsPlane) {
     const OwnedSurface trunk = sheet(0, 0);                   // x = 0
     const OwnedSurface branch = sheet(0, 1, -9, 9, -9, 0.5);  // x = z, until x = 0.5
