@@ -107,6 +107,7 @@ private:
     bool orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
                          const EdgeUses& edges);
     void orient_upward();
+    Position beyond_tip(NodeId from, const CutterBorderEdge& next) const;
     void extend_border();
 
     CutterSurface surface_;
@@ -347,21 +348,39 @@ void SurfaceInput::orient_upward() {
     }
 }
 
+/// Where the border turns back at a vertex, nearly into its own direction: the direction beyond it
+/// of a tip, 0 where it is a slit.
+Position SurfaceInput::beyond_tip(NodeId from, const CutterBorderEdge& next) const {
+    const Position way = unit(minus(at(next.from), at(from))),
+                   next_way = unit(minus(at(next.to), at(next.from)));
+    const Position inward = minus(at(next.corner), at(next.from));
+    const bool is_tip =
+        next.corner == from || dot(cross(next_way, inward), cross(way, next_way)) > 0;
+    return is_tip ? minus(way, next_way) : Position{};
+}
+
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
 void SurfaceInput::extend_border() {
     const std::vector<CutterBorderEdge> border = border_of(surface_);
     const double width = 256 * rounding_of(surface_.vertices);
     std::vector<Position> outward(surface_.vertices.size(), Position{0, 0, 0});
+    std::vector<std::vector<NodeId>> before(outward.size());  // along the border
     for (const CutterBorderEdge& edge : border) {
         const Position away = away_from(surface_, edge);
         for (const NodeId v : {edge.from, edge.to})
             outward[index(v)] = plus(outward[index(v)], away);
+        before[index(edge.to)].push_back(edge.from);
+    }
+    for (const CutterBorderEdge& edge : border) {
+        const auto v = index(edge.from);
+        if (length(outward[v]) < 0.1)
+            outward[v] = before[v].size() == 1 ? beyond_tip(before[v][0], edge) : Position{};
     }
     std::vector<NodeId> beyond(outward.size(), -1);
     for (std::size_t v = 0; v < outward.size(); ++v) {
         const double size = length(outward[v]);
-        if (size < 0.1) continue;  // away from the border, or it runs back: it is a slit there
+        if (size == 0) continue;
         Position p = surface_.vertices[v];
         for (std::size_t k = 0; k < 3; ++k)
             p[k] += width * outward[v][k] / size;

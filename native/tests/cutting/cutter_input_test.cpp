@@ -78,6 +78,31 @@ TEST(CutterInput, ASeamWiderThanRoundingGoesRoundTheBorder) {
         EXPECT_GT(normal(surface, t)[2], 0);
 }
 
+TEST(CutterInput, ASeamGoesRoundANeedleTipAndNotIntoASlit) {
+    for (const double half : {0.2, 0.05, 0x1p-20, 0x1p-40, 0x1p-52}) {  // of its width
+        const std::vector<Position> needle{
+            {0, 0, 1}, {1, -half, 1}, {1, half, 1}, {1, half / 4, 1}};
+        for (const Triangles& triangles : {Triangles{{0, 1, 2}}, Triangles{{0, 1, 3}, {0, 3, 2}}}) {
+            const CutterSurface surface = ready(needle, triangles);
+            const bool is_one = triangles.size() == 1;
+            const std::size_t corners = is_one ? 3 : 4;
+            EXPECT_EQ(surface.vertices.size(), 4 + corners);
+            EXPECT_EQ(border_edges(surface), std::pair(static_cast<int>(corners), true));
+            const Position& tip = surface.vertices[4];
+            EXPECT_NEAR(tip[0], -0x1p-42, 0x1p-50);
+            EXPECT_NEAR(tip[1], 0, 0x1p-50);
+            EXPECT_EQ(tip[2], 1);
+        }
+    }
+    for (const double half : {0.04, 0x1p-20, 0x1p-40}) {
+        const std::vector<Position> slit{{0, 0, 1},  {1, -half, 1}, {1, -1, 1},  {-1, -1, 1},
+                                         {-1, 1, 1}, {1, 1, 1},     {1, half, 1}};
+        const CutterSurface surface =
+            ready(slit, {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 5, 4}, {0, 6, 5}});
+        EXPECT_EQ(surface.vertices.size(), 7U + 6U);
+    }
+}
+
 TEST(CutterInput, VerticesInOnePlaceAreOneAndFlatTrianglesAreNone) {
     std::vector<Position> vertices = kSquare;
     vertices.insert(vertices.end(), {{-0.0, 0, 0}, {1, 1, 0}, {0.5, 0.5, 0}});

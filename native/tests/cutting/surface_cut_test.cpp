@@ -230,6 +230,26 @@ TEST(SurfaceCut, TheSameForAnyNumberOfThreads) {
     }
 }
 
+TEST(SurfaceCut, ANeedleTipThatEndsOnTheOutsideButForRoundingCuts) {
+    constexpr double kFar = 4e6, kUnit = 0x1p-31;  // what coordinates are, and their last place
+    for (const double width : {1.0, 0.05}) {
+        for (const double inside : {0.0, kUnit, 2 * kUnit}) {
+            const auto needle = [width](double z, double tip) {
+                OwnedSurface s;
+                s.vertex(kFar + tip, kFar, z);
+                s.vertex(kFar + 4, kFar - width, z);
+                s.vertex(kFar + 4, kFar + width, z);
+                s.triangle(0, 1, 2);
+                return s;
+            };
+            const CellComplex c = strata::build({needle(0, 0), needle(1, 0)});
+            const Cut cut = cut_by_surface(c, view(needle(0.25, inside)), {1, nullptr});
+            EXPECT_NEAR(total(cut.below.volumes), width, 1e-6);
+            EXPECT_NEAR(total(cut.above.volumes), 3 * width, 1e-6);
+        }
+    }
+}
+
 TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
     const CellComplex c = sized_layers({0, 1});
     for (const double z : {-1.0, 2.0}) {
