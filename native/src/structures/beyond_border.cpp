@@ -88,8 +88,8 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
         prisms[t].box = bounding_box(prisms[t].corners);
         all.include(prisms[t].box);
     }
-    std::vector<std::uint8_t> found(count, 0);
-    if (count == 0) return found;
+    std::vector<std::uint8_t> touched(count, 0);
+    if (count == 0) return touched;
     const StructureSurface surface = first_surface(faults, all);
     all.include(bounding_box(surface.single[0].vertices));
     const Position extent = minus(all.high, all.low);
@@ -112,23 +112,23 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
             const auto passes = [&](std::int32_t number) {
                 const Slab& slab = slabs[index(number)];
                 if (!may_meet(prism, slab, near)) return false;
-                found[t] = kMeets;
+                touched[t] = kMeets;
                 return may_meet(prism, slab, -near);
             };
-            if (tree.any(prism.box, passes)) found[t] = kPasses;
+            if (tree.any(prism.box, passes)) touched[t] = kPasses;
         }
     });
-    return found;
+    return touched;
 }
 
 std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
     std::span<const Structure> faults, const std::array<std::array<double, 3>, 2>& corners) {
     const StructureSurface surface = first_surface(faults, bounding_box(corners));
-    std::vector<std::array<Position, 3>> found;
+    std::vector<std::array<Position, 3>> triangles;
     for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
-        if (surface.is_continuation[t] != 0) found.push_back(surface.surface.corners(t));
+        if (surface.is_continuation[t] != 0) triangles.push_back(surface.surface.corners(t));
     }
-    return found;
+    return triangles;
 }
 
 }  // namespace realmodel::structures

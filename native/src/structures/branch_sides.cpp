@@ -31,9 +31,10 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
     std::vector<Position> corners;
     std::vector<arrangement::Loop> seen;
     for (const auto& loop : loops) {
-        arrangement::Loop& own = seen.emplace_back();
+        arrangement::Loop& corners_seen = seen.emplace_back();
         for (const SpacePointId p : loop) {
-            own.push_back({static_cast<cutting::NodeId>(corners.size()), view(points.rounded(p))});
+            corners_seen.push_back(
+                {static_cast<cutting::NodeId>(corners.size()), view(points.rounded(p))});
             corners.push_back(points.rounded(p));
         }
     }
@@ -71,24 +72,25 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
         }
     };
     add(branch, false);
-    const std::size_t own = triangles.size();
+    const std::size_t branch_size = triangles.size();
     add(other, true);
     const auto boxes = transformed(
         triangles, [&](std::size_t t) { return bounding_box(surface.surface.corners(t)); });
-    const spatial::BoxTree tree({boxes.begin() + static_cast<std::ptrdiff_t>(own), boxes.end()});
-    BranchSides found;
+    const spatial::BoxTree tree(
+        {boxes.begin() + static_cast<std::ptrdiff_t>(branch_size), boxes.end()});
+    BranchSides sides;
     std::vector<TriangleArrangement::TriangleIntersection> meetings;
-    for (std::size_t t = 0; t < own; ++t) {
+    for (std::size_t t = 0; t < branch_size; ++t) {
         std::vector<std::int32_t> near;
         tree.find(boxes[t], [&near](std::int32_t at) { near.push_back(at); });
         std::ranges::sort(near);
         for (const std::int32_t at : near) {
-            const auto with = static_cast<std::int32_t>(own) + at;
+            const auto with = static_cast<std::int32_t>(branch_size) + at;
             const auto& corners = arrangement.corners(static_cast<std::int32_t>(t));
             const auto& others = arrangement.corners(with);
             const auto met = arrangement.intersection(static_cast<std::int32_t>(t), with);
             if (surface.is_continuation[triangles[index(with)]] == 0)
-                found.meets = found.meets || met ||
+                sides.meets = sides.meets || met ||
                               std::ranges::find_first_of(corners, others) != corners.end();
             if (met) meetings.push_back(*met);
         }
@@ -96,30 +98,30 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     for (const auto& met : meetings)
         arrangement.insert(met);
     arrangement.divide({1, nullptr});
-    assert(branch != other && own <= triangles.size());
+    assert(branch != other && branch_size <= triangles.size());
     const cutting::NearestSide nearest(surface.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const arrangement::Region region = regions[r];
-        if (index(region.triangle) >= own) continue;
+        if (index(region.triangle) >= branch_size) continue;
         std::array<Position, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points.rounded(arrangement.corners(region.triangle)[i]);
         const auto [area, middle] = measured(points, region.loops, polygon_normal(corners));
-        (nearest(middle) == cutting::kBelow ? found.below : found.above) += area;
+        (nearest(middle) == cutting::kBelow ? sides.below : sides.above) += area;
     }
-    return found;
+    return sides;
 }
 
 std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std::int32_t other) {
-    const BranchSides found = branch_sides(surface, branch, other);
-    if (std::min(found.above, found.below) == 0 && !found.meets)
+    const BranchSides sides = branch_sides(surface, branch, other);
+    if (std::min(sides.above, sides.below) == 0 && !sides.meets)
         throw InputError("does_not_meet", "the fault does not meet a fault that it is to end at",
                          branch, {other});
-    if (std::abs(found.above - found.below) <= kAlike * (found.above + found.below))
+    if (std::abs(sides.above - sides.below) <= kAlike * (sides.above + sides.below))
         throw InputError("equal_halves", "the fault that it is to end at cuts it into two halves",
                          branch, {other});
-    return found.below > found.above ? cutting::kBelow : cutting::kAbove;
+    return sides.below > sides.above ? cutting::kBelow : cutting::kAbove;
 }
 
 }  // namespace realmodel::structures

@@ -119,11 +119,11 @@ struct StacksHere {
                 rock = rocks[static_cast<std::size_t>(rock)];
         }
         if (surface < 0) return;
-        const PartSurface& own = surfaces[static_cast<std::size_t>(surface)];
-        surface = own.number;
-        if (own.triangles.empty() || kind == "not_finite") return;  // that names a vertex
+        const PartSurface& in_whole = surfaces[static_cast<std::size_t>(surface)];
+        surface = in_whole.number;
+        if (in_whole.triangles.empty() || kind == "not_finite") return;  // that names a vertex
         for (std::int64_t& triangle : items)
-            triangle = own.triangles[static_cast<std::size_t>(triangle)];
+            triangle = in_whole.triangles[static_cast<std::size_t>(triangle)];
     }
 };
 
@@ -138,8 +138,8 @@ std::vector<std::int32_t> numbers_of_kept(const CellComplex& complex,
     std::int32_t next = 0;
     for (std::size_t c = 0; c < block.size(); ++c) {
         if (block[c] < 0) continue;
-        const std::size_t own = as_one ? index(first[c]) : c;
-        number[c] = own == c ? next++ : number[own];
+        const std::size_t representative = as_one ? index(first[c]) : c;
+        number[c] = representative == c ? next++ : number[representative];
     }
     return number;
 }
@@ -167,8 +167,8 @@ CellComplex as_in_whole(CellComplex built, const StacksHere& here, CellKind cell
         built = merge_cells(built, numbers_of_kept(built, block, as_one, progress), progress);
         built.warnings = std::move(warnings);
     }
-    for (std::int32_t& own : built.cell_block)
-        own = block_beneath(own);
+    for (std::int32_t& of_cell : built.cell_block)
+        of_cell = block_beneath(of_cell);
     for (std::int32_t& surface : built.face_surface) {
         if (surface >= 0) surface = here.surfaces[index(surface)].number;
     }
@@ -253,9 +253,10 @@ CellComplex model_of_part(const StructuredInput& input, const PartOfSpace& part,
     constexpr double kStacks = 0.2;  // of the time
     std::vector<CellComplex> built;
     for (const LevelPart& between : part.between) {
-        Progress own(execution.progress, kStacks / static_cast<double>(part.between.size()));
-        built.push_back(model_of_stacks(input, part, between.rocks, {execution.threads, &own}));
-        own.report(1.0, nullptr);
+        Progress building(execution.progress, kStacks / static_cast<double>(part.between.size()));
+        built.push_back(
+            model_of_stacks(input, part, between.rocks, {execution.threads, &building}));
+        building.report(1.0, nullptr);
     }
     Progress joining(execution.progress, 1 - kStacks);
     CellComplex joined = join_between(input, part, built, {execution.threads, &joining});
@@ -292,8 +293,8 @@ Joined build_parts(const StructuredInput& input, const Execution& execution) {
     check_input(input);
     begin_phase(execution.progress, 0, kBuilt, "intersecting and cutting");
     std::vector<CellComplex> built(input.parts.size());
-    parallel_tasks(built.size(), execution, kBuilt, [&](std::size_t p, const Execution& own) {
-        built[p] = model_of_part(input, input.parts[p], own);
+    parallel_tasks(built.size(), execution, kBuilt, [&](std::size_t p, const Execution& task) {
+        built[p] = model_of_part(input, input.parts[p], task);
     });
     give_back_memory();
     begin_phase(execution.progress, kBuilt, 1, "joining the compartments");

@@ -40,17 +40,16 @@ Box box_of(const ComplexView& model) {
 /// that it comes near none and is on the sides that are asked for, or that it is elsewhere.
 enum class CellLocation : std::uint8_t { kElsewhere, kInside, kNear };
 
-/// @param structures  of each where its sides are
-/// @param given       the same structures
+/// @param nearest  of each structure where its sides are
 std::vector<CellLocation> locations_of_cells(const ComplexView& model, const Sides& sides,
-                                             std::span<const cutting::NearestSide> structures,
-                                             std::span<const Structure> given,
+                                             std::span<const cutting::NearestSide> nearest,
+                                             std::span<const Structure> structures,
                                              const Execution& execution) {
-    assert(sides.size() == structures.size() && sides.size() == given.size());
-    const cutting::CellBoxes cells(model, structures, execution);
+    assert(sides.size() == nearest.size() && sides.size() == structures.size());
+    const cutting::CellBoxes cells(model, nearest, execution);
     std::vector<CellLocation> locations(model.cell_count(), CellLocation::kInside);
     for (std::size_t s = 0; s < sides.size(); ++s) {
-        auto is_near = cutting::cells_near(cells, structures[s], execution);
+        auto is_near = cutting::cells_near(cells, nearest[s], execution);
         for (std::size_t c = 0; c < locations.size(); ++c) {
             if (locations[c] == CellLocation::kElsewhere) {
                 is_near[c] = 1;  // not asked for
@@ -60,15 +59,16 @@ std::vector<CellLocation> locations_of_cells(const ComplexView& model, const Sid
         }
         if (sides[s] == 0) continue;  // either side will do
         // some corners of these may lie where the branch is not, and nearest to its other side
-        for (const std::int32_t other : given[s].ends_at) {
-            const auto beside = cutting::cells_near(cells, structures[index(other)], execution);
+        for (const std::int32_t other : structures[s].ends_at) {
+            const auto beside = cutting::cells_near(cells, nearest[index(other)], execution);
             for (std::size_t c = 0; c < locations.size(); ++c) {
                 if (beside[c] != 0) is_near[c] = 1;
             }
         }
-        const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, execution);
+        const auto sides_of_cells =
+            cutting::sides_of_far_cells(model, nearest[s], is_near, execution);
         for (std::size_t c = 0; c < locations.size(); ++c) {
-            if (own[c] != cutting::kOn && own[c] != sides[s])
+            if (sides_of_cells[c] != cutting::kOn && sides_of_cells[c] != sides[s])
                 locations[c] = CellLocation::kElsewhere;
         }
     }
@@ -112,12 +112,12 @@ MergedModels::MergedModels(std::span<const PartModel> models,
             if (wanted[0] || wanted[1]) visit(f, wanted);
         }
     };
-    for (const PartModel& own : models) {
-        positions.push_back(own.model.vertex_count());
-        model_sides.push_back(own.sides);
-        blocks = std::max(blocks, own.model.blocks);
-        surfaces = std::max(surfaces, own.model.surfaces);
-        if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
+    for (const PartModel& part : models) {
+        positions.push_back(part.model.vertex_count());
+        model_sides.push_back(part.sides);
+        blocks = std::max(blocks, part.model.blocks);
+        surfaces = std::max(surfaces, part.model.surfaces);
+        if (part.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
     }
     parallel_chunks(models.size(), execution, [&](std::size_t m) {
         cells[m] = locations[m].size() - static_cast<std::size_t>(std::ranges::count(
@@ -156,11 +156,11 @@ MergedModels::MergedModels(std::span<const PartModel> models,
             vertices[positions[m] + v] =  // both zeros alike
                 plus(model.vertex(static_cast<std::int32_t>(v)), Position{});
         each_face(m, [&](std::size_t f, const std::array<bool, 2>& wanted) {
-            const auto own = model.face(f);
+            const auto loop = model.face(f);
             face_offsets[face] = static_cast<std::int64_t>(corner);
-            for (std::size_t i = 0; i < own.size(); ++i) {
+            for (std::size_t i = 0; i < loop.size(); ++i) {
                 face_vertices[corner++] = static_cast<std::int32_t>(positions[m]) +
-                                          own[wanted[0] ? i : own.size() - 1 - i];
+                                          loop[wanted[0] ? i : loop.size() - 1 - i];
             }
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::size_t which = wanted[0] ? k : 1 - k;
@@ -212,9 +212,9 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
     complex.cell_kind = merged.cell_kind;
     for (const cutting::HalfCell& cell : cells)
         complex.cell_block.push_back(merged.cell_block[index(cell.cell)]);
-    const std::size_t own = merged.vertices.size();
-    cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(),
-                                    execution);
+    const std::size_t merged_vertices = merged.vertices.size();
+    cutting::ChunkedComplex chunked(complex, merged_vertices + new_positions.size(),
+                                    pieces.chunks(), execution);
     const auto is_left = [](const cutting::CutPiece& piece) {
         return piece.parts[0] >= 0 || piece.parts[1] >= 0;
     };
@@ -236,7 +236,8 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
                        });
     });
     chunked.number([&](cutting::NodeId node) {
-        return index(node) < own ? merged.vertices[index(node)] : new_positions[index(node) - own];
+        return index(node) < merged_vertices ? merged.vertices[index(node)]
+                                             : new_positions[index(node) - merged_vertices];
     });
     return complex;
 }
@@ -258,7 +259,7 @@ struct StructuresHere {
 
 /// Joins the models where only the cells that are near structures take part in cutting; nothing
 /// where rounding went beyond them.
-std::optional<Joined> join(const MergedModels& merged, const StructuresHere& given,
+std::optional<Joined> join(const MergedModels& merged, const StructuresHere& here,
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
     const ComplexView all = merged.view();
@@ -269,12 +270,12 @@ std::optional<Joined> join(const MergedModels& merged, const StructuresHere& giv
     begin_phase(execution.progress, 0.1, 0.15, "finding faces near structures");
     // with what continues a structure nothing else is left undivided
     std::vector<std::int32_t> groups;
-    for (std::size_t t = 0; t < given.surface.structure.size(); ++t)
-        groups.push_back(2 * given.surface.structure[t] + given.surface.is_continuation[t]);
-    SurfaceOverlay overlay(near, given.surface.surface, execution, least_rounding, groups);
+    for (std::size_t t = 0; t < here.surface.structure.size(); ++t)
+        groups.push_back(2 * here.surface.structure[t] + here.surface.is_continuation[t]);
+    SurfaceOverlay overlay(near, here.surface.surface, execution, least_rounding, groups);
     begin_phase(execution.progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, execution.progress);
-    const StructureSides sides(overlay, winding, given.surface, given.structures, given.nearest,
+    const StructureSides sides(overlay, winding, here.surface, here.structures, here.nearest,
                                execution.progress);
     assert(model_of_cell.size() == near.cell_count());
     const WantedParts wanted(overlay, winding, sides, model_of_cell, merged.model_sides, acts);
@@ -346,8 +347,8 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
         if (!overlay.is_active(f))
             include(sides.part_of(overlay.size() + f), std::array{rock.face(f)});
     }
-    return transformed(boxes, [](const auto& own) {
-        return Part{own.first, own.second.low, own.second.high};
+    return transformed(boxes, [](const auto& part) {
+        return Part{part.first, part.second.low, part.second.high};
     });
 }
 
@@ -355,25 +356,25 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
                    std::span<const std::uint8_t> acts, const Execution& execution,
                    std::span<const ContinuedStructure> continued, double largest) {
     Box rock;
-    for (const PartModel& own : models) {
-        cutting::check_model(own.model);
-        rock.include(box_of(own.model));
+    for (const PartModel& part : models) {
+        cutting::check_model(part.model);
+        rock.include(box_of(part.model));
     }
     const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
                                                        : structure_surface(structures, continued);
     const auto nearest = nearest_sides(surface, execution);
     begin_phase(execution.progress, 0, 0.1, "leaving out what is in other parts");
-    const auto locations = transformed(models, [&](const PartModel& own) {
-        return locations_of_cells(own.model, own.sides, nearest, structures, execution);
+    const auto locations = transformed(models, [&](const PartModel& part) {
+        return locations_of_cells(part.model, part.sides, nearest, structures, execution);
     });
     MergedModels merged(models, locations, execution);
     merged.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    const StructuresHere given{surface, structures, nearest};
-    if (auto joined = join(merged, given, acts, least, execution)) return *std::move(joined);
+    const StructuresHere here{surface, structures, nearest};
+    if (auto joined = join(merged, here, acts, least, execution)) return *std::move(joined);
     merged.is_near.assign(merged.is_near.size(), 1);
     merged.share_vertices(execution);
-    return *join(merged, given, acts, least, execution);
+    return *join(merged, here, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
@@ -393,8 +394,8 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
     };
     if (!structures[0].is_body) {
         // what is beside the fault itself is on its side, wherever its continuation goes
-        const cutting::CutterSurface own = checked_surface(structures[0], 0);
-        const cutting::NearestSide beside(own, execution);
+        const cutting::CutterSurface fault = checked_surface(structures[0], 0);
+        const cutting::NearestSide beside(fault, execution);
         constexpr std::size_t kTogether = 16;  // that mostly lie together, as nodes of a mesh do
         parallel_ranges(sides.size(), kTogether << 4, execution,
                         [&](std::size_t i, std::size_t end) {

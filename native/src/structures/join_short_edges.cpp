@@ -90,22 +90,23 @@ private:
             clusters.join(number(edge[0]), number(edge[1]));
         std::vector<std::vector<std::int32_t>> around(nodes.size());  // each cluster: parts
         for (const NodeId node : nodes) {
-            auto& own = around[index(clusters.find(number(node)))];
-            each_part_at(node, [&own](std::int32_t part) { own.push_back(part); });
+            auto& parts_around = around[index(clusters.find(number(node)))];
+            each_part_at(node,
+                         [&parts_around](std::int32_t part) { parts_around.push_back(part); });
             nodes_[node] = {node};
         }
-        for (auto& own : around) {
-            sort_unique(own);
-            for (const std::int32_t part : own)
+        for (auto& parts_around : around) {
+            sort_unique(parts_around);
+            for (const std::int32_t part : parts_around)
                 now_.try_emplace(part);
         }
         std::vector<std::size_t> rounds(parts_.half_cells.size(), 0);  // of a part's edges
         for (const Edge& edge : edges) {
-            const auto& own = around[index(clusters.find(number(edge[0])))];
+            const auto& parts_around = around[index(clusters.find(number(edge[0])))];
             std::size_t round = 0;
-            for (const std::int32_t part : own)
+            for (const std::int32_t part : parts_around)
                 round = std::max(round, rounds[index(part)]);
-            for (const std::int32_t part : own)
+            for (const std::int32_t part : parts_around)
                 rounds[index(part)] = round + 1;
             assert(round <= rounds_.size());  // one after another
             if (rounds_.size() == round) rounds_.emplace_back();
@@ -126,13 +127,14 @@ private:
         std::map<std::int32_t, std::optional<PartShape>> after;
         for (const NodeId node : nodes_of(from))
             each_part_at(node, [&after](std::int32_t part) { after[part]; });
-        if (std::ranges::any_of(after, [&](const auto& own) { return !now(own.first, scratch); }))
+        if (std::ranges::any_of(
+                after, [&](const auto& part_after) { return !now(part_after.first, scratch); }))
             return false;
-        for (auto& [part, found] : after) {
-            found = contracted(part, to, from, scratch);
+        for (auto& [part, shape] : after) {
+            shape = contracted(part, to, from, scratch);
             const PartShape& before = *now(part, scratch);
-            if (!found || found->touches > before.touches ||
-                (!contraction_.is_sound(*found, part) && contraction_.is_sound(before, part)))
+            if (!shape || shape->touches > before.touches ||
+                (!contraction_.is_sound(*shape, part) && contraction_.is_sound(before, part)))
                 return false;
         }
         assert(contraction_.becomes[index(to)] == to && !nodes_.at(from).empty());
@@ -141,8 +143,8 @@ private:
         auto& added = nodes_.at(from);
         nodes.insert(nodes.end(), added.begin(), added.end());
         added.clear();
-        for (auto& [part, found] : after)
-            now_.at(part) = found;
+        for (auto& [part, shape] : after)
+            now_.at(part) = shape;
         return true;
     }
 
@@ -166,8 +168,8 @@ private:
         };
         Position way{0, 0, 0};  // along the wall
         for (const NodeId corner : parts_.pieces.polygons[wall]) {
-            const Position own = minus(parts_.at(corner), old);
-            if (size(own) > size(way)) way = own;
+            const Position along = minus(parts_.at(corner), old);
+            if (size(along) > size(way)) way = along;
         }
         double allowed = 0;
         for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -179,8 +181,8 @@ private:
 
     /// The nodes that became one.
     std::vector<NodeId> nodes_of(NodeId node) const {
-        const auto found = nodes_.find(node);
-        return found == nodes_.end() ? std::vector{node} : found->second;
+        const auto known = nodes_.find(node);
+        return known == nodes_.end() ? std::vector{node} : known->second;
     }
     void become(NodeId from, NodeId to) {
         for (const NodeId node : nodes_of(from))
@@ -199,19 +201,19 @@ private:
             const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
             const auto before = contraction_.shape(pieces, part, scratch);
             become(from, to);
-            const auto found = contraction_.shape(pieces, part, scratch);
+            const auto contracted_shape = contraction_.shape(pieces, part, scratch);
             become(from, from);
-            if (!before || !found) return std::nullopt;
+            if (!before || !contracted_shape) return std::nullopt;
             PartShape known = *now(part, scratch);
-            known.touches += found->touches - before->touches;
-            known.count += found->count - before->count;
-            if (keeps_extent(known.box, found->box))
+            known.touches += contracted_shape->touches - before->touches;
+            known.count += contracted_shape->count - before->count;
+            if (keeps_extent(known.box, contracted_shape->box))
                 return known.count < 4 ? std::nullopt : std::optional(known);
         }
         become(from, to);
-        auto found = contraction_.shape(part, scratch);
+        auto shape = contraction_.shape(part, scratch);
         become(from, from);
-        return found;
+        return shape;
     }
     /// Whether a part surely has an extent in all directions: it is large, or what is near has one.
     bool keeps_extent(const spatial::Box& part, const spatial::Box& near) const {
@@ -223,11 +225,11 @@ private:
     }
     /// The polygons of a part that share nodes with those at one of two nodes.
     std::vector<std::int32_t> pieces_near(std::int32_t part, NodeId to, NodeId from) const {
-        std::set<std::int32_t> found;
+        std::set<std::int32_t> near_pieces;
         std::set<NodeId> around;
         const auto visit = [&](NodeId node, const auto& visit_piece) {
-            for (const NodeId own : nodes_of(node)) {
-                for (const std::int32_t p : pieces_at_[index(own)]) {
+            for (const NodeId one : nodes_of(node)) {
+                for (const std::int32_t p : pieces_at_[index(one)]) {
                     if (std::ranges::count(parts_.pieces[index(p)].parts, part) > 0) visit_piece(p);
                 }
             }
@@ -239,9 +241,9 @@ private:
             });
         }
         for (const NodeId node : around)
-            visit(node, [&found](std::int32_t p) { found.insert(p); });
+            visit(node, [&near_pieces](std::int32_t p) { near_pieces.insert(p); });
         std::vector<std::int32_t> pieces;
-        for (const std::int32_t p : found) {
+        for (const std::int32_t p : near_pieces) {
             pieces.insert(pieces.end(),
                           index(std::ranges::count(parts_.pieces[index(p)].parts, part)), p);
         }
@@ -264,9 +266,9 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
     const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
     const cutting::CutPieces& pieces = parts.pieces;
     constexpr std::size_t kPieces = 1 << 12;  // at a time
-    const auto found = found_in_ranges<Edge>(
+    const auto short_edges = found_in_ranges<Edge>(
         pieces.size(), kPieces, parts.execution,
-        [&](std::size_t begin, std::size_t end, std::vector<Edge>& own) {
+        [&](std::size_t begin, std::size_t end, std::vector<Edge>& in_range) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];
                 for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -275,12 +277,12 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
                     const Position away = minus(parts.at(edge[0]), parts.at(edge[1]));
                     if (std::ranges::all_of(away,
                                             [allowed](double x) { return std::abs(x) <= allowed; }))
-                        own.push_back(edge);
+                        in_range.push_back(edge);
                 }
             }
         },
         0.05);
-    const std::set<Edge> edges(found.begin(), found.end());
+    const std::set<Edge> edges(short_edges.begin(), short_edges.end());
     if (!edges.empty()) ShortEdges(parts, allowed, edges).contract_all();
 }
 

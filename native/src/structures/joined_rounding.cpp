@@ -23,25 +23,15 @@ using cutting::NodeId;
 using cutting::Position;
 using cutting::RoundedParts;
 
-namespace {
-
-bool is_narrow(const RoundedParts& parts, std::int32_t piece, double least_rounding) {
-    std::vector<Position> corners;
-    for (const cutting::NodeId node : parts.pieces.polygons[index(piece)])
-        corners.push_back(parts.at(node));
-    Narrow narrow(least_rounding);
-    narrow.add(corners, false);
-    return static_cast<bool>(narrow);
-}
-
-}  // namespace
-
 void merge_needles(RoundedParts& parts, double least_rounding) {
     const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
     const auto is_needle = [&](std::int32_t part) {
         return parts.has_far_faces[index(part)] == 0 &&
                std::ranges::all_of(parts.pieces_of[index(part)], [&](std::int32_t piece) {
-                   return is_narrow(parts, piece, allowed);
+                   const std::vector corners =
+                       transformed(parts.pieces.polygons[index(piece)],
+                                   [&parts](NodeId node) { return parts.at(node); });
+                   return is_narrow({&corners, 1}, allowed);
                });
     };
     std::vector<std::int32_t> into(parts.half_cells.size());
@@ -95,8 +85,8 @@ void cancel_facing(cutting::RoundedParts& parts) {
         }
         std::array<std::vector<std::int32_t>, 2> left;  // parts that it faces away from, and faces
         for (const auto& [part, times] : facing) {
-            auto& own = left[times > 0 ? 0 : 1];
-            own.insert(own.end(), index(std::abs(times)), part);
+            auto& of_side = left[times > 0 ? 0 : 1];
+            of_side.insert(of_side.end(), index(std::abs(times)), part);
         }
         assert(left[0].size() + left[1].size() <= before);
         if (left[0].size() + left[1].size() == before) continue;
@@ -204,9 +194,9 @@ std::vector<std::size_t> shortest_way_back(std::span<const EdgeOfPiece> uses) {
 
 /// The edges near structures that some part has more than twice, in order.
 std::vector<Edge> touching_edges(const RoundedParts& parts) {
-    auto found = found_in_ranges<Edge>(
+    auto edges = found_in_ranges<Edge>(
         parts.half_cells.size(), 1 << 6, parts.execution,
-        [&](std::size_t begin, std::size_t end, std::vector<Edge>& own) {
+        [&](std::size_t begin, std::size_t end, std::vector<Edge>& in_range) {
             std::vector<std::uint64_t> uses;
             for (std::size_t part = begin; part < end; ++part) {
                 uses.clear();
@@ -221,13 +211,13 @@ std::vector<Edge> touching_edges(const RoundedParts& parts) {
                 }
                 std::ranges::sort(uses);
                 for (std::size_t i = 2; i < uses.size(); ++i) {
-                    if (uses[i] == uses[i - 2]) own.push_back(unpacked_pair(uses[i]));
+                    if (uses[i] == uses[i - 2]) in_range.push_back(unpacked_pair(uses[i]));
                 }
             }
         },
         0.02);
-    sort_unique(found);
-    return found;
+    sort_unique(edges);
+    return edges;
 }
 
 /// A new node between the ends of an edge.
@@ -258,16 +248,16 @@ void set_touching_apart(RoundedParts& parts) {
     for (const auto of_edge : groups_of(uses, &EdgeOfPiece::edge)) {
         if (of_edge.size() <= 2) continue;
         const Edge edge = of_edge[0].edge;
-        std::vector<EdgeOfPiece> own(of_edge.begin(), of_edge.end());
+        std::vector<EdgeOfPiece> left(of_edge.begin(), of_edge.end());
         for (;;) {
-            std::vector<std::size_t> way = shortest_way_back(own);
+            std::vector<std::size_t> way = shortest_way_back(left);
             if (way.empty()) break;
             std::ranges::sort(way, std::greater<>{});  // each is erased without moving the next
             assert(way.size() > 1);                    // the parts on it close around the edge
             const NodeId middle = add_between(parts, edge);
             for (const std::size_t use : way) {
-                nodes_on[own[use].piece].push_back({edge, middle});
-                own.erase(own.begin() + static_cast<std::ptrdiff_t>(use));
+                nodes_on[left[use].piece].push_back({edge, middle});
+                left.erase(left.begin() + static_cast<std::ptrdiff_t>(use));
             }
         }
     }
@@ -277,12 +267,12 @@ void set_touching_apart(RoundedParts& parts) {
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         loop.clear();
         const auto nodes = pieces.polygons[p];
-        const auto found = nodes_on.find(p);
+        const auto of_piece = nodes_on.find(p);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             loop.push_back(nodes[i]);
-            if (found == nodes_on.end()) continue;
+            if (of_piece == nodes_on.end()) continue;
             const Edge edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
-            for (const auto& [at, middle] : found->second) {
+            for (const auto& [at, middle] : of_piece->second) {
                 if (at == edge) loop.push_back(middle);
             }
         }

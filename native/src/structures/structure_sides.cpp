@@ -62,9 +62,9 @@ std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
         const auto triangle = index(overlay_.cutter_triangle(r));
         const std::int32_t s = surface_.structure[triangle];
         const bool is_own = surface_.is_continuation[triangle] == 0;
-        auto& own = named[index(winding_.coincident(r))];
-        auto known = std::ranges::find(own, s, &RegionOf::structure);
-        if (known == own.end()) known = own.insert(own.end(), {s, 0, false});
+        auto& of_region = named[index(winding_.coincident(r))];
+        auto known = std::ranges::find(of_region, s, &RegionOf::structure);
+        if (known == of_region.end()) known = of_region.insert(of_region.end(), {s, 0, false});
         if (structures_[index(s)].is_body) {
             known->change ^= 1;
         } else {
@@ -72,9 +72,9 @@ std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
         }
         known->is_own = known->is_own || is_own;
     }
-    for (auto& own : named) {
-        std::erase_if(own, [](const RegionOf& of) { return of.change == 0; });
-        std::ranges::sort(own, {}, &RegionOf::structure);
+    for (auto& of_region : named) {
+        std::erase_if(of_region, [](const RegionOf& of) { return of.change == 0; });
+        std::ranges::sort(of_region, {}, &RegionOf::structure);
     }
     return named;
 }
@@ -100,16 +100,16 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
 /// Of regions: those of the surface that reach away from the rock. There structures may end without
 /// crossing one another.
 std::vector<std::uint8_t> StructureSides::regions_beyond() const {
-    std::vector<std::uint8_t> found(overlay_.size(), 0);
-    for (std::size_t r = 0; r < found.size(); ++r) {
+    std::vector<std::uint8_t> are_beyond(overlay_.size(), 0);
+    for (std::size_t r = 0; r < are_beyond.size(); ++r) {
         if (!overlay_.of_cutter(r) || !winding_.counts(r) || winding_.touches_model(r)) continue;
-        found[r] = std::ranges::any_of(overlay_.loops(r), [this](const auto& loop) {
+        are_beyond[r] = std::ranges::any_of(overlay_.loops(r), [this](const auto& loop) {
             return std::ranges::any_of(loop, [this](NodeId node) {
                 return !overlay_.model_box().contains(overlay_.position(node));
             });
         });
     }
-    return found;
+    return are_beyond;
 }
 
 /// Structures may end unnoticed outside of the rock: there the outside gets no label at such edges.

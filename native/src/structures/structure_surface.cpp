@@ -49,11 +49,11 @@ std::optional<PlaneFrame> mean_plane(const cutting::CutterSurface& surface) {
     Position normal{0, 0, 0}, total{0, 0, 0};
     double whole = 0;
     for (const auto& t : surface.triangles) {
-        const Position own = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
-        const double area = length(own);
+        const Position face_normal = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
+        const double area = length(face_normal);
         whole += area;
         for (std::size_t k = 0; k < 3; ++k) {
-            normal[k] += own[k];
+            normal[k] += face_normal[k];
             for (const NodeId v : t)
                 total[k] += area * (at(v)[k] - first[k]);
         }
@@ -112,11 +112,11 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
     // an edge through another point is in two parts, and gapes there
     if (passed != rises.size()) return std::nullopt;
     assert(std::ranges::find(depth, -1) == depth.end());
-    std::vector<std::array<std::int32_t, 3>> found;
+    std::vector<std::array<std::int32_t, 3>> outer;
     for (std::size_t t = 0; t < depth.size(); ++t) {
-        if (depth[t] == 0) found.push_back(mesh.triangles[t]);
+        if (depth[t] == 0) outer.push_back(mesh.triangles[t]);
     }
-    return found;
+    return outer;
 }
 
 }  // namespace
@@ -140,13 +140,13 @@ std::optional<std::vector<std::array<Position, 3>>> continued_in_mean_plane(
         }
     };
     for (const auto& edge : border) {
-        auto& own = edges.emplace_back();
+        auto& numbered = edges.emplace_back();
         for (std::size_t i = 0; i < 2; ++i) {
             const auto [known, is_new] =
                 number.try_emplace(edge[i], static_cast<std::int32_t>(points.size()));
             const Position& position = fault.vertices[index(edge[i])];
             if (is_new) add(plane->seen(position), position);
-            own[i] = known->second;
+            numbered[i] = known->second;
         }
     }
     if (edges.empty()) return std::nullopt;
@@ -241,21 +241,21 @@ private:
     Position at(NodeId v) const { return fault_.vertices[index(v)]; }
 
     void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
-        const auto are_beyond = [](const std::vector<std::uint8_t>& own,
+        const auto are_beyond = [](const std::vector<std::uint8_t>& is_beyond,
                                    const CutterBorderEdge& edge) {
-            return own[index(edge.from)] != 0 && own[index(edge.to)] != 0;
+            return is_beyond[index(edge.from)] != 0 && is_beyond[index(edge.to)] != 0;
         };
         std::vector<std::vector<std::int32_t>> leaving(fault_.vertices.size());
         for (const CutterBorderEdge& edge : border_) {
             const Position away = cutting::away_from(fault_, edge);
             const bool is_steep = std::abs(away[2]) >= 0.5;
-            const bool in_plane =
-                std::ranges::any_of(beyond, [&](const auto& own) { return are_beyond(own, edge); });
+            const bool in_plane = std::ranges::any_of(
+                beyond, [&](const auto& is_beyond) { return are_beyond(is_beyond, edge); });
             direction_.push_back(is_steep && !in_plane ? Position{0, 0, away[2] > 0 ? 1.0 : -1.0}
                                                        : away);
             leaving[index(edge.from)].push_back(static_cast<std::int32_t>(direction_.size()) - 1);
         }
-        const std::vector<Position> own = direction_;
+        const std::vector<Position> directions = direction_;
         DisjointSets chains(border_.size());
         const auto each_pair = [&](const auto& visit) {
             for (std::int32_t i = 0; index(i) < border_.size(); ++i) {
@@ -270,7 +270,7 @@ private:
                     chains.join(i, next);
             });
         }
-        take_means(own, chains);
+        take_means(directions, chains);
         for (bool any = true; any;) {
             any = false;
             each_pair([&](std::int32_t i, std::int32_t next) {
@@ -278,7 +278,7 @@ private:
                 chains.join(i, next);
                 any = true;
             });
-            if (any) take_means(own, chains);
+            if (any) take_means(directions, chains);
         }
     }
 
@@ -296,7 +296,7 @@ private:
     }
 
     /// Gives the edges of each chain the mean of their own directions, unless they go round.
-    void take_means(const std::vector<Position>& own, DisjointSets& chains) {
+    void take_means(const std::vector<Position>& directions, DisjointSets& chains) {
         constexpr double kRound = 0.25;  // of all directions: their sum, at least
         struct DirectionSum {
             Position way{0, 0, 0};
@@ -311,7 +311,7 @@ private:
             const Position along = minus(at(border_[i].to), at(border_[i].from));
             const double size = length(along);
             DirectionSum& all = sum_of(i);
-            all.way = moved(all.way, size, own[i]);
+            all.way = moved(all.way, size, directions[i]);
             all.whole += size;
             ++all.edges;
         }
@@ -359,17 +359,17 @@ bool passes(const Box& box, std::span<const Position> corners) {
         const auto inward = [&](const Position& p) {
             return plane % 2 == 0 ? p[k] - box.low[k] : box.high[k] - p[k];
         };
-        std::vector<Position> kept;
+        std::vector<Position> inside;
         for (std::size_t i = 0; i < left.size(); ++i) {
             const Position &a = left[i], &b = left[(i + 1) % left.size()];
             const double at_a = inward(a), at_b = inward(b);
-            if (at_a >= 0) kept.push_back(a);
+            if (at_a >= 0) inside.push_back(a);
             if ((at_a < 0) != (at_b < 0)) {
                 const double share = at_a / (at_a - at_b);
-                kept.push_back(moved(a, share, minus(b, a)));
+                inside.push_back(moved(a, share, minus(b, a)));
             }
         }
-        left = std::move(kept);
+        left = std::move(inside);
     }
     return !left.empty();
 }
@@ -392,20 +392,20 @@ bool divides(const CutterSurface& fault, const Box& rock) {
 /// For each fault that a fault ends at, of the vertices of the latter: whether they are beyond it.
 /// There its continuation must go on in its plane: straight up or down it might come back.
 std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
-                                                     std::span<const CutterSurface> given,
-                                                     const CutterSurface& own) {
+                                                     std::span<const CutterSurface> faults,
+                                                     const CutterSurface& fault) {
     std::vector<std::vector<std::uint8_t>> all;
     for (const std::int32_t other : structure.ends_at) {
-        std::vector<std::uint8_t>& found = all.emplace_back(own.vertices.size(), 0);
-        const cutting::NearestSide nearest(given[index(other)]);
+        std::vector<std::uint8_t>& is_beyond = all.emplace_back(fault.vertices.size(), 0);
+        const cutting::NearestSide nearest(faults[index(other)]);
         double above = 0;
-        for (std::size_t t = 0; t < own.triangles.size(); ++t) {
-            const auto corners = own.corners(t);
+        for (std::size_t t = 0; t < fault.triangles.size(); ++t) {
+            const auto corners = fault.corners(t);
             const Position middle = middle_of(corners[0], corners[1], corners[2]);
             above += nearest(middle) * length(polygon_normal(corners));
         }
-        for (std::size_t v = 0; v < found.size(); ++v) {
-            if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
+        for (std::size_t v = 0; v < is_beyond.size(); ++v) {
+            if (nearest(fault.vertices[v]) * above < 0) is_beyond[v] = 1;
         }
     }
     return all;
@@ -413,22 +413,22 @@ std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
 
 /// What continues a fault beyond its border.
 std::vector<std::array<Position, 3>> continuation(std::span<const Structure> structures,
-                                                  std::span<const CutterSurface> given,
+                                                  std::span<const CutterSurface> faults,
                                                   std::int32_t number, double size) {
     const Structure& structure = structures[index(number)];
-    const CutterSurface& own = given[index(number)];
+    const CutterSurface& fault = faults[index(number)];
     if (!structure.dies_out)
-        return Continuation(own, beyond_others(structure, given, own), size).triangles();
+        return Continuation(fault, beyond_others(structure, faults, fault), size).triangles();
     std::vector<std::array<NodeId, 2>> border;
-    for (const CutterBorderEdge& edge : border_of(own))
+    for (const CutterBorderEdge& edge : border_of(fault))
         border.push_back({edge.from, edge.to});
-    auto found = continued_in_mean_plane(own, border, reaches(size));
-    if (!found)
+    auto triangles = continued_in_mean_plane(fault, border, reaches(size));
+    if (!triangles)
         throw InputError("folded",
                          "what is beyond its tip is not known: seen at right angles to the fault "
                          "its border crosses itself",
-                         number, {}, own.vertices[index(border[0][0])]);
-    return *std::move(found);
+                         number, {}, fault.vertices[index(border[0][0])]);
+    return *std::move(triangles);
 }
 
 /// Puts triangles of structures together, one structure after another.
@@ -452,13 +452,13 @@ public:
             if ((rock && !spatial::bounding_box(corners).meets(*rock)) ||
                 exact::in_one_line(corners[0], corners[1], corners[2]))
                 continue;
-            std::array<NodeId, 3> own{};
+            std::array<NodeId, 3> numbers{};
             for (std::size_t i = 0; i < 3; ++i) {
                 NodeId& known = nodes[index(body.triangles[t][i])];
                 if (known < 0) known = vertices_.add(corners[i]);
-                own[i] = known;
+                numbers[i] = known;
             }
-            put(own, false);
+            put(numbers, false);
         }
         all_.single.back() = body;
     }
@@ -487,27 +487,27 @@ struct SurfaceExtent {
 /// @param count  of structures, those that are taken
 StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
                             const Box& rock, const SurfaceExtent& extent_of) {
-    std::vector<CutterSurface> given;
+    std::vector<CutterSurface> surfaces;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
-        given.push_back(checked_surface(structures[index(s)], s));
-        whole.include(spatial::bounding_box(given.back().vertices));
+        surfaces.push_back(checked_surface(structures[index(s)], s));
+        whole.include(spatial::bounding_box(surfaces.back().vertices));
     }
     const double size = length(minus(whole.high, whole.low));
     Box near = rock;
     near.widen(kBesideRock * length(minus(rock.high, rock.low)));
     SurfaceOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
-        const CutterSurface& own = given[index(s)];
-        all.begin(own.is_closed);
-        if (own.is_closed) {
-            all.add_body(own, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
+        const CutterSurface& surface = surfaces[index(s)];
+        all.begin(surface.is_closed);
+        if (surface.is_closed) {
+            all.add_body(surface, extent_of.has_all_of_bodies ? std::nullopt : std::optional(near));
             continue;
         }
-        for (std::size_t t = 0; t < own.triangles.size(); ++t)
-            all.add(own.corners(t), false);
-        if (extent_of.continues_all || !divides(own, rock)) {
-            for (const auto& t : continuation(structures, given, s, size))
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+            all.add(surface.corners(t), false);
+        if (extent_of.continues_all || !divides(surface, rock)) {
+            for (const auto& t : continuation(structures, surfaces, s, size))
                 all.add(t, true);
         }
     }
@@ -557,17 +557,17 @@ std::vector<ContinuedStructure> continued_structures(
     std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
     const StructureSurface surface =
         surface_of(structures, structures.size(), spatial::bounding_box(corners), {});
-    std::vector<ContinuedStructure> found(structures.size());
+    std::vector<ContinuedStructure> continued(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
-            found[s].kept.push_back(kept_side(surface, static_cast<std::int32_t>(s), other));
+            continued[s].kept.push_back(kept_side(surface, static_cast<std::int32_t>(s), other));
     }
     for (std::size_t t = 0; t < surface.structure.size(); ++t) {
-        ContinuedStructure& own = found[index(surface.structure[t])];
-        own.triangles.push_back(surface.surface.corners(t));
-        own.is_continuation.push_back(surface.is_continuation[t]);
+        ContinuedStructure& structure = continued[index(surface.structure[t])];
+        structure.triangles.push_back(surface.surface.corners(t));
+        structure.is_continuation.push_back(surface.is_continuation[t]);
     }
-    return found;
+    return continued;
 }
 
 StructureSurface first_surface(std::span<const Structure> structures, const Box& rock) {

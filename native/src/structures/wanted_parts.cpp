@@ -12,6 +12,20 @@ using cutting::kOn;
 using cutting::NodeId;
 using cutting::Position;
 
+bool is_narrow(std::span<const std::vector<Position>> loops, double rounding) {
+    // traces of a surface on a fault are apart by rounding over the sine of the angle between them
+    constexpr double kTimes = 64;
+    double border = 0, area = 0;
+    for (const auto& corners : loops) {
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            border += length(minus(corners[(i + 1) % corners.size()], corners[i]));
+        const double size = length(polygon_normal(corners));
+        area += &corners == &loops.front() ? size : -size;
+        rounding = std::max(rounding, cutting::rounding_of(corners));
+    }
+    return area <= kTimes * rounding * border;
+}
+
 WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                          const StructureSides& sides, std::span<const std::int32_t> model_of_cell,
                          std::span<const Sides> model_sides, std::span<const std::uint8_t> acts)
@@ -23,24 +37,24 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
       acts_(acts) {
     assert(model_of_cell.size() == overlay.model().cell_count());
     for (std::size_t part = 0; part < sides.parts(); ++part) {
-        const Sides& own = sides.sides(part);
-        const auto allows = [&own](const Sides& wanted) {
-            return std::ranges::equal(wanted, own, [](std::int8_t asked, std::int8_t is) {
+        const Sides& of_part = sides.sides(part);
+        const auto allows = [&of_part](const Sides& wanted) {
+            return std::ranges::equal(wanted, of_part, [](std::int8_t asked, std::int8_t is) {
                 return asked == 0 || asked == is;
             });
         };
-        const auto found = std::ranges::find_if(model_sides, allows);
-        model_of_part_.push_back(found == model_sides.end()
+        const auto model = std::ranges::find_if(model_sides, allows);
+        model_of_part_.push_back(model == model_sides.end()
                                      ? -1
-                                     : static_cast<std::int32_t>(found - model_sides.begin()));
+                                     : static_cast<std::int32_t>(model - model_sides.begin()));
     }
     faces_on_.resize(overlay.size());
     is_same_.assign(overlay.size(), 0);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r) || winding.coincident(r) < 0) continue;
         auto& on = faces_on_[index(winding.coincident(r))];
-        const auto own = overlay.faces_of(r);
-        on.insert(on.end(), own.begin(), own.end());
+        const auto faces = overlay.faces_of(r);
+        on.insert(on.end(), faces.begin(), faces.end());
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r))
@@ -94,13 +108,13 @@ std::int32_t WantedParts::last_active_structure(std::size_t region, std::int32_t
     const bool is_cut_off = differs && !(cell_ends_at(low, region) && cell_ends_at(high, region));
     const bool may_end_here =
         is_cut_off && (low < 0 || high < 0 || is_in_body(region, 0) || is_in_body(region, 1));
-    std::int32_t found = -1, last = -1;
+    std::int32_t acting = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
         if (!of.is_own || !divides_at(of.structure, region)) continue;
-        if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
+        if (does_act(of.structure, low) || does_act(of.structure, high)) acting = of.structure;
         if (may_end_here) last = of.structure;
     }
-    return found >= 0 ? found : last;
+    return acting >= 0 ? acting : last;
 }
 
 /// Whether what is at one side of a region lies in one of the bodies.
@@ -124,10 +138,10 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
     const ComplexView& model = overlay_.model();
     if (structure >= 0) return -2 - (model.surfaces + structure);
     for (const std::int32_t face : faces_on_[region]) {
-        const std::int32_t own = model.face_surface[index(face)];
+        const std::int32_t surface = model.face_surface[index(face)];
         for (std::size_t k = 0; k < 2; ++k) {
             const std::int32_t cell = model.cell(index(face), k);
-            if (cell >= 0 && (cell == low || cell == high) && own != kBase) return -2 - own;
+            if (cell >= 0 && (cell == low || cell == high) && surface != kBase) return -2 - surface;
         }
     }
     if (model.block(low) == model.block(high)) return -2 - kWall;
@@ -152,9 +166,9 @@ bool WantedParts::divides_at(std::int32_t structure, std::size_t region) const {
 /// The first structure that does, -1 none.
 std::int32_t WantedParts::first_dividing(std::size_t region) const {
     const auto& structures = sides_.structures_at(region);
-    const auto found = std::ranges::find_if(
+    const auto first = std::ranges::find_if(
         structures, [&](const RegionOf& of) { return divides_at(of.structure, region); });
-    return found == structures.end() ? -1 : found->structure;
+    return first == structures.end() ? -1 : first->structure;
 }
 
 /// Whether a region extends farther in height than in plan.
@@ -189,14 +203,10 @@ bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t l
 
 /// Whether a region of the surface is narrower than rounding may have made it.
 bool WantedParts::is_sliver(std::size_t region) const {
-    Narrow narrow;
-    const auto loops = overlay_.loops(region);
-    for (std::size_t k = 0; k < loops.size(); ++k) {
-        const auto corners =
-            transformed(loops[k], [this](NodeId node) { return overlay_.position(node); });
-        narrow.add(corners, k > 0);
-    }
-    return static_cast<bool>(narrow);
+    std::vector<std::vector<Position>> loops;
+    for (const auto& loop : overlay_.loops(region))
+        loops.push_back(transformed(loop, [this](NodeId node) { return overlay_.position(node); }));
+    return is_narrow(loops);
 }
 
 /// Refuses a fault that is continued through rock that it displaces, unless it says that it dies

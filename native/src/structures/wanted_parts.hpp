@@ -9,24 +9,9 @@
 
 namespace realmodel::structures {
 
-/// Whether polygons, of which some may be holes, are narrower than rounding may have made them.
-class Narrow {
-public:
-    /// @param least_rounding  how coarse rounding is at least
-    explicit Narrow(double least_rounding = 0) : rounding_(least_rounding) {}
-    void add(std::span<const cutting::Position> corners, bool is_hole) {
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            border_ += length(minus(corners[(i + 1) % corners.size()], corners[i]));
-        const double size = length(polygon_normal(corners));
-        area_ += is_hole ? -size : size;
-        rounding_ = std::max(rounding_, cutting::rounding_of(corners));
-    }
-    explicit operator bool() const { return area_ <= kTimes * rounding_ * border_; }
-
-private:
-    static constexpr double kTimes = 64;  ///< rounding
-    double border_ = 0, area_ = 0, rounding_;
-};
+/// Whether a polygon, its outline and then its holes, is narrower than rounding may have made it.
+/// @param rounding  how coarse that is at least
+bool is_narrow(std::span<const std::vector<cutting::Position>> loops, double rounding = 0);
 
 /// Of the cells of several models those parts that lie in their model's part of space.
 class WantedParts : public cutting::PartSides {
