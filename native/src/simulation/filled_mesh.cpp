@@ -35,12 +35,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "exact/triangle_distances.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
 #include "simulation/tetrahedra_repair.hpp"
@@ -61,6 +63,7 @@ constexpr double kSliver = 12;         ///< degrees: flatter tetrahedra are to g
 constexpr std::uint64_t kQuestionsOfAPoint = 200;  ///< about the most asked of the model
 constexpr std::uint64_t kStepsOfAPoint = 20;       ///< the most that may fail before one succeeds
 constexpr int kTimes = 8;                          ///< the most that one thing is asked in a row
+constexpr int kMostRays = 16;                      ///< that ask for one region
 constexpr double kMostPoints = 2e7;
 constexpr int kFirstSurface = 8;  ///< CGAL numbers surfaces from 1, we from kCutFace
 
@@ -151,26 +154,17 @@ public:
         const CGAL::Bbox_3 box = tree_.bbox();
         for (int axis = 0; axis < 3; ++axis)
             if (!(box.min(axis) <= p[axis] && p[axis] <= box.max(axis))) return 0;
-        // nearly upward, so that it passes between edges of walls and of regular grids
-        const double rise = 1.01 * (box.zmax() - p.z()) + 1e-6 * (box.zmax() - box.zmin());
-        const Point above(p.x() + 0.0123456 * rise, p.y() + 0.00789123 * rise, p.z() + rise);
-        hits_.clear();
-        tree_.all_intersected_primitives(Segment_3(p, above), std::back_inserter(hits_));
-        double nearest = 2;
-        int found = 0;
-        for (const std::size_t row : hits_) {
-            const InterfaceTriangle& face = faces_[row];
-            const double share = share_at(face, p, above);
-            if (share >= nearest) continue;
-            nearest = share;
-            const Kernel::Triangle_3& t = face.triangle;
-            const CGAL::Sign side = CGAL::orientation(t[0], t[1], t[2], p);
-            const bool is_in_front =
-                side != CGAL::ZERO ? side == CGAL::POSITIVE
-                                   : CGAL::orientation(t[0], t[1], t[2], above) == CGAL::NEGATIVE;
-            found = is_in_front ? face.in_front : face.behind;
+        // A plane through the point has two of these rays at most, so few pass an edge. Where none
+        // tells, faces lie on one another.
+        double lean = 1;
+        for (int rays = 1;; ++rays, lean /= 2) {
+            // nearly upward, so that it passes between edges of walls and of regular grids
+            const double rise = 1.01 * (box.zmax() - p.z()) + 1e-6 * (box.zmax() - box.zmin());
+            const RayAnswer answer =
+                ask_ray(p, {p.x() + 0.0123456 * lean * rise,
+                            p.y() + 0.00789123 * lean * lean * rise, p.z() + rise});
+            if (answer.is_certain || rays == kMostRays) return answer.region;
         }
-        return found;
     }
 
     std::int32_t nearest_surface(const Point& p) const {
@@ -221,6 +215,54 @@ private:
         if (progress_ != nullptr) progress_->check();
         if (asked_ > most_asked_) refuse_division();
     }
+    struct RayAnswer {
+        int region = 0;
+        bool is_certain = true;
+    };
+    /// The region at the beginning of a segment that leaves the model: what is before the nearest
+    /// face that it meets. Not certain where several are nearest and do not agree, of which the
+    /// first counts, or where one has the segment in its plane. A point on faces is before the
+    /// first of them.
+    RayAnswer ask_ray(const Point& from, const Point& to) const {
+        hits_.clear();
+        tree_.all_intersected_primitives(Segment_3(from, to), std::back_inserter(hits_));
+        std::ranges::sort(hits_);
+        RayAnswer answer;
+        std::optional<std::size_t> nearest;
+        bool is_along_face = false;
+        for (const std::size_t row : hits_) {
+            const InterfaceTriangle& face = faces_[row];
+            const Kernel::Triangle_3& t = face.triangle;
+            CGAL::Sign side = CGAL::orientation(t[0], t[1], t[2], from);
+            const bool is_at_point = side == CGAL::ZERO;
+            if (is_at_point) side = -CGAL::orientation(t[0], t[1], t[2], to);
+            if (side == CGAL::ZERO) {
+                is_along_face = true;
+                continue;
+            }
+            const int before = side == CGAL::POSITIVE ? face.in_front : face.behind;
+            if (is_at_point) return {before, !is_along_face};
+            const int order = nearest ? compare(from, to, row, *nearest) : -1;
+            if (order < 0) {
+                nearest = row;
+                answer = {before, true};
+            } else if (order == 0 && answer.region != before) {
+                answer.is_certain = false;
+            }
+        }
+        if (is_along_face) answer.is_certain = false;
+        return answer;
+    }
+    /// Which of two faces a segment meets first: -1, 1; 0 both in one point.
+    int compare(const Point& from, const Point& to, std::size_t row, std::size_t other) const {
+        return exact::compare_crossings(position_of(from), position_of(to), corners_of(row),
+                                        corners_of(other));
+    }
+    static std::array<double, 3> position_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
+    std::array<std::array<double, 3>, 3> corners_of(std::size_t row) const {
+        const Kernel::Triangle_3& t = faces_[row].triangle;
+        return {position_of(t[0]), position_of(t[1]), position_of(t[2])};
+    }
     int patch(std::size_t row) const { return faces_[row].surface + kFirstSurface; }
     bool is_asked_again(const Point& from, const Point& to) const {
         if (from == last_from_ && to == last_to_) return ++times_ > kTimes;
@@ -239,14 +281,6 @@ private:
         return std::abs(a) <= std::abs(b) ? from + a / (a - b) * (to - from)
                                           : to + b / (b - a) * (from - to);
     }
-    /// How far the plane of a face is on the way between two points.
-    static double share_at(const InterfaceTriangle& face, const Point& from, const Point& to) {
-        const Kernel::Triangle_3& t = face.triangle;
-        const double a = CGAL::volume(t[0], t[1], t[2], from);
-        const double b = CGAL::volume(t[0], t[1], t[2], to);
-        return a == b ? 0.5 : std::clamp(a / (a - b), -1.0, 2.0);
-    }
-
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, FaceOfTree>>;
     std::vector<InterfaceTriangle> faces_;
     Tree tree_;

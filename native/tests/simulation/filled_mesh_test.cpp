@@ -127,6 +127,51 @@ TEST(FilledMeshTest, AnInclinedFaultDividesABox) {
     EXPECT_GT(on_fault, 30u);
 }
 
+/// Three layers in a box; the one in the middle is as thin as doubles allow.
+TEST(FilledMeshTest, ALayerThinnerThanRoundingOfSharesOfARayIsInItsPlaceAlone) {
+    std::vector<double> vertices;
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::int32_t> corners, cells, surface, block{0, 1, 2};
+    const auto add = [&](const std::array<std::int32_t, 4>& loop, std::int32_t first,
+                         std::int32_t second, std::int32_t on) {
+        corners.insert(corners.end(), loop.begin(), loop.end());
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        cells.insert(cells.end(), {first, second});
+        surface.push_back(on);
+    };
+    for (std::int32_t level = 0; level < 4; ++level) {
+        for (const auto& [x, y] : {std::array{0.1, 0.2}, {3.1, 0.2}, {3.1, 2.2}, {0.1, 2.2}}) {
+            const double middle = 1 + 0.3 * x + 0.1 * y;
+            const std::array heights{0.0, middle, std::nextafter(middle, 9), 3.0};
+            vertices.insert(vertices.end(), {x, y, heights[static_cast<std::size_t>(level)]});
+        }
+    }
+    for (const std::int32_t level : {3, 2, 1}) {
+        const std::int32_t v = 4 * level;
+        add({v, v + 1, v + 2, v + 3}, level - 1, level < 3 ? level : -1, level);
+    }
+    add({0, 3, 2, 1}, 0, -1, 0);
+    for (std::int32_t cell = 0; cell < 3; ++cell) {
+        for (std::int32_t i = 0; i < 4; ++i) {
+            const std::int32_t a = 4 * cell + i, b = 4 * cell + (i + 1) % 4;
+            add({a, b, b + 4, a + 4}, cell, -1, -1);
+        }
+    }
+    const ComplexView view{.vertices = vertices,
+                           .face_offsets = offsets,
+                           .face_vertices = corners,
+                           .face_cells = cells,
+                           .face_surface = surface,
+                           .cell_block = block,
+                           .blocks = 3,
+                           .surfaces = 4};
+    const FilledMesh mesh = filled_mesh(view, std::array{0, 1, 2}, std::vector<std::uint8_t>(4),
+                                        0.4, 0.1, {}, {1, nullptr});
+    EXPECT_NEAR(volume(mesh, 0), 9.6, 0.3);
+    EXPECT_EQ(volume(mesh, 1), 0);
+    EXPECT_NEAR(volume(mesh, 2), 8.4, 0.3);
+}
+
 TEST(FilledMeshTest, AKeptSurfaceWithinOneRegionHasFaces) {
     const FilledMesh mesh = DividedBox().filled(2, 0.3, {0, 0});
     expect_valid(mesh);
