@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <set>
 
 #include "arrangement/polygons.hpp"
 #include "base/algorithms.hpp"
@@ -102,30 +101,24 @@ struct FaceSplitter::TrianglePart {
 /// numbers, for no one else knows them.
 class FaceSplitter::Cuts {
 public:
-    Cuts(std::span<const NodeId> face, std::span<const std::array<LoopCorner, 3>> triangles,
-         const EdgeIntersections& of_edges)
+    Cuts(std::span<const std::array<LoopCorner, 3>> triangles, const EdgeIntersections& of_edges)
         : of_edges_(of_edges) {
-        for (std::size_t i = 0; i < face.size(); ++i)
-            border_.push_back(unordered(face[i], face[(i + 1) % face.size()]));
         for (const auto& t : triangles) {
             for (std::size_t i = 0; i < 3; ++i)
                 edges_.push_back(unordered(t[i].node, t[(i + 1) % 3].node));
         }
-        std::sort(border_.begin(), border_.end());
         std::sort(edges_.begin(), edges_.end());
     }
     NodeId node(NodeId a, NodeId b) const {
-        if (std::binary_search(border_.begin(), border_.end(), unordered(a, b)))
-            return of_edges_.node(a, b);
-        const auto at = std::lower_bound(edges_.begin(), edges_.end(), unordered(a, b));
-        if (at == edges_.end() || *at != unordered(a, b))
-            throw InternalError("an edge within a face is one of its triangles");
-        return static_cast<NodeId>(-1 - (at - edges_.begin()));
+        const auto [begin, end] = std::equal_range(edges_.begin(), edges_.end(), unordered(a, b));
+        const bool is_diagonal = end - begin > 1;
+        return is_diagonal ? static_cast<NodeId>(-1 - (begin - edges_.begin()))
+                           : of_edges_.node(a, b);
     }
 
 private:
     const EdgeIntersections& of_edges_;
-    std::vector<std::array<NodeId, 2>> border_, edges_;
+    std::vector<std::array<NodeId, 2>> edges_;  ///< of all triangles: diagonals are there twice
 };
 
 void FaceSplitter::split(std::span<const NodeId> face, SplitFace& parts) {
@@ -190,7 +183,7 @@ void FaceSplitter::split_by_triangles(std::span<const NodeId> face, SplitFace& p
     const auto [loop, rounding] = loop_of(model_, face);
     std::vector<std::array<LoopCorner, 3>> triangles;
     triangulate(std::span(&loop, 1), rounding, triangles);
-    const Cuts cuts(face, triangles, cuts_);
+    const Cuts cuts(triangles, cuts_);
     std::vector<TrianglePart> pieces;
     for (const auto& t : triangles)
         split_triangle(t, cuts, pieces);
@@ -269,25 +262,23 @@ void CellCutter::cut(std::span<const PieceRef> refs, CellCut& result) {
 
 void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only) {
     uses_.clear();
+    piece_side_.clear();
     for (std::size_t i = 0; i < refs.size(); ++i) {
-        const auto piece = index(refs[i].piece);
-        const auto nodes = pieces_.polygons[piece];
-        const std::int8_t side = pieces_[piece].sides[index(refs[i].which)];
-        const bool on_cutter = pieces_[piece].is_on_cutter != 0;
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-            const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
-            if (in_plane_only && !(in_plane(a) && in_plane(b))) continue;
-            const bool ahead = (a < b) == (refs[i].which == 0);
-            uses_.push_back({unordered(a, b), static_cast<std::int32_t>(i),
-                             static_cast<std::int8_t>(ahead ? 1 : -1), side, on_cutter});
-        }
+        piece_side_.push_back(pieces_[index(refs[i].piece)].sides[index(refs[i].which)]);
+        each_edge(std::array{pieces_.polygons[index(refs[i].piece)]}, static_cast<std::int32_t>(i),
+                  [&](EdgeUse use) {
+                      if (in_plane_only && !in_plane(use.edge)) return;
+                      if (refs[i].which == 1)
+                          use.direction = static_cast<std::int8_t>(-use.direction);
+                      uses_.push_back(use);
+                  });
     }
     std::sort(uses_.begin(), uses_.end());
 }
 
 /// A node of a piece that is not in the plane.
-NodeId CellCutter::far_node(const PieceEdgeUse& use, std::span<const PieceRef> refs) const {
-    for (const NodeId node : pieces_.polygons[index(refs[index(use.local)].piece)]) {
+NodeId CellCutter::far_node(const EdgeUse& use, std::span<const PieceRef> refs) const {
+    for (const NodeId node : pieces_.polygons[index(refs[index(use.item)].piece)]) {
         if (!in_plane(node)) return node;
     }
     return use.edge[0];
@@ -296,12 +287,12 @@ NodeId CellCutter::far_node(const PieceEdgeUse& use, std::span<const PieceRef> r
 /// Of an edge in the plane whose faces all rise from it, or all fall: whether the cell lies on both
 /// sides of it. It does where the lowest of the rising faces, going round from the right side of
 /// the edge, is one that the cell ends at.
-bool CellCutter::caps_on_both_sides(std::span<const PieceEdgeUse> uses,
+bool CellCutter::caps_on_both_sides(std::span<const EdgeUse> uses,
                                     std::span<const PieceRef> refs) const {
     for (const std::int8_t side : {kAbove, kBelow}) {
-        const PieceEdgeUse* flattest = nullptr;
-        for (const PieceEdgeUse& use : uses) {
-            if (use.side != side) continue;
+        const EdgeUse* flattest = nullptr;
+        for (const EdgeUse& use : uses) {
+            if (side_of(use.item) != side) continue;
             if (flattest == nullptr) {
                 flattest = &use;
                 continue;
@@ -320,19 +311,19 @@ bool CellCutter::caps_on_both_sides(std::span<const PieceEdgeUse> uses,
 void CellCutter::collect_open_edges(std::span<const PieceRef> refs) {
     open_.clear();
     slits_.clear();
-    for (const auto of_edge : groups_of(uses_, &PieceEdgeUse::key)) {
+    for (const auto of_edge : groups_of(uses_, &EdgeUse::key)) {
         const auto edge = of_edge[0].edge;
-        if (!in_plane(edge[0]) || !in_plane(edge[1])) continue;
+        if (!in_plane(edge)) continue;
         int net = 0, above = 0, below = 0;
         bool on_cutter = false;
-        for (const PieceEdgeUse& use : of_edge) {
-            if (use.side == kAbove) net += use.direction;
-            (use.side == kAbove ? above : below) += 1;
-            on_cutter = on_cutter || use.on_cutter;
+        for (const EdgeUse& use : of_edge) {
+            const bool is_above = side_of(use.item) == kAbove;
+            if (is_above) net += use.direction;
+            (is_above ? above : below) += 1;
+            on_cutter = on_cutter || pieces_[index(refs[index(use.item)].piece)].is_on_cutter;
         }
-        for (int i = 0; i < std::abs(net); ++i) {
+        for (int i = 0; i < std::abs(net); ++i)
             open_.push_back(net > 0 ? CapEdge{edge[0], edge[1]} : CapEdge{edge[1], edge[0]});
-        }
         const bool may_pass = net == 0 && !on_cutter && (above > 1 || below > 1);
         if (may_pass && !std::binary_search(dissolved_.begin(), dissolved_.end(), edge) &&
             caps_on_both_sides(of_edge, refs))
@@ -406,51 +397,36 @@ void CellCutter::trace_loops() {
     for (std::size_t start = 0; start < open_.size(); ++start) {
         if (taken[start]) continue;
         Loop& loop = loops_.emplace_back();
-        // As many edges arrive at each node as leave it: a walk can only end where it began.
-        [[maybe_unused]] std::size_t last = start;
-        for (std::size_t e = start; e < open_.size(); e = next_edge(open_[e], taken)) {
-            assert(!taken[e]);
-            taken[e] = true;
-            last = e;
+        // As many edges arrive at each node as leave it: a walk ends where it began, once the
+        // region goes on with the first edge.
+        std::size_t e = start;
+        do {
+            assert(e < open_.size() && (e == start || !taken[e]));
+            taken[e] = e != start;
             positions.push_back(points_.rounded(open_[e].from));
             loop.push_back(corner(open_[e].from));
-            if (open_[e].to == open_[start].from) {
-                // further on only where the region goes on round this node
-                const bool tied = std::count_if(open_.begin(), open_.end(), [&](const auto& o) {
-                                      return o.from == open_[start].from;
-                                  }) > 1;
-                if (!tied) break;
-                taken[start] = false;
-                const std::size_t next = next_edge(open_[e], taken);
-                taken[start] = true;
-                if (next == start) break;
-            }
-        }
-        assert(open_[last].to == open_[start].from);
+            e = next_edge(open_[e], taken);
+        } while (e != start);
+        taken[start] = true;
     }
     rounding_ = points_.view().rounding(positions);
 }
 
 // The parts that a cell falls into.
 
-/// The side of what is numbered: pieces, then what is below and what is above each cap.
-std::int8_t CellCutter::side_of(std::size_t local, std::span<const PieceRef> refs) const {
-    if (local < refs.size())
-        return pieces_[index(refs[local].piece)].sides[index(refs[local].which)];
-    return (local - refs.size()) % 2 == 0 ? kBelow : kAbove;
+/// The side of an item: a piece, or what is below or above a cap.
+std::int8_t CellCutter::side_of(std::int32_t item) const {
+    const std::size_t i = index(item);
+    if (i < piece_side_.size()) return piece_side_[i];
+    return (i - piece_side_.size()) % 2 == 0 ? kBelow : kAbove;
 }
 
 /// The edges of the caps, as seen from below, beside the others.
 void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
     const auto own = static_cast<std::ptrdiff_t>(uses_.size());
-    for (std::size_t c = 0; c < caps.size(); ++c) {
-        const auto nodes = caps[c];
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-            const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
-            uses_.push_back({unordered(a, b), pieces + 2 * static_cast<std::int32_t>(c),
-                             static_cast<std::int8_t>(a < b ? 1 : -1), kBelow, true});
-        }
-    }
+    for (std::int32_t c = 0; index(c) < caps.size(); ++c)
+        each_edge(std::array{caps[index(c)]}, pieces + 2 * c,
+                  [this](const EdgeUse& use) { uses_.push_back(use); });
     std::sort(uses_.begin() + own, uses_.end());
     std::inplace_merge(uses_.begin(), uses_.begin() + own, uses_.end());
 }
@@ -458,33 +434,33 @@ void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
 /// Joins what meets at an edge on one side of the plane: each cap with a face, and what finds no
 /// partner. As often as the edge is used one way it is used the other: so it is within each pair,
 /// and among all that stay together.
-void CellCutter::join_at_edge(std::span<const PieceEdgeUse> uses, std::int8_t side,
-                              std::int32_t pieces, DisjointSets& sets) {
+void CellCutter::join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, DisjointSets& sets) {
+    const auto pieces = static_cast<std::int32_t>(piece_side_.size());
     const std::int32_t cap_side = side == kBelow ? 0 : 1;
     auto& faces = faces_at_edge_;
     faces.clear();
-    for (const PieceEdgeUse& use : uses) {
-        if (use.local < pieces && use.side == side) faces.push_back(&use);
+    for (const EdgeUse& use : uses) {
+        if (use.item < pieces && side_of(use.item) == side) faces.push_back(&use);
     }
     std::int32_t unpaired = -1;
     const auto join_unpaired = [&](std::int32_t local) {
         if (unpaired >= 0) sets.join(unpaired, local);
         unpaired = local;
     };
-    for (const PieceEdgeUse& cap : uses) {
-        if (cap.local < pieces) continue;
-        const auto met = std::ranges::find_if(faces, [&](const PieceEdgeUse* face) {
+    for (const EdgeUse& cap : uses) {
+        if (cap.item < pieces) continue;
+        const auto met = std::ranges::find_if(faces, [&](const EdgeUse* face) {
             return face->direction == (side == kBelow ? -cap.direction : cap.direction);
         });
         if (met == faces.end()) {
-            join_unpaired(cap.local + cap_side);
+            join_unpaired(cap.item + cap_side);
         } else {
-            sets.join((*met)->local, cap.local + cap_side);
+            sets.join((*met)->item, cap.item + cap_side);
             faces.erase(met);
         }
     }
-    for (const PieceEdgeUse* face : faces)
-        join_unpaired(face->local);
+    for (const EdgeUse* face : faces)
+        join_unpaired(face->item);
 }
 
 /// Joins pieces that meet along an edge. Where caps end at an edge each of them closes the part
@@ -495,9 +471,9 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     const std::size_t count = refs.size() + 2 * result.caps.size();
     add_uses_of_caps(result.caps, pieces);
     DisjointSets sets(count);
-    for (const auto of_edge : groups_of(uses_, &PieceEdgeUse::key)) {
+    for (const auto of_edge : groups_of(uses_, &EdgeUse::key)) {
         for (const std::int8_t side : {kBelow, kAbove})
-            join_at_edge(of_edge, side, pieces, sets);
+            join_at_edge(of_edge, side, sets);
     }
     attach_hollows(refs, result, sets);
     std::vector<std::int32_t> root(count);
@@ -510,12 +486,13 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     result.part_side.clear();
     std::vector<std::int32_t> number(count, -1);
     for (std::size_t i = 0; i < count; ++i) {
+        const std::int8_t side = side_of(static_cast<std::int32_t>(i));
         auto& part = number[index(root[i])];
         if (part < 0) {
             part = static_cast<std::int32_t>(result.part_side.size());
-            result.part_side.push_back(side_of(i, refs));
+            result.part_side.push_back(side);
         }
-        assert(result.part_side[index(part)] == side_of(i, refs));
+        assert(result.part_side[index(part)] == side);
         result.part[i] = part;
     }
     return true;
@@ -528,11 +505,11 @@ bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int
     const std::size_t dissolved_before = dissolved_.size();
     bool folded = false;
     std::vector<std::int32_t> parts;
-    for (const auto of_edge : groups_of(uses_, &PieceEdgeUse::key)) {
+    for (const auto of_edge : groups_of(uses_, &EdgeUse::key)) {
         parts.clear();
-        for (const PieceEdgeUse& use : of_edge) {
-            parts.push_back(root[index(use.local)]);
-            if (use.local >= pieces) parts.push_back(root[index(use.local + 1)]);
+        for (const EdgeUse& use : of_edge) {
+            parts.push_back(root[index(use.item)]);
+            if (use.item >= pieces) parts.push_back(root[index(use.item + 1)]);
         }
         std::sort(parts.begin(), parts.end());
         bool often = false;
@@ -558,24 +535,20 @@ void CellCutter::attach_hollows(std::span<const PieceRef> refs, const CellCut& r
     const auto count = static_cast<std::int32_t>(refs.size() + 2 * result.caps.size());
     std::vector<Position> corners;
     for (const std::int8_t side : {kBelow, kAbove}) {
-        std::set<std::int32_t> shells;
+        std::vector<std::int32_t> items;
         for (std::int32_t i = 0; i < count; ++i) {
-            if (side_of(index(i), refs) == side) shells.insert(sets.find(i));
+            if (side_of(i) == side) items.push_back(i);
         }
-        if (shells.size() < 2) continue;
-        const auto each_polygon = [&](const VisitShellPolygon& visit) {
-            for (std::int32_t i = 0; i < count; ++i) {
-                if (side_of(index(i), refs) != side) continue;
-                const bool is_cap = index(i) >= refs.size();
-                const bool reversed = is_cap ? side == kAbove : refs[index(i)].which == 1;
-                corners.clear();
-                for (const NodeId node : is_cap ? result.caps[(index(i) - refs.size()) / 2]
-                                                : pieces_.polygons[index(refs[index(i)].piece)])
-                    corners.push_back(position(node));
-                visit(sets.find(i), corners, reversed ? -1 : 1);
-            }
-        };
-        join_hollows(each_polygon, sets);
+        join_hollows(items, sets, [&](std::int32_t item, const VisitShellPolygon& visit) {
+            const std::size_t i = index(item);
+            const bool is_cap = i >= refs.size();
+            const bool reversed = is_cap ? side == kAbove : refs[i].which == 1;
+            corners.clear();
+            for (const NodeId node : is_cap ? result.caps[(i - refs.size()) / 2]
+                                            : pieces_.polygons[index(refs[i].piece)])
+                corners.push_back(points_.rounded(node));
+            visit(corners, reversed ? -1 : 1);
+        });
     }
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "arrangement/edge_fan.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "cutting/pieces.hpp"
@@ -14,6 +15,8 @@
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {
+
+using arrangement::EdgeUse;
 
 /// @throws InputError kinds not_finite, bad_plane
 exact::OrientedPlane checked_plane(const Plane& plane);
@@ -140,34 +143,22 @@ public:
     void cut(std::span<const PieceRef> refs, CellCut& result);
 
 private:
-    /// One edge of one piece, as its cell sees it.
-    struct PieceEdgeUse {
-        std::array<NodeId, 2> edge;  ///< lesser, greater node
-        std::int32_t local;          ///< number among the cell's pieces
-        std::int8_t direction;       ///< 1 from lesser to greater, -1 back
-        std::int8_t side;
-        bool on_cutter;
-
-        std::uint64_t key() const { return packed_pair(edge[0], edge[1]); }
-        bool operator<(const PieceEdgeUse& other) const {
-            return key() != other.key() ? key() < other.key() : local < other.local;
-        }
-    };
     struct CapEdge {
         NodeId from, to;
     };
 
-    Position position(NodeId node) const { return points_.rounded(node); }
     LoopCorner corner(NodeId node) const { return {node, points_.view()(points_.rounded(node))}; }
     bool in_plane(NodeId node) const { return cuts_.contains(node) || sides_[index(node)] == kOn; }
+    bool in_plane(const std::array<NodeId, 2>& edge) const {
+        return in_plane(edge[0]) && in_plane(edge[1]);
+    }
     void collect_uses(std::span<const PieceRef> refs, bool in_plane_only);
     void close(std::span<const PieceRef> refs, CellCut& result);
     void collect_open_edges(std::span<const PieceRef> refs);
-    bool caps_on_both_sides(std::span<const PieceEdgeUse> uses,
-                            std::span<const PieceRef> refs) const;
+    bool caps_on_both_sides(std::span<const EdgeUse> uses, std::span<const PieceRef> refs) const;
     bool is_in_caps(const std::array<NodeId, 2>& edge) const;
     void keep_slits_in_caps();
-    NodeId far_node(const PieceEdgeUse& use, std::span<const PieceRef> refs) const;
+    NodeId far_node(const EdgeUse& use, std::span<const PieceRef> refs) const;
     void trace_loops();
     void take_whole_loops(Polygons& caps) const;
     std::size_t next_edge(const CapEdge& arriving, const std::vector<bool>& taken) const;
@@ -175,10 +166,9 @@ private:
     bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
     void attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
                         DisjointSets& sets) const;
-    std::int8_t side_of(std::size_t local, std::span<const PieceRef> refs) const;
+    std::int8_t side_of(std::int32_t item) const;
     void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
-    void join_at_edge(std::span<const PieceEdgeUse> uses, std::int8_t side, std::int32_t pieces,
-                      DisjointSets& sets);
+    void join_at_edge(std::span<const EdgeUse> uses, std::int8_t side, DisjointSets& sets);
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
@@ -186,8 +176,11 @@ private:
     const CutPieces& pieces_;
     PlanePoints points_;
 
-    std::vector<PieceEdgeUse> uses_;
-    std::vector<const PieceEdgeUse*> faces_at_edge_;
+    /// Edges in the order of their nodes, as the cell sees them; items are numbers among its
+    /// pieces, then two for each cap.
+    std::vector<EdgeUse> uses_;
+    std::vector<std::int8_t> piece_side_;
+    std::vector<const EdgeUse*> faces_at_edge_;
     std::vector<CapEdge> open_;
     std::vector<std::array<NodeId, 2>> slits_, dissolved_;
     std::vector<Loop> loops_;

@@ -16,6 +16,10 @@ namespace realmodel::cutting {
 
 namespace {
 
+/// Takes a polygon and the set that is its shell.
+using VisitOfShell =
+    std::function<void(std::int32_t shell, std::span<const Position> corners, int sign)>;
+
 /// One connected boundary of a part of a cell. Around a hollow it has a negative volume.
 struct PartShell {
     double sixfold_volume = 0;
@@ -55,7 +59,7 @@ void ask(Question& question, std::span<const Position> corners, int sign, bool i
 }
 
 void ask_all(std::vector<Question>& questions,
-             const std::function<void(const VisitShellPolygon&)>& each_polygon) {
+             const std::function<void(const VisitOfShell&)>& each_polygon) {
     std::sort(questions.begin(), questions.end());
     each_polygon([&](std::int32_t shell, std::span<const Position> corners, int sign) {
         spatial::Box box;
@@ -77,8 +81,19 @@ void ask_all(std::vector<Question>& questions,
 
 }  // namespace
 
-void join_hollows(const std::function<void(const VisitShellPolygon&)>& each_polygon,
-                  DisjointSets& sets) {
+void join_hollows(
+    std::span<const std::int32_t> items, DisjointSets& sets,
+    const std::function<void(std::int32_t item, const VisitShellPolygon&)>& polygons_of) {
+    if (std::ranges::all_of(items,
+                            [&](std::int32_t i) { return sets.find(i) == sets.find(items[0]); }))
+        return;
+    const auto each_polygon = [&](const VisitOfShell& visit) {
+        for (const std::int32_t item : items) {
+            polygons_of(item, [&](std::span<const Position> corners, int sign) {
+                visit(sets.find(item), corners, sign);
+            });
+        }
+    };
     Shells shells;
     std::optional<Position> origin;  // near them
     each_polygon([&](std::int32_t of, std::span<const Position> corners, int sign) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <set>
+#include <iterator>
 
 #include "arrangement/polygons.hpp"
 #include "base/algorithms.hpp"
@@ -37,14 +37,15 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     find_touches(progress);
 }
 
-std::int32_t SurfaceParts::add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign) {
+std::int32_t SurfaceParts::add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign,
+                                         std::int32_t source) {
     if (cell < 0) return -1;
     if (half == kOn) {
         loses_[index(cell)] = 1;
         return -1;
     }
     const std::int32_t number = checked_number(half_faces_.size(), "faces of parts of cells");
-    half_faces_.push_back({cell, half, sign});
+    half_faces_.push_back({cell, half, sign, source});
     return number;
 }
 
@@ -63,9 +64,10 @@ void SurfaceParts::add_patch(Patch patch) {
         leave_out(face);
         return;
     }
+    const auto number = static_cast<std::int32_t>(patches_.size());
     for (std::size_t k = 0; k < 2; ++k)
         patch.half_faces[k] =
-            add_half_face(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1);
+            add_half_face(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1, number);
     patches_.push_back(patch);
 }
 
@@ -275,12 +277,13 @@ void SurfaceParts::add_caps_of_undivided(std::int32_t triangle,
 
 void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
     Caps& caps = caps_.emplace_back(Caps{region, component, {}, {}, {}});
+    const auto source = -static_cast<std::int32_t>(caps_.size());
     for (std::size_t k = 0; k < 2; ++k) {
         for (const auto& [cell, times] : winding_.around(index(region), k)) {
             const std::int8_t half = sides_.of_cap(index(region), k, cell);
             for (int i = 0; i < std::abs(times); ++i) {
                 const std::int32_t half_face =
-                    add_half_face(cell, half, (times > 0) == (k == 0) ? 1 : -1);
+                    add_half_face(cell, half, (times > 0) == (k == 0) ? 1 : -1, source);
                 if (half_face >= 0) caps.half_faces[k].push_back(half_face);
             }
         }
@@ -290,7 +293,7 @@ void SurfaceParts::add_caps(std::int32_t region, std::int32_t component) {
 
 /// Calls visit(loops) for the region of caps, or for each of the undivided triangles.
 template <class Visit>
-void SurfaceParts::visit_loops(const Caps& caps, const Visit& visit) const {
+void SurfaceParts::visit_cap_loops(const Caps& caps, const Visit& visit) const {
     if (caps.component < 0) {
         visit(overlay_.loops(index(caps.region)));
         return;
@@ -444,81 +447,61 @@ void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
 
 /// Joins the walls of hollows that the surface cuts out of cells with the parts around them.
 void SurfaceParts::attach_hollows(Progress* progress) {
-    // the half-faces of each cell that reaches the surface, and what has them
-    struct OwnedHalfFace {
-        std::int32_t half_face, patch, caps;  // one of the latter, the other -1
-    };
-    const auto items = bucketize<OwnedHalfFace>(overlay_.model().cell_count(), [this](const auto&
-                                                                                          put) {
-        const auto add = [&](std::int32_t half_face, std::int32_t patch, std::int32_t caps) {
-            if (half_face < 0 || !sides_.reaches(half_faces_[index(half_face)].cell)) return;
-            put(index(half_faces_[index(half_face)].cell), OwnedHalfFace{half_face, patch, caps});
-        };
-        for (std::size_t p = 0; p < patches_.size(); ++p) {
-            for (const std::int32_t half_face : patches_[p].half_faces)
-                add(half_face, static_cast<std::int32_t>(p), -1);
-        }
-        for (std::size_t c = 0; c < caps_.size(); ++c) {
-            for (const auto& own : caps_[c].half_faces) {
-                for (const std::int32_t half_face : own)
-                    add(half_face, -1, static_cast<std::int32_t>(c));
+    const auto of_cell =
+        bucketize<std::int32_t>(overlay_.model().cell_count(), [this](const auto& put) {
+            for (std::size_t s = 0; s < half_faces_.size(); ++s) {
+                if (sides_.reaches(half_faces_[s].cell))
+                    put(index(half_faces_[s].cell), static_cast<std::int32_t>(s));
             }
-        }
-    });
-    const auto visit_item = [&](const OwnedHalfFace& item, const auto& visit) {
-        if (item.patch < 0) {
-            visit_loops(caps_[index(item.caps)], visit);
-        } else if (const Patch& patch = patches_[index(item.patch)]; patch.divided == nullptr) {
-            visit(std::array{overlay_.model().face(index(patch.face))});
-        } else {
-            visit(patch.loops());
-        }
-    };
-    const auto attach = [&](std::span<const OwnedHalfFace> of_cell, std::int8_t half) {
-        const auto is_of_half = [&](const OwnedHalfFace& item) {
-            return half_faces_[index(item.half_face)].half == half;
-        };
-        std::set<std::int32_t> shells;
-        for (const OwnedHalfFace& item : of_cell) {
-            if (is_of_half(item)) shells.insert(joined_->find(item.half_face));
-        }
-        if (shells.size() < 2) return;
+        });
+    const auto attach = [&](std::span<const std::int32_t> of_side) {
         std::vector<Position> corners;
-        const auto each_polygon = [&](const VisitShellPolygon& visit) {
-            const auto visit_loop = [&](const auto& loop, const OwnedHalfFace& item, int sign,
-                                        const auto& at) {
+        const auto polygons_of = [&](std::int32_t half_face, const VisitShellPolygon& visit) {
+            const auto [cell, half, sign, source] = half_faces_[index(half_face)];
+            const auto visit_loop = [&](const auto& loop, int facing, const auto& at) {
                 corners.clear();
                 for (const NodeId node : loop)
                     corners.push_back(at(node));
-                visit(joined_->find(item.half_face), corners, sign);
+                visit(corners, facing);
             };
-            for (const OwnedHalfFace& item : of_cell) {
-                if (!is_of_half(item)) continue;
-                const int sign = half_faces_[index(item.half_face)].sign;
-                visit_item(item, [&](const auto& loops) {
-                    for (const auto& loop : loops)
-                        visit_loop(loop, item, sign,
-                                   [this](NodeId node) { return overlay_.position(node); });
-                });
-                // what is left out is with the first face of its group
-                const FarFaces& far = overlay_.far();
-                const std::int32_t first = item.patch < 0 ? -1 : patches_[index(item.patch)].face;
-                if (first < 0 || !far.is_first(index(first))) continue;
-                for (const std::int32_t face : far.of_group(far.group(index(first)))) {
-                    visit_loop(far.model().face(index(face)), item,
-                               far.is_reversed(face) ? -sign : sign,
-                               [&far](NodeId node) { return far.model().vertex(node); });
-                }
+            const auto visit_loops = [&](const auto& loops) {
+                for (const auto& loop : loops)
+                    visit_loop(loop, sign, [this](NodeId node) { return overlay_.position(node); });
+            };
+            if (source < 0) {
+                visit_cap_loops(caps_[index(-1 - source)], visit_loops);
+                return;
+            }
+            const Patch& patch = patches_[index(source)];
+            if (patch.divided != nullptr) {
+                visit_loops(patch.loops());
+                return;
+            }
+            const auto face = index(patch.face);
+            visit_loops(std::array{overlay_.model().face(face)});
+            // what is left out is with the first face of its group
+            const FarFaces& far = overlay_.far();
+            if (!far.is_first(face)) return;
+            for (const std::int32_t other : far.of_group(far.group(face))) {
+                visit_loop(far.model().face(index(other)), far.is_reversed(other) ? -sign : sign,
+                           [&far](NodeId node) { return far.model().vertex(node); });
             }
         };
-        join_hollows(each_polygon, *joined_);
+        join_hollows(of_side, *joined_, polygons_of);
     };
     constexpr std::size_t kCells = 1 << 8;
-    parallel_ranges(items.size(), kCells, {overlay_.threads(), progress},
+    parallel_ranges(of_cell.size(), kCells, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
+                        std::vector<std::int32_t> of_side;
                         for (std::size_t cell = begin; cell < end; ++cell) {
-                            for (const std::int8_t half : {kBelow, kAbove})
-                                attach(items[cell], half);
+                            for (const std::int8_t side : {kBelow, kAbove}) {
+                                of_side.clear();
+                                std::ranges::copy_if(of_cell[cell], std::back_inserter(of_side),
+                                                     [&](std::int32_t s) {
+                                                         return half_faces_[index(s)].half == side;
+                                                     });
+                                attach(of_side);
+                            }
                         }
                     });
 }

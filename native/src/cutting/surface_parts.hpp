@@ -30,8 +30,9 @@ private:
     struct HalfFace {
         std::int32_t cell;
         std::int8_t half;
-        std::int8_t
-            sign;  ///< 1: turns counter-clockwise seen from outside of the cell, -1 does not
+        /// 1: turns counter-clockwise seen from outside of the cell, -1 does not.
+        std::int8_t sign;
+        std::int32_t source;  ///< its patch; of caps -1 - their number
     };
     /// What the faces of a chunk are divided into, by the numbers of patches in it.
     struct DividedFaces {
@@ -98,11 +99,12 @@ private:
     void add_caps(std::int32_t region, std::int32_t component);
     void add_caps_of_undivided(std::int32_t triangle, std::vector<std::int32_t>& caps_of);
     template <class Visit>
-    void visit_loops(const Caps& caps, const Visit& visit) const;
+    void visit_cap_loops(const Caps& caps, const Visit& visit) const;
     void divide(const CapFacet& facet, Polygons& polygons);
     void leave_out(std::size_t face);
     void add_patch(Patch patch);
-    std::int32_t add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign);
+    std::int32_t add_half_face(std::int32_t cell, std::int8_t half, std::int8_t sign,
+                               std::int32_t source);
     template <class Visit>
     void each_use(const Patch& patch, const Visit& visit) const;
     template <class Visit>

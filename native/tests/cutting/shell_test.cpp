@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 namespace realmodel::cutting {
@@ -33,14 +34,12 @@ struct Bodies {
     /// The shell that is joined with the last one.
     std::size_t around_last() const {
         DisjointSets sets(shells.size());
-        join_hollows(
-            [this](const VisitShellPolygon& visit) {
-                for (std::size_t s = 0; s < shells.size(); ++s) {
-                    for (const auto& face : shells[s])
-                        visit(static_cast<std::int32_t>(s), face, signs[s]);
-                }
-            },
-            sets);
+        std::vector<std::int32_t> all(shells.size());
+        std::iota(all.begin(), all.end(), 0);
+        join_hollows(all, sets, [this](std::int32_t s, const VisitShellPolygon& visit) {
+            for (const auto& face : shells[index(s)])
+                visit(face, signs[index(s)]);
+        });
         const auto last = static_cast<std::int32_t>(shells.size() - 1);
         std::size_t found = shells.size();
         for (std::size_t s = 0; s + 1 < shells.size(); ++s) {
