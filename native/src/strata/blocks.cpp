@@ -73,11 +73,11 @@ Surfaces make_surfaces(PlanContext& context, const Execution& execution) {
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
             if (execution.progress != nullptr) execution.progress->check();
             const auto number = rock.first_surface + static_cast<std::int32_t>(k);
-            tilings.push_back(make_block_tiling(context.geometry, rock.surfaces[k].triangles,
+            tilings.push_back(make_block_tiling(context.geometry, rock.surfaces[k],
                                                 std::move(rock.plans[k]), number, surfaces.links,
                                                 execution));
             context.surface_of_plane.resize(context.geometry.plane_count(), number);
-            rock.surfaces[k] = {};
+            rock.surfaces[k] = std::vector<UsedTriangle>();  // without its memory
         }
         for (const BorderEdge& edge : rock.region_border)
             surfaces.links.border.emplace_back(edge.low, edge.high);
@@ -94,9 +94,8 @@ Surfaces make_surfaces(PlanContext& context, const Execution& execution) {
 void replay_rules(PlanContext& context, const LoadedRock& rock, const Surfaces& surfaces,
                   const BorderEdges& borders, std::vector<BlockTiling>& tilings,
                   const Execution& execution) {
-    RuleReplay replay(
-        BlockRaising(context.geometry, surfaces.links, borders, surfaces.largest_height, execution),
-        rock.rules);
+    RuleReplay replay(BlockRaising(context.geometry, borders, surfaces.largest_height, execution),
+                      rock.rules);
     for (BlockTiling& tiling : tilings) {
         if (execution.progress != nullptr) execution.progress->check();
         tiling = replay.add(std::move(tiling));

@@ -47,17 +47,13 @@ public:
         replayed_.pop_back();
         return tiling;
     }
-    /// Takes the outlines of a tiling that was taken before and is done with: the next one may be
-    /// on the same mesh.
-    void give_back(SurfaceTiling tiling) { similar_ = std::move(tiling.polygons); }
 
 private:
     SurfaceTiling surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        SurfaceTiling tiling =
-            make_surface_tiling(context_.geometry, rock_.surfaces[k].triangles,
-                                std::move(rock_.plans[k]), similar_, number, execution_);
-        rock_.surfaces[k] = {};
+        SurfaceTiling tiling = make_surface_tiling(context_.geometry, rock_.surfaces[k],
+                                                   std::move(rock_.plans[k]), number, execution_);
+        rock_.surfaces[k] = std::vector<UsedTriangle>();  // without its memory
         context_.surface_of_plane.resize(context_.geometry.plane_count(), number);
         return tiling;
     }
@@ -65,7 +61,6 @@ private:
     PlanContext& context_;
     LoadedRock& rock_;
     Execution execution_;
-    PolygonPool similar_;
     std::vector<SurfaceTiling> replayed_;
 };
 
@@ -115,7 +110,6 @@ void add_rock(PlanContext& context, LoadedRock& rock, Construction& construction
                        ? initial_envelope(tiling, k)
                        : overlay_columns(context.geometry, std::move(envelope), {tiling, k},
                                          construction, wanted, execution);
-        tilings.give_back(std::move(tiling));
         // What input and chunks leave unused is scattered; giving it back takes time.
         if (k % 4 == 0 && context.geometry.point_count() > kManyPoints) give_back_memory();
     }

@@ -23,12 +23,12 @@ struct Scene {
     exact::PlanArrangement& geometry() { return context->geometry; }
     SurfaceTiling tiling(std::size_t k) {
         LoadedRock& rock = context->rocks[0];
-        return make_surface_tiling(geometry(), rock.surfaces[k].triangles, rock.plans[k], {},
-                                   static_cast<int>(k), {1, nullptr});
+        return make_surface_tiling(geometry(), rock.surfaces[k], rock.plans[k], static_cast<int>(k),
+                                   {1, nullptr});
     }
     BlockTiling block_tiling(std::size_t k, TriangleLinks& links) {
         LoadedRock& rock = context->rocks[0];
-        return make_block_tiling(geometry(), rock.surfaces[k].triangles, std::move(rock.plans[k]),
+        return make_block_tiling(geometry(), rock.surfaces[k], std::move(rock.plans[k]),
                                  static_cast<std::int32_t>(k), links, {1, nullptr});
     }
 };

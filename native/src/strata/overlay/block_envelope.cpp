@@ -127,10 +127,10 @@ private:
             return triangle_outline(geometry_, geometry_.plane(plane).plan);
         };
         const auto below = outline_of(tiling_.whole[static_cast<std::size_t>(triangle)]);
+        clipper_.begin(below);
         const auto i = static_cast<std::size_t>(node - covered_.first_node);
-        if (i < covered_.wholes.size())
-            return clipper_.overlap(outline_of(covered_.wholes[i]), below);
-        return clipper_.overlap(parts_.outlines[covered_.parts[i - covered_.wholes.size()]], below);
+        if (i < covered_.wholes.size()) return clipper_.overlaps(outline_of(covered_.wholes[i]));
+        return clipper_.overlaps(parts_.outlines[covered_.parts[i - covered_.wholes.size()]]);
     }
 
     PlanArrangement& geometry_;
@@ -455,7 +455,7 @@ void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
     next_whole_.clear();
     next_whole_block_.clear();
     next_parts_ = {};
-    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
+    const SurfaceTiling part = filter_.exact_part(geometry_, facets);
     Overlaid overlaid = overlay_exactly(facets, part, number);
     const CoveredFacets covered = sort_facets(number);
     add_surface(tiling, part, number, overlaid);

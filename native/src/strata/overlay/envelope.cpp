@@ -112,7 +112,7 @@ public:
         : envelope_(envelope), at_(start), number_(number) {}
 
     void add_facet(PolygonView outline, PlaneId plane) {
-        copy_corners(outline, envelope_.outlines.corners.begin() + at_.corners);
+        std::ranges::copy(outline, envelope_.outlines.corners.begin() + at_.corners);
         const std::size_t facet = at_.facets;
         at_.add_facet(outline);
         envelope_.outlines.offsets[facet + 1] = static_cast<std::uint32_t>(at_.corners);
@@ -123,7 +123,7 @@ public:
     }
     /// Adds a face to the facet added last.
     void add_face(PolygonView outline, std::int32_t node_above) {
-        copy_corners(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
+        std::ranges::copy(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
         envelope_.face_above[at_.faces] = node_above;
         at_.add_face(outline);
         envelope_.face_polygons.offsets[at_.faces] = static_cast<std::uint32_t>(at_.face_corners);

@@ -46,7 +46,7 @@ public:
             result_.kept.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
             return;
         }
-        const Pieces& pieces = finder_.find_for_split(outline, plane);
+        const Pieces& pieces = finder_.find(outline, plane, true);
         std::size_t below = 0, not_below = 0;
         for (const Piece& piece : pieces.list) {
             below += piece.side == PieceSide::kBelow;
@@ -209,7 +209,7 @@ private:
     ChunkResult& result_;
     PieceFinder finder_;
     PieceGrouping grouping_;
-    FacetClipper clipper_;
+    Clipper clipper_;
     std::vector<std::int32_t> group_;
 };
 

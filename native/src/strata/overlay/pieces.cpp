@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 #include "base/disjoint_sets.hpp"
 #include "base/vectors.hpp"
@@ -85,87 +86,46 @@ bool PieceFinder::find_candidates(PolygonView outline) {
 std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
     if (find_candidates(outline)) return {candidates_.begin(), candidates_.end()};
     overlapping_.clear();
+    clipper_.begin(outline);
     for (const std::int32_t c : candidates_) {
-        if (clipper_.overlap(outline, tiling_.polygons[static_cast<std::size_t>(c)])) {
-            overlapping_.push_back(c);
-        }
+        if (clipper_.overlaps(outline_of(c))) overlapping_.push_back(c);
     }
     return {overlapping_.begin(), overlapping_.end()};
 }
 
-/// Begins with a facet; true where that was all: where it was walked around, or one polygon of the
-/// tiling is all that it meets.
-bool PieceFinder::begin(const EnvelopeFacet& facet, bool for_split) {
+const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane, bool may_stay) {
+    const EnvelopeFacet facet{
+        outline, plane, plane.has_value() ? heights_of(scope_.shared(), plane) : HeightRange{}};
     pieces_.clear();
-    if (is_expected(facet.outline) || !walk_.begin(facet.outline)) {
-        if (find_candidates(facet.outline)) {
-            add_common(candidates_.front(), facet.outline, facet);
-            return true;
+    const bool is_walked = !is_expected(outline) && walk_.begin(outline);
+    if (!is_walked && find_candidates(outline)) {
+        add_common(candidates_.front(), outline, facet);
+    } else if (is_walked || (walk_.locate(outline, {candidates_.begin(), candidates_.end()}) &&
+                             walk_.begin(outline))) {
+        std::size_t higher = 0;
+        while (may_stay && higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
+            ++higher;
+        for (std::size_t i = 0; i < walk_.size(); ++i) {
+            if (higher == walk_.size()) {
+                add(walk_.polygon(i), PieceSide::kNotBelow, {});
+            } else {
+                add_common(walk_.polygon(i), walk_.common(i), facet);
+            }
         }
-        if (!walk_.locate(facet.outline, {candidates_.begin(), candidates_.end()}) ||
-            !walk_.begin(facet.outline)) {
-            facet_clipper_.begin(facet.outline);
-            return false;
-        }
+    } else {
+        clipper_.begin(outline);
+        for (const std::int32_t polygon : candidates_)
+            add_common(polygon, clipper_.intersect(outline_of(polygon)), facet);
     }
-    add_walked(facet, for_split);
-    return true;
-}
-
-void PieceFinder::add_all(std::span<const std::int32_t> polygons, const EnvelopeFacet& facet) {
-    for (const std::int32_t polygon : polygons)
-        add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
-}
-
-const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
-    const EnvelopeFacet facet = facet_of(outline, plane);
-    if (!begin(facet, false)) add_all({candidates_.begin(), candidates_.end()}, facet);
-    assert(!plane.has_value() || tile(scope_, pieces_, outline));
+    assert(!plane.has_value() || may_stay || tile(scope_, pieces_, outline));
     return pieces_;
-}
-
-const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
-    if (!plane.has_value()) return find(outline, plane);
-    const EnvelopeFacet facet = facet_of(outline, plane);
-    if (begin(facet, true)) return pieces_;
-    // for as long as all is higher, it is only looked which polygons meet the facet
-    higher_.clear();
-    auto c = candidates_.begin();
-    for (; c != candidates_.end(); ++c) {
-        if (!facet_clipper_.meets(outline_of(*c))) continue;
-        if (!is_higher(*c, facet)) break;
-        higher_.push_back(*c);
-    }
-    if (c == candidates_.end()) {
-        for (const std::int32_t polygon : higher_)
-            add(polygon, PieceSide::kNotBelow, {});
-        return pieces_;
-    }
-    add_all({higher_.begin(), higher_.end()}, facet);
-    add_all({c, candidates_.end()}, facet);
-    assert(tile(scope_, pieces_, outline));
-    return pieces_;
-}
-
-void PieceFinder::add_walked(const EnvelopeFacet& facet, bool for_split) {
-    std::size_t higher = 0;
-    while (for_split && higher < walk_.size() && is_higher(walk_.polygon(higher), facet))
-        ++higher;
-    const bool is_all = higher == walk_.size();
-    for (std::size_t i = 0; i < walk_.size(); ++i) {
-        if (is_all) {
-            add(walk_.polygon(i), PieceSide::kNotBelow, {});
-        } else {
-            add_common(walk_.polygon(i), walk_.common(i), facet);
-        }
-    }
 }
 
 /// Whether a polygon of the tiling is nowhere below the facet where they meet, as far as heights
 /// and floating point tell.
 bool PieceFinder::is_higher(std::int32_t polygon, const EnvelopeFacet& facet) const {
     const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
-    if (!surface.has_value()) return false;
+    if (!surface.has_value() || !facet.plane.has_value()) return false;
     const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
     if (heights.low >= facet.heights.high) return true;
     if (heights.high < facet.heights.high) return false;  // most that are not higher
@@ -218,50 +178,43 @@ void PieceFinder::note_room(PlaneId surface, const EnvelopeFacet& facet, const H
 
 void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common) {
     const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
+    if (surface == facet_plane) return add(polygon, PieceSide::kNotBelow, common);
     bool lower = false, higher = false;
     signs_.clear();
-    if (surface != facet_plane) {
-        const auto trace = scope_.shared().trace_filter(surface, facet_plane);
-        for (const Corner& corner : common) {
-            const int sign = scope_.compare_heights(surface, facet_plane, trace, corner.point);
-            lower |= sign < 0;
-            higher |= sign > 0;
-            signs_.push_back(static_cast<std::int8_t>(sign));
-        }
+    const auto trace = scope_.shared().trace_filter(surface, facet_plane);
+    for (const Corner& corner : common) {
+        const int sign = scope_.compare_heights(surface, facet_plane, trace, corner.point);
+        lower |= sign < 0;
+        higher |= sign > 0;
+        signs_.push_back(static_cast<std::int8_t>(sign));
     }
-    if (!lower || !higher) {
-        add(polygon, lower ? PieceSide::kBelow : PieceSide::kNotBelow, common);
-        if (lower) {
-            std::transform(signs_.begin(), signs_.end(),
-                           pieces_.touches.end() - static_cast<std::ptrdiff_t>(signs_.size()),
-                           [](std::int8_t sign) { return sign == 0 ? 1 : 0; });
-        }
-        return;
-    }
+    if (!lower) return add(polygon, PieceSide::kNotBelow, common);
+    const auto touches = [&](const Corner& corner) -> std::uint8_t {
+        const auto at = std::ranges::find(common, corner.point, &Corner::point);
+        return at == common.end() || signs_[static_cast<std::size_t>(at - common.begin())] == 0;
+    };
+    const auto add_below = [&](PolygonView below) {
+        add(polygon, PieceSide::kBelow, below);
+        std::ranges::transform(
+            below, pieces_.touches.end() - static_cast<std::ptrdiff_t>(below.size()), touches);
+    };
+    if (!higher) return add_below(common);
     const DirectedLine above = scope_.trace(surface, facet_plane);
-    add_touching(polygon, clipper_.cut(common, above.reversed()), surface, facet_plane);
-    add(polygon, PieceSide::kNotBelow, clipper_.cut(common, above));
+    opposite_.resize(signs_.size());
+    std::ranges::transform(signs_, opposite_.begin(), std::negate<>());
+    keep_left(scope_, common, above.reversed(), opposite_, half_);
+    add_below(half_);
+    keep_left(scope_, common, above, signs_, half_);
+    add(polygon, PieceSide::kNotBelow, half_);
 }
 
 /// Adds a piece that touches the facet nowhere.
 void PieceFinder::add(std::int32_t polygon, PieceSide side, PolygonView outline) {
     const auto first = static_cast<std::int64_t>(pieces_.corners.size());
-    pieces_.corners.resize(pieces_.corners.size() + outline.size());
-    copy_corners(outline, pieces_.corners.begin() + first);
+    pieces_.corners.append(outline.begin(), outline.end());
     pieces_.touches.resize(pieces_.corners.size(), 0);
     pieces_.list.push_back(
         {polygon, side, first, static_cast<std::int64_t>(pieces_.corners.size())});
-}
-
-/// Adds a piece below the facet that is as high as it at some of its corners.
-void PieceFinder::add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower,
-                               PlaneId upper) {
-    add(polygon, PieceSide::kBelow, outline);
-    for (auto c = static_cast<std::size_t>(pieces_.list.back().first); c < pieces_.corners.size();
-         ++c) {
-        pieces_.touches[c] =
-            scope_.compare_heights(lower, upper, pieces_.corners[c].point) == 0 ? 1 : 0;
-    }
 }
 
 // Whether the cell goes through the edge that two pieces share: it is thick there and the surface

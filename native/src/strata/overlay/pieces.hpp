@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "strata/overlay/envelope.hpp"
-#include "strata/overlay/facet_clipper.hpp"
 #include "strata/overlay/tiling_walk.hpp"
 
 namespace realmodel::strata {
@@ -49,18 +48,12 @@ struct Pieces {
 class PieceFinder {
 public:
     PieceFinder(LocalArrangement& scope, const SurfaceTiling& tiling)
-        : scope_(scope),
-          clipper_(scope),
-          facet_clipper_(scope),
-          walk_(scope, tiling),
-          tiling_(tiling) {}
+        : scope_(scope), clipper_(scope), walk_(scope, tiling), tiling_(tiling) {}
 
     /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
     /// none of it below a void.
-    const Pieces& find(PolygonView outline, PlaneId plane);
-    /// The same, but pieces have no outlines where heights tell that the surface is nowhere below
-    /// the facet: it stays as it is.
-    const Pieces& find_for_split(PolygonView outline, PlaneId plane);
+    /// @param may_stay  whether pieces may lack outlines where all of the facet stays as it is
+    const Pieces& find(PolygonView outline, PlaneId plane, bool may_stay = false);
     /// Polygons of the tiling that share an area with the outline.
     std::span<const std::int32_t> overlapping(PolygonView outline);
 
@@ -71,34 +64,27 @@ private:
         PlaneId plane;
         HeightRange heights;
     };
-    EnvelopeFacet facet_of(PolygonView outline, PlaneId plane) const {
-        return {outline, plane,
-                !plane.has_value() ? HeightRange{} : heights_of(scope_.shared(), plane)};
-    }
     PolygonView outline_of(std::int32_t polygon) const {
         return tiling_.polygons[static_cast<std::size_t>(polygon)];
     }
-    bool is_higher(std::int32_t polygon, const EnvelopeFacet& facet) const;
     void note_room(PlaneId surface, const EnvelopeFacet& facet, const HeightRange& heights,
                    PolygonView common);
+    bool is_higher(std::int32_t polygon, const EnvelopeFacet& facet) const;
     bool is_expected(PolygonView outline) const;
     bool find_candidates(PolygonView outline);
-    bool begin(const EnvelopeFacet& facet, bool for_split);
-    void add_walked(const EnvelopeFacet& facet, bool for_split);
-    void add_all(std::span<const std::int32_t> polygons, const EnvelopeFacet& facet);
     void add_common(std::int32_t polygon, PolygonView common, const EnvelopeFacet& facet);
     void add(std::int32_t polygon, PieceSide side, PolygonView outline);
-    void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
     void classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common);
 
     LocalArrangement& scope_;
     Clipper clipper_;
-    FacetClipper facet_clipper_;
     TilingWalk walk_;
     const SurfaceTiling& tiling_;
     Pieces pieces_;
-    std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
-    Array<std::int32_t> candidates_, overlapping_, higher_;
+    /// Of surface less facet at the corners of a common part, and of facet less surface.
+    std::vector<std::int8_t> signs_, opposite_;
+    Polygon half_;
+    Array<std::int32_t> candidates_, overlapping_;
     std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
 };
 

@@ -22,8 +22,7 @@ namespace {
 /// The window of a tile: its own, or the region that a rock mass without one has there.
 std::array<Corner, 4> window_outline(PlanContext& context, const LoadedRock& rock) {
     const auto half = [&](std::size_t t) {
-        return rock.window ? plan_of(context.geometry, rock.window->triangles[t])
-                           : (*rock.region)[t];
+        return rock.window ? plan_of(context.geometry, (*rock.window)[t]) : (*rock.region)[t];
     };
     const auto [a, b, c] = half(0);
     const std::array corners{a, b, c, half(1)[2]};
@@ -63,8 +62,8 @@ Envelope region_envelope(PlanContext& context, LoadedRock& rock, const Execution
         make_region_tiling(context.geometry, *rock.region, rock.region_filling), kSkyBlock);
     if (!rock.window) return region;
     // The window is a surface under the sky: what lies above it stays sky.
-    const SurfaceTiling window = make_surface_tiling(context.geometry, rock.window->triangles,
-                                                     rock.window_plan, {}, -1, execution);
+    const SurfaceTiling window =
+        make_surface_tiling(context.geometry, *rock.window, rock.window_plan, -1, execution);
     context.surface_of_plane.resize(context.geometry.plane_count(), kBase);
     Construction nothing;
     Overlaid overlaid = overlay_facets(context.geometry, region, {window, kSkyBlock}, nullptr,
@@ -87,7 +86,8 @@ void clip_to_window(PlanContext& context, const LoadedRock& rock, SurfaceTiling&
         const PolygonView whole = tiling.polygons[p];
         if (!tiling.plane[p].has_value() || !may_cross(box_of(scope, whole), *context.window))
             continue;
-        const PolygonView inside = clipper.intersect(whole, window);
+        clipper.begin(whole);
+        const PolygonView inside = clipper.intersect(window);
         const bool is_same = std::ranges::equal(whole, inside, {}, &Corner::point, &Corner::point);
         if (inside.empty() || is_same) continue;
         clipped.add(inside);
@@ -134,10 +134,11 @@ void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList&
                              Execution{1, progress});
             }
             grid->candidates(scope, earlier[i], candidates);
+            clipper.begin(earlier[i]);
             for (const std::int32_t c : candidates) {
                 const PolygonView other = own.polygons[static_cast<std::size_t>(c)];
-                if (!clipper.overlap(earlier[i], other)) continue;
-                const auto [x, y] = scope.rounded(clipper.intersect(earlier[i], other)[0].point);
+                if (!clipper.overlaps(other)) continue;
+                const auto [x, y] = scope.rounded(clipper.intersect(other)[0].point);
                 throw InputError(
                     "rocks_overlap",
                     "rock masses " + std::to_string(r) + " and " + std::to_string(rocks_.size()) +

@@ -247,7 +247,7 @@ SurfaceTiling BlockRaising::exact_facets(const BlockTiling& bound) {
 BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bound) {
     const FacetView facets = view(bound);
     filter_.compare(facets);
-    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
+    const SurfaceTiling part = filter_.exact_part(geometry_, facets);
     BlockTiling raised;
     raised.is_raised = true;
     raised.empty = surface.empty;
@@ -282,7 +282,7 @@ BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer
                                const BlockTiling& /* the one begun with */) {
     const FacetView facets = view(older);
     filter_.cover(facets);
-    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets, true);
+    const SurfaceTiling part = filter_.exact_part(geometry_, facets, true);
     BlockBound covered{newer, older.cover};
     covered.tiling.empty.clear();
     add_facets_that_are(older.tiling, filter_.facet, HeightRelation::kUncovered, covered.tiling);

@@ -176,10 +176,9 @@ public:
     using Tiling = BlockTiling;
     using Bound = BlockBound;
 
-    BlockRaising(exact::PlanArrangement& geometry, const TriangleLinks& links,
-                 const BorderEdges& borders, double largest_height, const Execution& execution)
+    BlockRaising(exact::PlanArrangement& geometry, const BorderEdges& borders,
+                 double largest_height, const Execution& execution)
         : geometry_(geometry),
-          links_(links),
           filter_(geometry, borders, largest_height, execution),
           execution_(execution) {}
 
@@ -196,7 +195,6 @@ private:
     SurfaceTiling exact_facets(const BlockTiling& bound);
 
     exact::PlanArrangement& geometry_;
-    const TriangleLinks& links_;
     WholeTriangleFilter filter_;
     Execution execution_;
 };

@@ -27,12 +27,9 @@ inline int TilingWalk::side(TilingEdge edge, PointId id) {
     const exact::PlanArrangement& shared = scope_.shared();
     const PolygonView at = triangle(edge.triangle);
     const Corner &from = at[edge.corner], &to = at[after(edge.corner)];
-    const exact::Point& p = scope_.point(id);
-    if (!shared.reach().has(p.x, p.y)) return scope_.side(from.line, id);
-    return side_of(
-        scope_,
-        row_filter_between(shared.reach(), shared.point(from.point), shared.point(to.point)),
-        from.line, id, p);
+    const auto filter = exact::reach_filter_between(shared.reach(), shared.point(from.point),
+                                                    shared.point(to.point));
+    return side_of(scope_, filter, from.line, id);
 }
 
 /// Walks along an edge from triangle t, which has its first point; false where something coincides
@@ -40,10 +37,9 @@ inline int TilingWalk::side(TilingEdge edge, PointId id) {
 bool TilingWalk::walk(const exact::DirectedEdge& edge, std::int32_t t) {
     const std::int32_t goal = known_triangle(edge.to);
     if (t == goal) return true;
-    const exact::LineRowFilter line = line_row_filter(scope_, edge);
+    const exact::ReachFilter line = exact::reach_filter(scope_, edge);
     const auto side_of_corner = [&](std::uint32_t corner) {
-        const PointId id = triangle(t)[corner].point;
-        return side_of(scope_, line, edge.line, id, scope_.shared().point(id));
+        return side_of(scope_, line, edge.line, triangle(t)[corner].point);
     };
     // it goes out where the corners pass from its right to its left
     const std::array sides{side_of_corner(0), side_of_corner(1), side_of_corner(2)};

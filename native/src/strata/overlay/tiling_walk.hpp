@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "exact/side_rows.hpp"
+#include "exact/reach_filter.hpp"
 #include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {

@@ -406,8 +406,8 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
     });
 }
 
-SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const TriangleLinks& links,
-                                              const FacetView& facets, bool with_void) {
+SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const FacetView& facets,
+                                              bool with_void) {
     const BlockTiling& tiling = *tiling_;
     const std::size_t triangles = tiling.whole.size();
     std::vector<std::uint8_t> is_needed(tiles().size(), 0);
@@ -437,13 +437,8 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
     }
     add_outlines(
         geometry, part.plane.size(),
-        [&](std::size_t i) { return geometry.plane(part.plane[i]).plan; },
-        [&](std::size_t i, std::size_t e) {
-            const PlaneId other = links.of(part.plane[i])[e];
-            if (tiling.is_raised || other == kNone || other > part.plane[i]) return kNoOutline;
-            return polygon[index(other - tiling.whole.front())];
-        },
-        [](std::size_t) { return PolygonView(); }, part.polygons, execution_.progress);
+        [&](std::size_t i) { return geometry.plane(part.plane[i]).plan; }, part.polygons,
+        execution_.progress);
     for (std::size_t i = 0; i < tiling.part_plane.size(); ++i) {
         polygon[triangles + i] = static_cast<std::int32_t>(part.plane.size());
         part.polygons.add(tiling.parts[i]);

@@ -138,8 +138,8 @@ public:
     /// The part of the surface that meets exact facets, or is exact: triangles in outlines of their
     /// own, then parts, then where there is no surface at all.
     /// @param with_void  whether facets without a plane count as others do
-    SurfaceTiling exact_part(exact::PlanArrangement& geometry, const TriangleLinks& links,
-                             const FacetView& facets, bool with_void = false);
+    SurfaceTiling exact_part(exact::PlanArrangement& geometry, const FacetView& facets,
+                             bool with_void = false);
     /// The numbers of exact facets, in order.
     std::vector<std::size_t> exact_facets() const;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -27,286 +26,125 @@ bool is_within_limits(double coordinate) {
     return std::abs(coordinate) <= kLargestCoordinate;
 }
 
-constexpr std::size_t kRange = 1 << 12;  // looked at at a time
-
 std::array<double, 3> vertex_of(const TriangleView& surface, std::int64_t v) {
     const auto i = static_cast<std::size_t>(v) * 3;
     return {surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]};
 }
 
 /// Looks at the coordinates of vertices.
-void check_vertices(const TriangleView& surface, int index, std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<std::int64_t>(begin); v < static_cast<std::int64_t>(end); ++v) {
-        for (const double c : vertex_of(surface, v)) {
-            if (!is_within_limits(c)) {
-                throw InputError("not_finite",
-                                 "vertex " + std::to_string(v) +
-                                     " has a coordinate that is not a number or is beyond 1e50",
-                                 index, {v});
-            }
-        }
-    }
+void check_vertices(const TriangleView& surface, int index, const Execution& execution) {
+    parallel_each(surface.vertices.size() / 3, execution, [&](std::size_t i) {
+        const auto v = static_cast<std::int64_t>(i);
+        if (std::ranges::all_of(vertex_of(surface, v), is_within_limits)) return;
+        throw InputError("not_finite",
+                         "vertex " + std::to_string(v) +
+                             " has a coordinate that is not a number or is beyond 1e50",
+                         index, {v});
+    });
 }
 
 /// Looks at the corners of triangles.
-void check_corners(const TriangleView& surface, int index, std::size_t begin, std::size_t end) {
+void check_corners(const TriangleView& surface, int index, const Execution& execution) {
     const std::size_t count = surface.vertices.size() / 3;
-    for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
+    parallel_each(3 * surface.triangle_count(), execution, [&](std::size_t i) {
         const std::int32_t v = surface.triangles[i];
-        if (v >= 0 && static_cast<std::size_t>(v) < count) continue;
+        if (v >= 0 && static_cast<std::size_t>(v) < count) return;
         const auto t = static_cast<std::int64_t>(i / 3);
         throw InputError("bad_index",
                          "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
                              " of " + std::to_string(count),
                          index, {t});
-    }
+    });
 }
 
-/// What the triangles of a range are used as, and which of them have no area.
-struct RangeOfTriangles {
-    struct Used {
-        std::int64_t number;
-        std::array<std::int32_t, 3> vertex;  ///< of the surface, counter-clockwise in plan
-    };
-    std::vector<Used> used;
-    std::vector<std::int64_t> flat;
-};
-
-/// Triangles with an area, counter-clockwise; marks their vertices.
-RangeOfTriangles triangles_with_area(const TriangleView& surface, int index,
-                                     const PlanSnapping& snapping, std::size_t begin,
-                                     std::size_t end, std::vector<std::uint8_t>& is_used) {
-    RangeOfTriangles found;
-    found.used.reserve(end - begin);
-    for (std::size_t t = begin; t < end; ++t) {
-        std::array<std::int32_t, 3> v;
+/// Which way each triangle turns in plan: 1 counter-clockwise, -1 clockwise, 0 it has no area.
+/// Marks the vertices of those with an area.
+Array<std::int8_t> turns_of(const TriangleView& surface, int index, const PlanSnapping& snapping,
+                            std::vector<std::uint8_t>& is_used, const Execution& execution) {
+    Array<std::int8_t> turns(surface.triangle_count());
+    parallel_each(turns.size(), execution, [&](std::size_t t) {
+        const auto v = surface.triangles.subspan(3 * t, 3);
         std::array<std::array<double, 3>, 3> p;
         for (std::size_t i = 0; i < 3; ++i) {
-            v[i] = surface.triangles[t * 3 + i];
-            p[i] = vertex_of(surface, v[i]);
-            p[i][0] = snapping.x(p[i][0]);
-            p[i][1] = snapping.y(p[i][1]);
+            const auto [x, y, z] = vertex_of(surface, v[i]);
+            p[i] = {snapping.x(x), snapping.y(y), z};
         }
         const int turn =
             exact::orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]});
-        const auto number = static_cast<std::int64_t>(t);
-        if (turn == 0) {
-            if (!exact::in_one_line(p[0], p[1], p[2])) {
-                throw InputError("vertical_triangle",
-                                 "triangle " + std::to_string(t) +
-                                     " is vertical: a surface may have only one height at each "
-                                     "point in plan; tilt or remove it",
-                                 index, {number}, p[0]);
-            }
-            found.flat.push_back(number);
-            continue;
+        turns[t] = static_cast<std::int8_t>(turn);
+        if (turn == 0 && !exact::in_one_line(p[0], p[1], p[2])) {
+            throw InputError("vertical_triangle",
+                             "triangle " + std::to_string(t) +
+                                 " is vertical: a surface may have only one height at each "
+                                 "point in plan; tilt or remove it",
+                             index, {static_cast<std::int64_t>(t)}, p[0]);
         }
-        if (turn < 0) std::swap(v[1], v[2]);
-        for (const std::int32_t i : v)
-            atomic_set(is_used[static_cast<std::size_t>(i)]);
-        found.used.push_back({number, v});
-    }
-    return found;
+        for (std::size_t i = 0; i < 3 && turn != 0; ++i)
+            atomic_set(is_used[realmodel::index(v[i])]);
+    });
+    return turns;
 }
 
-/// What the vertices of a surface were added as, none where no triangle uses them.
-struct AddedVertices {
-    std::vector<exact::SpaceId> space;
-    std::vector<exact::VertexId> plan;
-};
-
-/// Adds the used vertices in their order, each fetched some rounds before it is needed.
-AddedVertices add_vertices(PlanArrangement& geometry, const TriangleView& surface,
-                           const PlanSnapping& snapping, const std::vector<std::uint8_t>& is_used,
-                           Progress* progress) {
+/// Adds the used vertices in their order, each fetched some rounds before it is needed; none of the
+/// others.
+std::vector<exact::SpaceId> add_vertices(PlanArrangement& geometry, const TriangleView& surface,
+                                         const PlanSnapping& snapping,
+                                         const std::vector<std::uint8_t>& is_used,
+                                         Progress* progress) {
     constexpr std::size_t kAhead = 12;
-    struct Adding {
-        double x, y, z;
-        exact::VertexId plan;
-    };
-    std::array<Adding, 2 * kAhead> ahead{};  // of vertices, in turn
     const std::size_t count = is_used.size();
-    AddedVertices added{std::vector<exact::SpaceId>(count, kNone),
-                        std::vector<exact::VertexId>(count, kNone)};
-    const auto is_to_add = [&](std::size_t round, std::size_t behind) {
-        return round >= behind && round - behind < count && is_used[round - behind] != 0;
+    std::vector<exact::VertexId> plan(count, kNone);
+    std::vector<exact::SpaceId> space(count, kNone);
+    const auto vertex = [&](std::size_t v) {
+        const auto [x, y, z] = vertex_of(surface, static_cast<std::int64_t>(v));
+        return std::array{snapping.x(x), snapping.y(y), z};
     };
-    for (std::size_t round = 0; round < count + 2 * kAhead; ++round) {
-        poll(progress, round);
-        // the space vertex of one, the plan vertex of a later one, the slot of an even later one
-        if (is_to_add(round, 2 * kAhead)) {
-            const Adding& e = ahead[round % ahead.size()];
-            added.plan[round - 2 * kAhead] = e.plan;
-            added.space[round - 2 * kAhead] = geometry.add_space_vertex(e.plan, e.z);
+    const auto for_each_used = [&](const auto& fetch, const auto& add) {
+        for (std::size_t v = 0; v < count; ++v) {
+            poll(progress, v);
+            if (v + kAhead < count && is_used[v + kAhead] != 0) fetch(v + kAhead);
+            if (is_used[v] != 0) add(v);
         }
-        if (is_to_add(round, kAhead)) {
-            Adding& e = ahead[(round - kAhead) % ahead.size()];
-            e.plan = geometry.add_vertex(e.x, e.y);
-            geometry.prefetch_space_vertex(e.plan, e.z);
-        }
-        if (is_to_add(round, 0)) {
-            const auto [x, y, z] = vertex_of(surface, static_cast<std::int64_t>(round));
-            Adding& e = ahead[round % ahead.size()];
-            e = {snapping.x(x), snapping.y(y), z, kNone};
-            geometry.prefetch_vertex(e.x, e.y);
-        }
-    }
-    return added;
+    };
+    for_each_used(
+        [&](std::size_t v) { geometry.prefetch_vertex(vertex(v)[0], vertex(v)[1]); },
+        [&](std::size_t v) { plan[v] = geometry.add_vertex(vertex(v)[0], vertex(v)[1]); });
+    for_each_used(
+        [&](std::size_t v) { geometry.prefetch_space_vertex(plan[v], vertex(v)[2]); },
+        [&](std::size_t v) { space[v] = geometry.add_space_vertex(plan[v], vertex(v)[2]); });
+    return space;
 }
-
-/// A surface on its way in: what has to be done with it, in four steps, each in chunks that several
-/// threads may do at once. Nothing but adding vertices looks at the geometry.
-class SurfaceLoading {
-public:
-    SurfaceLoading(const TriangleView& surface, int index, const PlanSnapping& snapping)
-        : surface_(surface),
-          index_(index),
-          snapping_(snapping),
-          triangles_(surface.triangles.size() / 3),
-          vertices_(surface.vertices.size() / 3) {}
-
-    static constexpr std::size_t kSteps = 4;
-    std::size_t chunks(std::size_t step) const {
-        switch (step) {
-            case 0:
-                return ranges_of(vertices_) + ranges_of(triangles_);
-            case 1:
-                return ranges_of(triangles_);
-            case 2:
-                return 1;
-            default:
-                return 1 + ranges_of(triangles_);
-        }
-    }
-    /// To be called before the chunks of a step, by one thread.
-    void begin(std::size_t step) {
-        if (step == 1) {
-            is_used_.assign(vertices_, 0);
-            ranges_.resize(ranges_of(triangles_));
-        } else if (step == 3) {
-            is_used_ = {};
-            for (const RangeOfTriangles& range : ranges_)
-                first_.push_back(range.used.size());
-            result_.triangles.resize(exclusive_scan(first_));
-        }
-    }
-    void run(std::size_t step, std::size_t chunk, PlanArrangement& geometry, Progress* progress) {
-        if (step == 0) {
-            check(chunk);
-        } else if (step == 1) {
-            ranges_[chunk] =
-                triangles_with_area(surface_, index_, snapping_, chunk * kRange,
-                                    std::min(triangles_, (chunk + 1) * kRange), is_used_);
-        } else if (step == 2) {
-            added_ = add_vertices(geometry, surface_, snapping_, is_used_, progress);
-        } else if (chunk == 0) {
-            link(progress);
-        } else {
-            use(chunk - 1);
-        }
-    }
-    /// To be called when all is done.
-    LoadedSurface finish(std::vector<Warning>& warnings) {
-        Warning flat{"no_area", index_, {}, {}};
-        for (const RangeOfTriangles& range : ranges_)
-            flat.items.insert(flat.items.end(), range.flat.begin(), range.flat.end());
-        if (!flat.items.empty()) {
-            const char* what = flat.items.size() == 1 ? " triangle" : " triangles";
-            flat.text = std::to_string(flat.items.size()) + what + " without area left out";
-            warnings.push_back(std::move(flat));
-        }
-        ranges_ = {};
-        added_ = {};
-        return std::move(result_);
-    }
-
-private:
-    static std::size_t ranges_of(std::size_t count) { return (count + kRange - 1) / kRange; }
-
-    void check(std::size_t chunk) const {
-        const std::size_t of_vertices = ranges_of(vertices_);
-        if (chunk < of_vertices) {
-            check_vertices(surface_, index_, chunk * kRange,
-                           std::min(vertices_, (chunk + 1) * kRange));
-        } else {
-            chunk -= of_vertices;
-            check_corners(surface_, index_, chunk * kRange,
-                          std::min(triangles_, (chunk + 1) * kRange));
-        }
-    }
-    void link(Progress* progress) {
-        Array<PlanTriangle> corners(result_.triangles.size());
-        PlanTriangle* next = corners.begin();
-        for (const RangeOfTriangles& range : ranges_) {
-            for (const RangeOfTriangles::Used& triangle : range.used) {
-                for (std::size_t i = 0; i < 3; ++i)
-                    (*next)[i] = added_.plan[index(triangle.vertex[i])];
-                ++next;
-            }
-        }
-        result_.links = link_triangles({corners.begin(), corners.size()}, progress);
-    }
-    void use(std::size_t range) {
-        std::transform(ranges_[range].used.begin(), ranges_[range].used.end(),
-                       result_.triangles.begin() + static_cast<std::ptrdiff_t>(first_[range]),
-                       [&](const RangeOfTriangles::Used& triangle) {
-                           UsedTriangle used{triangle.number, {}};
-                           for (std::size_t i = 0; i < 3; ++i)
-                               used.corner[i] = added_.space[index(triangle.vertex[i])];
-                           return used;
-                       });
-    }
-
-    const TriangleView& surface_;
-    int index_;
-    const PlanSnapping& snapping_;
-    std::size_t triangles_, vertices_;
-    std::vector<std::uint8_t> is_used_;
-    std::vector<RangeOfTriangles> ranges_;
-    AddedVertices added_;
-    std::vector<std::size_t> first_;
-    LoadedSurface result_;
-};
 
 }  // namespace
 
-std::vector<LoadedSurface> load_surfaces(PlanArrangement& geometry,
-                                         std::span<const TriangleView> surfaces, int first_index,
-                                         const PlanSnapping& snapping,
-                                         std::vector<Warning>& warnings,
-                                         const Execution& execution) {
-    std::vector<SurfaceLoading> entries;
-    for (std::size_t k = 0; k < surfaces.size(); ++k)
-        entries.emplace_back(surfaces[k], first_index + static_cast<int>(k), snapping);
-    std::vector<LoadedSurface> result;
-    // Only one thread can add vertices, one surface after another. Meanwhile the others look at
-    // the next surfaces and link the one before. Older surfaces come first, so that what is wrong
-    // with the oldest is heard of.
-    struct LoadingStep {
-        SurfaceLoading* entry;
-        std::size_t step, first_chunk;
-    };
-    constexpr std::size_t kSteps = SurfaceLoading::kSteps;
-    for (std::size_t round = 0; round + 1 < entries.size() + kSteps && !entries.empty(); ++round) {
-        std::vector<LoadingStep> parts;
-        std::size_t chunks = 0;
-        for (std::size_t step = kSteps; step-- > 0;) {
-            if (round < step || round - step >= entries.size()) continue;
-            SurfaceLoading& entry = entries[round - step];
-            entry.begin(step);
-            parts.push_back({&entry, step, chunks});
-            chunks += entry.chunks(step);
+std::vector<UsedTriangle> load_surface(PlanArrangement& geometry, const TriangleView& surface,
+                                       int index, const PlanSnapping& snapping,
+                                       std::vector<Warning>& warnings, const Execution& execution) {
+    check_vertices(surface, index, execution);
+    check_corners(surface, index, execution);
+    std::vector<std::uint8_t> is_used(surface.vertices.size() / 3, 0);
+    const Array<std::int8_t> turns = turns_of(surface, index, snapping, is_used, execution);
+    const auto space = add_vertices(geometry, surface, snapping, is_used, execution.progress);
+    const auto flat = static_cast<std::size_t>(std::ranges::count(turns, 0));
+    std::vector<UsedTriangle> used;
+    used.reserve(turns.size() - flat);
+    Warning warning{"no_area", index, {}, {}};
+    for (std::size_t t = 0; t < turns.size(); ++t) {
+        const auto number = static_cast<std::int64_t>(t);
+        if (turns[t] == 0) {
+            warning.items.push_back(number);
+            continue;
         }
-        parallel_chunks(chunks, execution, [&](std::size_t chunk) {
-            const auto after = std::upper_bound(
-                parts.begin(), parts.end(), chunk,
-                [](std::size_t c, const LoadingStep& p) { return c < p.first_chunk; });
-            const LoadingStep& part = *std::prev(after);
-            part.entry->run(part.step, chunk - part.first_chunk, geometry, execution.progress);
-        });
-        if (round + 1 >= kSteps) result.push_back(entries[round + 1 - kSteps].finish(warnings));
+        const auto v = surface.triangles.subspan(3 * t, 3);
+        const auto at = [&](std::size_t i) { return space[realmodel::index(v[i])]; };
+        used.push_back({number, {at(0), at(turns[t] > 0 ? 1 : 2), at(turns[t] > 0 ? 2 : 1)}});
     }
-    return result;
+    if (flat > 0) {
+        const char* what = flat == 1 ? " triangle" : " triangles";
+        warning.text = std::to_string(flat) + what + " without area left out";
+        warnings.push_back(std::move(warning));
+    }
+    return used;
 }
 
 namespace {
@@ -378,7 +216,7 @@ Frame add_frame(PlanArrangement& geometry) {
     return frame;
 }
 
-LoadedSurface load_window(PlanArrangement& geometry, const Window& window) {
+std::vector<UsedTriangle> load_window(PlanArrangement& geometry, const Window& window) {
     const std::array<std::array<double, 2>, 4> corner{{{window.low_x, window.low_y},
                                                        {window.high_x, window.low_y},
                                                        {window.high_x, window.high_y},
@@ -389,7 +227,7 @@ LoadedSurface load_window(PlanArrangement& geometry, const Window& window) {
             throw InputError("not_finite", "a corner of the window is not a number or beyond 1e50");
         v[i] = geometry.add_space_vertex(geometry.add_vertex(corner[i][0], corner[i][1]), 0.0);
     }
-    return {{{0, {v[0], v[1], v[2]}}, {1, {v[0], v[2], v[3]}}}, {}};
+    return {{0, {v[0], v[1], v[2]}}, {1, {v[0], v[2], v[3]}}};
 }
 
 LoadedRock load_rock(PlanArrangement& geometry, const StackInput& input, std::int32_t first_surface,
@@ -406,21 +244,15 @@ LoadedRock load_rock(PlanArrangement& geometry, const StackInput& input, std::in
                          first_surface);
     }
     rock.base_elevation = input.base_elevation;
-    rock.surfaces =
-        load_surfaces(geometry, input.surfaces, first_surface, snapping, warnings, execution);
+    // Older surfaces come first, so that what is wrong with the oldest is heard of.
+    for (const TriangleView& surface : input.surfaces) {
+        const int number = first_surface + static_cast<int>(rock.surfaces.size());
+        rock.surfaces.push_back(
+            load_surface(geometry, surface, number, snapping, warnings, execution));
+    }
     if (input.region) rock.region = load_region(geometry, *input.region, first_surface, snapping);
     if (input.window) rock.window = load_window(geometry, *input.window);
     return rock;
-}
-
-SurfacePlan plan_window(const PlanContext& context, const LoadedSurface& window,
-                        Progress* progress) {
-    std::vector<PlanTriangle> triangles;
-    for (const UsedTriangle& triangle : window.triangles)
-        triangles.push_back(plan_of(context.geometry, triangle));
-    SurfacePlan result{link_triangles(triangles, progress), {}};
-    result.filling = fill_frame(context.geometry, result.links.border, context.frame);
-    return result;
 }
 
 /// The base of a rock mass; its heights must be there before the vertices are frozen.
@@ -467,7 +299,11 @@ std::unique_ptr<PlanContext> load_input(std::span<const StackInput> rocks,
         add_base(context, rock);
     context.geometry.freeze_vertices();
     for (LoadedRock& rock : context.rocks) {
-        rock.plans = plan_surfaces(context.geometry, rock.surfaces, context.frame, execution);
+        rock.plans.resize(rock.surfaces.size());
+        parallel_chunks(rock.surfaces.size(), execution, [&](std::size_t k) {
+            rock.plans[k] =
+                plan_surface(context.geometry, rock.surfaces[k], context.frame, execution.progress);
+        });
         for (const SurfacePlan& plan : rock.plans)
             context.is_single_valued &= plan.filling && !plan.filling->is_covered_twice();
         if (rock.region) {
@@ -476,7 +312,9 @@ std::unique_ptr<PlanContext> load_input(std::span<const StackInput> rocks,
             context.is_single_valued &= filling && !filling->is_covered_twice();
             if (filling) rock.region_filling = std::move(*filling);
         }
-        if (rock.window) rock.window_plan = plan_window(context, *rock.window, execution.progress);
+        if (rock.window)
+            rock.window_plan =
+                plan_surface(context.geometry, *rock.window, context.frame, execution.progress);
     }
     return loaded;
 }

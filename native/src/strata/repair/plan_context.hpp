@@ -16,15 +16,15 @@ namespace realmodel::strata {
 struct LoadedRock {
     std::int32_t number = 0;
     std::int32_t first_surface = 0;  ///< counted through all rock masses
-    std::vector<LoadedSurface> surfaces;
+    std::vector<std::vector<UsedTriangle>> surfaces;
     std::vector<SurfacePlan> plans;  ///< of the surfaces
     std::vector<Rule> rules;
     std::vector<std::size_t> emptied;  ///< surfaces before which all that is there becomes air
     std::vector<std::uint8_t> fills;   ///< of those before the last of them: 1 for tops of bodies
     std::optional<std::vector<PlanTriangle>> region;
     std::vector<BorderEdge> region_border;
-    FrameTriangles region_filling;        ///< the frame around the region
-    std::optional<LoadedSurface> window;  ///< two triangles at height 0
+    FrameTriangles region_filling;                    ///< the frame around the region
+    std::optional<std::vector<UsedTriangle>> window;  ///< two triangles at height 0
     SurfacePlan window_plan;
     std::optional<double> base_elevation;
     std::optional<PlaneId> base;  ///< a plane over the frame
@@ -51,14 +51,13 @@ struct PlanContext {
     bool is_empty() const { return geometry.point_count() == 0; }
 };
 
-/// Checks surfaces, adds their vertices and links their triangles; leaves out triangles without
-/// area (with a warning). The first of them is number `first_index` of all.
+/// Checks a surface and adds its vertices; leaves out triangles without area (with a warning).
+/// @param index  the number of the surface
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle
-std::vector<LoadedSurface> load_surfaces(exact::PlanArrangement& geometry,
-                                         std::span<const TriangleView> surfaces, int first_index,
-                                         const PlanSnapping& snapping,
-                                         std::vector<Warning>& warnings,
-                                         const Execution& execution);
+std::vector<UsedTriangle> load_surface(exact::PlanArrangement& geometry,
+                                       const TriangleView& surface, int index,
+                                       const PlanSnapping& snapping, std::vector<Warning>& warnings,
+                                       const Execution& execution);
 
 /// Checks and loads the input: its vertices, a frame around them and flat bases; and finds how
 /// each surface lies in the frame.

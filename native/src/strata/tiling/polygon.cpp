@@ -5,52 +5,141 @@
 
 namespace realmodel::strata {
 
-void clip(LocalArrangement& scope, PolygonView polygon, DirectedLine line, std::vector<int>& sides,
-          Polygon& result) {
+void keep_left(LocalArrangement& scope, PolygonView polygon, DirectedLine line,
+               std::span<const std::int8_t> sides, Polygon& result) {
     result.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const int side = sides[i], next = sides[i + 1 < polygon.size() ? i + 1 : 0];
+        const Corner& corner = polygon[i];
+        if (side >= 0) result.push_back({corner.point, side == 0 && next < 0 ? line : corner.line});
+        if (side * next < 0)
+            result.push_back(
+                {scope.crossing(corner.line.id(), line.id()), side > 0 ? line : corner.line});
+    }
+}
+
+void Clipper::begin(PolygonView subject) {
+    subject_ = subject;
+    filters_.clear();
+    for (std::size_t i = 0; i < subject.size(); ++i)
+        filters_.push_back(filter_of(subject, i));
+}
+
+/// Whether some corner of a polygon lies to the left of each edge of another one; two polygons
+/// share an area where that is so both ways.
+template <class FilterOf>
+bool Clipper::reaches_inside(PolygonView polygon, PolygonView window,
+                             const FilterOf& filter_of_edge, Sides& sides) {
     sides.clear();
-    bool any_left = false, any_right = false;
-    for (const Corner& corner : polygon) {
-        const int s = scope.side(line, corner.point);
-        sides.push_back(s);
-        any_left |= s > 0;
-        any_right |= s < 0;
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        const exact::ReachFilter filter = filter_of_edge(j);
+        bool any_left = false;
+        for (const Corner& corner : polygon) {
+            const int side = exact::side_of(scope_, filter, window[j].line, corner.point);
+            any_left |= side > 0;
+            sides.push_back(static_cast<std::int8_t>(side));
+        }
+        if (!any_left) return false;
     }
-    if (!any_left) return;
-    if (!any_right) {
-        result.assign(polygon.begin(), polygon.end());
-        return;
+    return true;
+}
+
+bool Clipper::overlaps(PolygonView window) {
+    return reaches_inside(
+               window, subject_, [&](std::size_t i) { return filters_[i]; }, window_sides_) &&
+           reaches_inside(
+               subject_, window, [&](std::size_t j) { return filter_of(window, j); },
+               subject_sides_);
+}
+
+PolygonView Clipper::intersect(PolygonView window) {
+    result_.clear();
+    if (!overlaps(window)) return {};
+    if (std::ranges::find(subject_sides_, 0) == subject_sides_.end() &&
+        std::ranges::find(window_sides_, 0) == window_sides_.end()) {
+        follow(window);
+    } else {
+        cut_by_lines(window);
+        rotate(window);
     }
-    keep_left(scope, polygon, line, sides, result);
+    return result_;
 }
 
-PolygonView Clipper::intersect(PolygonView subject, PolygonView window) {
-    if (separated(window, subject)) return {};
-    current_.assign(subject.begin(), subject.end());
-    for (const Corner& corner : window) {
-        clip(scope_, current_, corner.line, sides_, next_);
-        std::swap(current_, next_);
-        if (current_.empty()) break;
+/// Goes around the subject, and from each edge where it leaves the window around the window until
+/// that leaves the subject, where the subject comes in again. No corner lies on a line of the
+/// other.
+void Clipper::follow(PolygonView window) {
+    const std::size_t m = subject_.size(), n = window.size();
+    const auto after = [](std::size_t i, std::size_t count) { return i + 1 < count ? i + 1 : 0; };
+    const auto is_inside = [](const Sides& sides, std::size_t corner, std::size_t corners) {
+        for (; corner < sides.size(); corner += corners) {
+            if (sides[corner] < 0) return false;
+        }
+        return true;
+    };
+    /// The window's edge that edge i crosses from a side, or n.
+    const auto crossed = [&](std::size_t i, int side) {
+        for (std::size_t j = 0; j < n; ++j) {
+            if (subject_sides_[j * m + i] == side && subject_sides_[j * m + after(i, m)] == -side &&
+                window_sides_[i * n + j] != window_sides_[i * n + after(j, n)])
+                return j;
+        }
+        return n;
+    };
+    const auto add_crossing = [&](std::size_t i, std::size_t j, DirectedLine leaving) {
+        result_.push_back(
+            {scope_.crossing_between_ends(subject_[i].line.id(), window[j].line.id()), leaving});
+    };
+    for (std::size_t i = 0; i < m; ++i) {
+        if (is_inside(subject_sides_, i, m)) result_.push_back(subject_[i]);
+        if (const std::size_t j = crossed(i, -1); j < n) add_crossing(i, j, subject_[i].line);
+        const std::size_t out = crossed(i, 1);
+        if (out == n) continue;
+        add_crossing(i, out, window[out].line);
+        for (std::size_t j = after(out, n); j != out && is_inside(window_sides_, j, n);
+             j = after(j, n))
+            result_.push_back(window[j]);
     }
-    return current_;
+    if (result_.empty()) result_.assign(window.begin(), window.end());  // it lies in the subject
 }
 
-PolygonView Clipper::cut(PolygonView subject, DirectedLine line) {
-    clip(scope_, subject, line, sides_, next_);
-    return next_;
+void Clipper::cut_by_lines(PolygonView window) {
+    result_.assign(subject_.begin(), subject_.end());
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        sides_.clear();
+        for (const Corner& corner : result_) {
+            const auto i = static_cast<std::size_t>(
+                std::ranges::find(subject_, corner.point, &Corner::point) - subject_.begin());
+            const int side = i < subject_.size() ? subject_sides_[j * subject_.size() + i]
+                                                 : scope_.side(window[j].line, corner.point);
+            sides_.push_back(static_cast<std::int8_t>(side));
+        }
+        if (std::ranges::max(sides_) <= 0) return result_.clear();
+        if (std::ranges::min(sides_) >= 0) continue;
+        keep_left(scope_, result_, window[j].line, sides_, next_);
+        std::swap(result_, next_);
+    }
 }
 
-// Whether all of b lies to the right of one edge of a.
-bool Clipper::separated(PolygonView a, PolygonView b) {
-    return std::any_of(a.begin(), a.end(), [&](const Corner& edge) {
-        return std::all_of(b.begin(), b.end(), [&](const Corner& corner) {
-            return scope_.side(edge.line, corner.point) <= 0;
-        });
-    });
-}
-
-bool Clipper::overlap(PolygonView a, PolygonView b) {
-    return !separated(a, b) && !separated(b, a);
+/// Has the result begin where it would without corners on lines of the other polygon.
+void Clipper::rotate(PolygonView window) {
+    const auto begin_at = [this](const auto& is_first) {
+        for (std::size_t k = 0; k < result_.size(); ++k) {
+            if (!is_first(result_[k], result_[(k > 0 ? k : result_.size()) - 1])) continue;
+            std::rotate(result_.begin(), result_.begin() + static_cast<std::ptrdiff_t>(k),
+                        result_.end());
+            return true;
+        }
+        return false;
+    };
+    for (const Corner& edge : subject_) {
+        if (begin_at([&](const Corner& corner, const Corner& before) {
+                return corner.line == edge.line &&
+                       (corner.point == edge.point || before.line != edge.line);
+            }))
+            return;
+    }
+    begin_at([&](const Corner& corner, const Corner&) { return corner.point == window[0].point; });
 }
 
 }  // namespace realmodel::strata

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
 #include "exact/local_arrangement.hpp"
+#include "exact/reach_filter.hpp"
 #include "realmodel/base/array.hpp"
 
 namespace realmodel::strata {
@@ -33,25 +33,6 @@ inline exact::DirectedEdge edge_of(PolygonView polygon, std::size_t i) {
     return {polygon[i].line, polygon[i].point, polygon[i + 1 < polygon.size() ? i + 1 : 0].point};
 }
 
-/// Copies the corners of a polygon to other memory, those of triangles and of most pieces by a few
-/// instructions: a call for each costs more than its corners.
-inline void copy_corners(PolygonView from, Corner* to) {
-    const auto copy_two = [&](std::size_t at) {
-        std::memcpy(to + at, from.data() + at, 2 * sizeof(Corner));
-    };
-    const std::size_t count = from.size();
-    if (count < 2 || count > 8) {
-        std::copy(from.begin(), from.end(), to);
-    } else {  // what is copied twice is the same
-        copy_two(0);
-        if (count > 4) {
-            copy_two(2);
-            copy_two(count - 4);
-        }
-        copy_two(count - 2);
-    }
-}
-
 /// Many polygons in one array; of less than 2^32 corners, as joining chunks checks.
 struct PolygonPool {
     Array<std::uint32_t> offsets{0};
@@ -62,9 +43,7 @@ struct PolygonPool {
         return {corners.data() + offsets[i], offsets[i + 1] - offsets[i]};
     }
     void add(PolygonView polygon) {
-        const std::size_t before = corners.size();
-        corners.resize(before + polygon.size());
-        copy_corners(polygon, corners.begin() + before);
+        corners.append(polygon.begin(), polygon.end());
         offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
 };
@@ -88,51 +67,44 @@ inline void share(LocalArrangement& scope, PolygonPool& pool) {
     share(scope, pool, pool.corners.begin());
 }
 
-/// The part of a convex polygon to the left of a line; empty where it has no area.
-/// `sides` is scratch; `result` must not be `polygon`.
-void clip(LocalArrangement& scope, PolygonView polygon, DirectedLine line, std::vector<int>& sides,
-          Polygon& result);
+/// The part of a convex polygon to the left of a line that crosses it.
+/// @param sides  of its corners: 1 left, 0 on the line, -1 right
+void keep_left(LocalArrangement& scope, PolygonView polygon, DirectedLine line,
+               std::span<const std::int8_t> sides, Polygon& result);
 
-/// Appends what lies to the left of a line of a convex polygon's corners (a Corner, or what has one
-/// as its base), whose sides are known; crossings with the line are new corners.
-template <class Corners, class Result>
-void keep_left(LocalArrangement& scope, const Corners& corners, DirectedLine line,
-               const std::vector<int>& sides, Result& result) {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const int here = sides[i], there = sides[i + 1 < corners.size() ? i + 1 : 0];
-        const auto& corner = corners[i];
-        if (here >= 0) {
-            result.push_back(corner);
-            if (here == 0 && there < 0) result.back().line = line;
-        }
-        if (here * there < 0) {
-            const PointId at = scope.crossing(corner.line.id(), line.id());
-            const DirectedLine leaving = here > 0 ? line : corner.line;
-            auto& made = result.emplace_back();
-            made.point = at;
-            made.line = leaving;
-        }
-    }
-}
-
-/// Clips by every edge of a convex polygon in turn.
+/// Cuts one convex polygon after another with other ones. The corners of each of the two are asked
+/// once about the lines of the other; where one lies on a line, more is asked about new corners.
 class Clipper {
 public:
     explicit Clipper(LocalArrangement& scope) : scope_(scope) {}
 
-    /// The common part of two convex polygons, valid until the next call; empty without area.
-    PolygonView intersect(PolygonView subject, PolygonView window);
-    /// The part of a polygon to the left of a line, valid until the next call.
-    PolygonView cut(PolygonView subject, DirectedLine line);
-    /// Whether two convex polygons share an area; makes no points.
-    bool overlap(PolygonView a, PolygonView b);
+    /// Begins with a polygon, which has to stay where it is.
+    void begin(PolygonView subject);
+    /// What it has in common with another one, valid until the next call; empty without area. It
+    /// begins with the first of the subject's edges that it has a part of, or with the window's
+    /// first corner where it has none.
+    PolygonView intersect(PolygonView window);
+    /// Whether the two share an area; makes no points.
+    bool overlaps(PolygonView window);
 
 private:
-    bool separated(PolygonView a, PolygonView b);
+    using Sides = std::vector<std::int8_t>;
+    exact::ReachFilter filter_of(PolygonView polygon, std::size_t edge) const {
+        return exact::reach_filter(scope_, edge_of(polygon, edge));
+    }
+    template <class FilterOf>
+    bool reaches_inside(PolygonView polygon, PolygonView window, const FilterOf& filter_of_edge,
+                        Sides& sides);
+    void follow(PolygonView window);
+    void cut_by_lines(PolygonView window);
+    void rotate(PolygonView window);
 
     LocalArrangement& scope_;
-    std::vector<int> sides_;
-    Polygon current_, next_;
+    PolygonView subject_;
+    std::vector<exact::ReachFilter> filters_;  ///< of its edges
+    Sides subject_sides_, window_sides_;  ///< of the corners, for each line of the other polygon
+    Sides sides_;                         ///< of what is left
+    Polygon result_, next_;
 };
 
 }  // namespace realmodel::strata

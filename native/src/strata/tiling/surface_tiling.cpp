@@ -33,7 +33,8 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTria
                               const std::vector<UsedTriangle>& triangles, std::size_t one,
                               std::size_t other, int index) {
     Clipper clipper(scope);
-    const PolygonView common = clipper.intersect(tiling.polygons[one], tiling.polygons[other]);
+    clipper.begin(tiling.polygons[one]);
+    const PolygonView common = clipper.intersect(tiling.polygons[other]);
     std::array<double, 3> position{0, 0, 0};
     const auto share = 1.0 / static_cast<double>(common.size());
     for (const Corner& corner : common) {
@@ -60,9 +61,10 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTria
         Array<std::int32_t> candidates;
         for (std::size_t t = begin; t < end; ++t) {
             tiling.grid.candidates(scope, tiling.polygons[t], candidates);
+            clipper.begin(tiling.polygons[t]);
             for (const std::int32_t c : candidates) {
                 const auto other = static_cast<std::size_t>(c);
-                if (other > t && clipper.overlap(tiling.polygons[t], tiling.polygons[other])) {
+                if (other > t && clipper.overlaps(tiling.polygons[other])) {
                     refuse_pair(scope, tiling, triangles, t, other, index);
                 }
             }
@@ -175,15 +177,16 @@ bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t 
     return true;
 }
 
-std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
-                                       std::vector<LoadedSurface>& surfaces, const Frame& frame,
-                                       const Execution& execution) {
-    std::vector<SurfacePlan> plans(surfaces.size());
-    parallel_chunks(surfaces.size(), execution, [&](std::size_t k) {
-        plans[k].links = std::move(surfaces[k].links);
-        plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
+SurfacePlan plan_surface(const PlanArrangement& geometry,
+                         const std::vector<UsedTriangle>& triangles, const Frame& frame,
+                         Progress* progress) {
+    Array<PlanTriangle> corners(triangles.size());
+    std::ranges::transform(triangles, corners.begin(), [&](const UsedTriangle& triangle) {
+        return plan_of(geometry, triangle);
     });
-    return plans;
+    SurfacePlan plan{link_triangles({corners.begin(), corners.size()}, progress), {}};
+    plan.filling = cover_frame(geometry, plan.links.border, frame);
+    return plan;
 }
 
 PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
@@ -196,8 +199,7 @@ PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& 
 
 SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
-                                  const PolygonPool& similar, int index,
-                                  const Execution& execution) {
+                                  int index, const Execution& execution) {
     SurfaceTiling tiling;
     const PlaneId first = make_planes(geometry, triangles, execution);
     tiling.plane.resize(triangles.size());
@@ -208,7 +210,6 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
             const std::int32_t n = plan.links.neighbor[t][i];
             return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
         },
-        [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
         tiling.polygons, execution.progress);
     if (!plan.filling) {
         tiling.index(geometry, execution);
@@ -247,7 +248,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
                               SurfacePlan plan, std::int32_t number, TriangleLinks& links,
                               const Execution& execution) {
     if (!plan.filling)
-        make_surface_tiling(geometry, triangles, plan, {}, number, execution);  // refuses
+        make_surface_tiling(geometry, triangles, plan, number, execution);  // refuses
     const PlaneId first = make_planes(geometry, triangles, execution);
     assert(plan.links.neighbor.size() == triangles.size());
     links.neighbor.resize(index(first), {kNone, kNone, kNone});  // planes of bases

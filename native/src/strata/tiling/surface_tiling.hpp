@@ -70,12 +70,6 @@ struct UsedTriangle {
 /// Its plan vertices.
 PlanTriangle plan_of(const exact::PlanArrangement& geometry, const UsedTriangle& triangle);
 
-/// A checked surface, and how its triangles are connected in plan.
-struct LoadedSurface {
-    std::vector<UsedTriangle> triangles;
-    PlanLinks links;
-};
-
 /// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
 std::array<Corner, 3> triangle_outline(exact::PlanArrangement& geometry, const PlanTriangle& v);
 
@@ -87,49 +81,36 @@ inline constexpr std::int32_t kNoOutline = -1;
 /// @param plan_of  plan_of(i) is the i-th triangle
 /// @param earlier  earlier(i, e) is which of the triangles before the i-th has edge e the other way
 ///     around, or kNoOutline
-/// @param similar  similar(i) is an outline that may be of the same triangle, or empty
-template <class PlanOf, class Earlier, class Similar>
+template <class PlanOf, class Earlier>
 void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
-                  const Earlier& earlier, const Similar& similar, PolygonPool& pool,
-                  Progress* progress) {
+                  const Earlier& earlier, PolygonPool& pool, Progress* progress) {
     constexpr std::size_t kAhead = 8;
-    const DirectedLine unknown{LineId(kNone)};
     const std::size_t polygons = pool.size(), corners = pool.corners.size();
     pool.corners.resize(corners + 3 * count);
     pool.offsets.resize(polygons + count + 1);
     const auto outline = [&](std::size_t i) { return &pool.corners[corners + 3 * i]; };
-    for (std::size_t ahead = 0; ahead < count + kAhead; ++ahead) {
-        poll(progress, ahead);
-        if (ahead < count) {
-            const PlanTriangle v = plan_of(ahead);
-            const PolygonView like = similar(ahead);
-            const bool same = like.size() == 3 && like[0].point == v[0] && like[1].point == v[1] &&
-                              like[2].point == v[2];
-            for (std::size_t e = 0; e < 3; ++e) {
-                outline(ahead)[e] = {v[e], same ? like[e].line : unknown};
-                if (!same && earlier(ahead, e) == kNoOutline)
-                    geometry.prefetch_edge(v[e], v[(e + 1) % 3]);
-            }
-            pool.offsets[polygons + ahead + 1] =
-                static_cast<std::uint32_t>(corners + 3 * (ahead + 1));
-        }
-        if (ahead < kAhead) continue;
-        const std::size_t i = ahead - kAhead;
-        Corner* const own = outline(i);
+    for (std::size_t i = 0; i < count; ++i) {
+        poll(progress, i);
+        const PlanTriangle v = plan_of(i);
+        const PlanTriangle ahead = plan_of(std::min(i + kAhead, count - 1));
         for (std::size_t e = 0; e < 3; ++e) {
-            if (own[e].line != unknown) continue;
-            const PointId to = own[(e + 1) % 3].point;
+            const std::size_t next = (e + 1) % 3;
+            if (i + kAhead < count && earlier(i + kAhead, e) == kNoOutline)
+                geometry.prefetch_edge(ahead[e], ahead[next]);
+            Corner& corner = outline(i)[e];
+            corner.point = v[e];
             const std::int32_t before = earlier(i, e);
             if (before == kNoOutline) {
-                own[e].line = geometry.add_edge(geometry.vertex(own[e].point), geometry.vertex(to));
+                corner.line = geometry.add_edge(v[e], v[next]);
                 continue;
             }
             assert(static_cast<std::size_t>(before) < i);
             const Corner* other = outline(static_cast<std::size_t>(before));
-            while (other->point != to)
+            while (other->point != v[next])
                 ++other;
-            own[e].line = other->line.reversed();
+            corner.line = other->line.reversed();
         }
+        pool.offsets[polygons + i + 1] = static_cast<std::uint32_t>(corners + 3 * (i + 1));
     }
 }
 
@@ -138,8 +119,8 @@ template <class PlanOf>
 void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
                   PolygonPool& pool, Progress* progress) {
     add_outlines(
-        geometry, count, plan_of, [](std::size_t, std::size_t) { return kNoOutline; },
-        [](std::size_t) { return PolygonView(); }, pool, progress);
+        geometry, count, plan_of, [](std::size_t, std::size_t) { return kNoOutline; }, pool,
+        progress);
 }
 
 /// Whether two triangles meet along edge i of the first at the same heights.
@@ -153,22 +134,19 @@ struct SurfacePlan {
     std::optional<FrameTriangles> filling;
 };
 
-/// How checked surfaces lie in plan; their links are taken.
-std::vector<SurfacePlan> plan_surfaces(const exact::PlanArrangement& geometry,
-                                       std::vector<LoadedSurface>& surfaces, const Frame& frame,
-                                       const Execution& execution);
+SurfacePlan plan_surface(const exact::PlanArrangement& geometry,
+                         const std::vector<UsedTriangle>& triangles, const Frame& frame,
+                         Progress* progress);
 
 /// Planes of triangles, one after another; the first of them.
 PlaneId make_planes(exact::PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     const Execution& execution);
 
-/// The tiling of a checked surface, whose plan is taken. `similar`: outlines that some of the
-/// triangles may have at the same numbers, whose lines are then known.
+/// The tiling of a checked surface, whose plan is taken.
 /// @throws InputError kind double_valued, with the two triangles and a position in both
 SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
-                                  const PolygonPool& similar, int index,
-                                  const Execution& execution);
+                                  int index, const Execution& execution);
 
 /// The region as a tiling: plane kSky inside and kOutside outside.
 SurfaceTiling make_region_tiling(exact::PlanArrangement& geometry,

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "../scene.hpp"
-#include "strata/overlay/facet_clipper.hpp"
 
 namespace realmodel::strata {
 namespace {
@@ -38,7 +37,7 @@ int walked(const OwnedSurface& facets, const OwnedSurface& surface) {
     const SurfaceTiling tiling = scene.tiling(0), upper = scene.tiling(1);
     LocalArrangement scope(scene.geometry());
     TilingWalk walk(scope, tiling);
-    FacetClipper reference(scope);
+    Clipper reference(scope);
     Array<std::int32_t> near;
     int count = 0;
     for (std::size_t f = 0; f < facets.triangles.size() / 3; ++f) {

@@ -11,11 +11,16 @@ namespace {
 struct LoadedInput {
     exact::PlanArrangement geometry;
     std::vector<Warning> warnings;
-    std::vector<LoadedSurface> surfaces;
+    std::vector<UsedTriangle> triangles;
 
     explicit LoadedInput(const OwnedSurface& surface, const PlanSnapping& snapping = {}) {
-        const std::vector<TriangleView> views{surface.view()};
-        surfaces = load_surfaces(geometry, views, 7, snapping, warnings, {1, nullptr});
+        triangles = load_surface(geometry, surface.view(), 7, snapping, warnings, {1, nullptr});
+    }
+    std::vector<BorderEdge> border() const {
+        std::vector<PlanTriangle> corners;
+        for (const UsedTriangle& triangle : triangles)
+            corners.push_back(plan_of(geometry, triangle));
+        return link_triangles(corners, nullptr).border;
     }
 };
 
@@ -34,8 +39,8 @@ TEST(SurfaceInput, TrianglesTurnCounterClockwiseWhicheverWayTheyWereGiven) {
     const auto a = s.vertex(0, 0, 0), b = s.vertex(1, 0, 0), c = s.vertex(0, 1, 0);
     s.triangle(a, c, b);
     const LoadedInput entered(s);
-    ASSERT_EQ(entered.surfaces[0].triangles.size(), 1u);
-    const auto& corner = entered.surfaces[0].triangles[0].corner;
+    ASSERT_EQ(entered.triangles.size(), 1u);
+    const auto& corner = entered.triangles[0].corner;
     double area = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         const auto at = [&](std::size_t k) -> const exact::Point& {
@@ -54,8 +59,7 @@ TEST(SurfaceInput, EqualVerticesAreOne) {
         s.triangle(a, b, c);
     }
     const LoadedInput entered(s);
-    const auto& links = entered.surfaces[0].links;
-    EXPECT_EQ(links.border.size(), 4u);  // they hang together
+    EXPECT_EQ(entered.border().size(), 4u);  // they hang together
 }
 
 TEST(SurfaceInput, WhatHasNoAreaIsLeftOutWithAWarning) {
@@ -66,8 +70,8 @@ TEST(SurfaceInput, WhatHasNoAreaIsLeftOutWithAWarning) {
     s.triangle(a, middle, b);  // in one line
     s.triangle(a, a, c);
     const LoadedInput entered(s);
-    ASSERT_EQ(entered.surfaces[0].triangles.size(), 1u);
-    EXPECT_EQ(entered.surfaces[0].triangles[0].number, 0);
+    ASSERT_EQ(entered.triangles.size(), 1u);
+    EXPECT_EQ(entered.triangles[0].number, 0);
     ASSERT_EQ(entered.warnings.size(), 1u);
     EXPECT_EQ(entered.warnings[0].surface, 7);
     EXPECT_EQ(entered.warnings[0].items, (std::vector<std::int64_t>{1, 2}));
@@ -94,10 +98,10 @@ TEST(SurfaceInput, CoordinatesAreSnappedBeforeVerticesAreCompared) {
                other_b = s.vertex(beside, 1, 0), d = s.vertex(0, 1, 0);
     s.triangle(a, c, b);
     s.triangle(a, other_b, d);
-    EXPECT_EQ(LoadedInput(s).surfaces[0].links.border.size(), 6u);
+    EXPECT_EQ(LoadedInput(s).border().size(), 6u);
     PlanSnapping snapping;
     snapping.x = AxisSnapping({{beside, 1.0}});
-    EXPECT_EQ(LoadedInput(s, snapping).surfaces[0].links.border.size(), 4u);
+    EXPECT_EQ(LoadedInput(s, snapping).border().size(), 4u);
 }
 
 }  // namespace

@@ -53,10 +53,11 @@ TEST(PlanGrid, FindsAllPolygonsThatShareAnAreaOnceAndInOrder) {
     Clipper clipper(local);
     for (std::size_t i = 0; i < t.polygons.size(); ++i) {
         const auto found = t.candidates(grid, i);
+        clipper.begin(t.polygons[i]);
         EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
         EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
         for (std::size_t j = 0; j < t.polygons.size(); ++j) {
-            if (!clipper.overlap(t.polygons[i], t.polygons[j])) continue;
+            if (!clipper.overlaps(t.polygons[j])) continue;
             EXPECT_TRUE(
                 std::binary_search(found.begin(), found.end(), static_cast<std::int32_t>(j)))
                 << i << " shares an area with " << j;

@@ -59,8 +59,8 @@ TEST(SurfaceTiling, TrianglesMeetInHeightWhereTheyShareBothCorners) {
     torn.triangle(a, raised, d);
     Scene scene({square(0), torn});
     auto& rocks = scene.context->rocks[0];
-    const PlaneId whole = make_planes(scene.geometry(), rocks.surfaces[0].triangles, {1, nullptr});
-    const PlaneId parted = make_planes(scene.geometry(), rocks.surfaces[1].triangles, {1, nullptr});
+    const PlaneId whole = make_planes(scene.geometry(), rocks.surfaces[0], {1, nullptr});
+    const PlaneId parted = make_planes(scene.geometry(), rocks.surfaces[1], {1, nullptr});
     const auto next = [](PlaneId plane) { return static_cast<PlaneId>(index(plane) + 1); };
     // the diagonal is the last edge of the first triangle
     EXPECT_TRUE(meet_in_height(scene.geometry(), whole, 2, next(whole)));

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+
+#include "exact/local_arrangement.hpp"
+
+namespace realmodel::exact {
+
+/// A directed line as a (x - x0) + b (y - y0) + c, with one bound for its error at all points
+/// within reach of the input vertices. Most signs are certain far beyond it, and it costs nothing
+/// for each point.
+struct ReachFilter {
+    double a, b, c, x0, y0, bound;
+};
+
+/// That of any line: the bound is LineFilter::error_at at the farthest point.
+ReachFilter reach_filter(const LocalArrangement& scope, DirectedLine line);
+
+/// That of the line through two input vertices, whatever it is made of.
+inline ReachFilter reach_filter_between(const PlanReach& reach, const Point& from,
+                                        const Point& to) {
+    const double a = from.y - to.y, b = to.x - from.x;
+    return {a,      b,
+            0,      from.x,
+            from.y, std::abs(a) * reach.edge_x + std::abs(b) * reach.edge_y + 2 * kTermUnderflow};
+}
+
+inline ReachFilter reach_filter(const LocalArrangement& scope, const DirectedEdge& edge) {
+    const PlanArrangement& shared = scope.shared();
+    if (scope.is_vertex(edge.from) && scope.is_vertex(edge.to))
+        return reach_filter_between(shared.reach(), shared.point(edge.from), shared.point(edge.to));
+    return reach_filter(scope, edge.line);
+}
+
+/// The same as LocalArrangement::side, with the line's filter. This is the question asked most of
+/// all, so it is inlined.
+[[gnu::always_inline]] inline int side_of(LocalArrangement& scope, const ReachFilter& f,
+                                          DirectedLine line, PointId id) {
+    const Point& p = scope.point(id);
+    const double value = f.a * (p.x - f.x0) + f.b * (p.y - f.y0) + f.c;
+    if (!(std::abs(value) > f.bound) || !scope.shared().reach().has(p.x, p.y))
+        return scope.side(line, id);
+    scope.count_decisions(1);
+    return value > 0 ? 1 : -1;
+}
+
+}  // namespace realmodel::exact
