@@ -5,7 +5,6 @@
 #include "base/index.hpp"
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/lattice.hpp"
-#include "meshing/ring_graph.hpp"
 
 namespace realmodel::meshing {
 
@@ -16,6 +15,40 @@ struct OpenEdge {
     Segment ends;
     HalfEdge edge;
 };
+
+/// Which faces lie in the band, by time stamp: crossing its border changes it, crossing an inner
+/// line does not.
+std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment>& inner,
+                                       const Check& check) {
+    constexpr signed char kUnknown = -1;
+    std::size_t stamps = 0;
+    for (auto face = cdt.all_faces_begin(); face != cdt.all_faces_end(); ++face)
+        stamps = std::max(stamps, face->time_stamp() + 1);
+    std::vector<signed char> parity(stamps, kUnknown);
+    const auto is_inner = [&](Cdt::Face_handle face, int i) {
+        if (inner.empty()) return false;
+        return std::ranges::binary_search(
+            inner, unordered(face->vertex(Cdt::ccw(i))->number, face->vertex(Cdt::cw(i))->number));
+    };
+    Ticker tick(check);
+    std::vector<Cdt::Face_handle> open{cdt.infinite_face()};
+    parity[open.back()->time_stamp()] = 0;
+    while (!open.empty()) {
+        tick(0.5);
+        const Cdt::Face_handle face = open.back();
+        open.pop_back();
+        const signed char here = parity[face->time_stamp()];
+        for (int i = 0; i < 3; ++i) {
+            const Cdt::Face_handle next = face->neighbor(i);
+            signed char& there = parity[next->time_stamp()];
+            if (there != kUnknown) continue;
+            const bool changes = face->is_constrained(i) && !is_inner(face, i);
+            there = static_cast<signed char>(changes ? 1 - here : here);
+            open.push_back(next);
+        }
+    }
+    return parity;
+}
 
 /// All lattices as one mesh, numbered on from the border's points.
 void take_lattices(BandedMesh& out, std::vector<TriangleLattice>&& lattices,
@@ -93,26 +126,27 @@ BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
 }
 
 /// Adds the band's triangles to the mesh and joins them to those of the lattices.
-void add_triangles(FlatMesh& mesh, const ConstrainedTriangulation& all,
-                   const std::vector<bool>& in_band, const BandPoints& band,
-                   std::span<const OpenEdge> rim) {
+void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char>& in_band,
+                   const BandPoints& band, std::span<const OpenEdge> rim) {
     std::vector<std::int32_t> triangle_of(in_band.size(), -1);
-    for (std::size_t t = 0; t < in_band.size(); ++t) {
-        const auto& [a, b, c] = all.triangles[t];
-        if (in_band[t])
-            triangle_of[t] = mesh.add_triangle({band.numbers[a], band.numbers[b], band.numbers[c]});
+    for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
+        if (in_band[face->time_stamp()] != 1) continue;
+        triangle_of[face->time_stamp()] = mesh.add_triangle(
+            {band.numbers[face->vertex(0)->number], band.numbers[face->vertex(1)->number],
+             band.numbers[face->vertex(2)->number]});
     }
     std::vector<HalfEdge> open;
-    for (std::size_t t = 0; t < in_band.size(); ++t) {
-        for (int i = 0; i < 3 && in_band[t]; ++i) {
-            const HalfEdge edge(triangle_of[t], i);
-            const std::int32_t other = all.neighbors[t][i];
-            if (other >= 0 && in_band[other]) {
-                const auto& corners = all.triangles[other];
-                const auto end = std::ranges::find(corners, all.triangles[t][(i + 1) % 3]);
-                mesh.twins[edge.triangle()][i] = {triangle_of[other],
-                                                  static_cast<int>(end - corners.begin())};
-                if (all.constrained[t][i]) mesh.fix(edge);
+    for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
+        const std::int32_t t = triangle_of[face->time_stamp()];
+        if (t < 0) continue;
+        for (int i = 0; i < 3; ++i) {
+            const HalfEdge edge(t, i);
+            const int opposite = (i + 2) % 3;  // CGAL numbers an edge by the corner opposite to it
+            const Cdt::Face_handle other = face->neighbor(opposite);
+            const std::int32_t beyond = triangle_of[other->time_stamp()];
+            if (beyond >= 0) {
+                mesh.twins[t][i] = {beyond, (other->index(face) + 1) % 3};
+                if (face->is_constrained(opposite)) mesh.fix(edge);
                 continue;
             }
             const Segment wanted{mesh.to(edge), mesh.from(edge)};
@@ -163,16 +197,16 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     Cdt cdt;
     const auto vertices = insert_points(cdt, band.points, check);
     insert_segments(cdt, vertices, segments, check);
-    const ConstrainedTriangulation all = numbered_triangles(cdt);
-    check(0.5);
-    const std::vector<bool> in_band = inside_rings(all, [&](std::int32_t t, int i) {
-        const auto& corners = all.triangles[t];
-        return all.constrained[t][i] &&
-               !std::ranges::binary_search(inner, unordered(corners[i], corners[(i + 1) % 3]));
-    });
-    add_triangles(mesh, all, in_band, band, rim);
+    add_triangles(mesh, cdt, faces_in_band(cdt, inner, check), band, rim);
     lock_pieces(mesh, out.first_of_band, border.locked);
     return out;
+}
+
+FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,
+                              const Check& check) {
+    EdgeCutting cutting(graph.triangulation, graph.inside, border.points);
+    cutting.cut(border.edges, check);
+    return std::move(cutting).take_inside(finest, rounding_slack(graph.points));
 }
 
 }  // namespace realmodel::meshing

@@ -138,6 +138,22 @@ void EdgeCutting::cut(std::span<const CutEdge> edges, const Check& check) {
     }
 }
 
+FlatMesh EdgeCutting::take_inside(double nearest, double slack) && {
+    const auto count = static_cast<std::int32_t>(mesh_.corners.size());
+    for (std::int32_t t = 0; t < count; ++t) {
+        for (int i = 0; i < 3 && inside_[t]; ++i) {
+            const HalfEdge edge(t, i), other = mesh_.twin(edge);
+            if (other.is_none() || is_inside(other)) continue;
+            if (!has_room(mesh_, other, nearest, slack)) mesh_.fix(edge, true, true);
+            mesh_.twins[t][i] = HalfEdge::none();
+        }
+    }
+    for (std::int32_t t = 0; t < count; ++t)
+        if (!inside_[t]) mesh_.corners[t] = {-1, -1, -1};
+    mesh_.compact();
+    return std::move(mesh_);
+}
+
 namespace {
 
 constexpr double kLongestPiece = 1.4;  // lengths wanted: above it two pieces fit better than one

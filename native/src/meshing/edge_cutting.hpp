@@ -52,6 +52,9 @@ public:
     HalfEdge between(std::int32_t a, std::int32_t b) const;
     bool is_inside(HalfEdge edge) const { return inside_[edge.triangle()]; }
     const FlatMesh& mesh() const { return mesh_; }
+    /// The triangles inside. Edges of their border are locked where there is no room outside for
+    /// cuts farther than `nearest` from their ends.
+    FlatMesh take_inside(double nearest, double slack) &&;
 
 private:
     bool insert(HalfEdge edge, std::int32_t point);

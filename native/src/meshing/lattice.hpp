@@ -50,4 +50,8 @@ struct BandedMesh {
 BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
                      std::vector<TriangleLattice>&& lattices, const Check& check);
 
+/// The same without lattices: the triangulation of the graph with its edges cut.
+FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,
+                              const Check& check);
+
 }  // namespace realmodel::meshing

@@ -190,8 +190,8 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, SizeField& size,
                                       double shortest_edge, std::size_t most_vertices,
                                       const Check& check) {
     constexpr double kShortShare = 0.7;  // cut_border's own pieces are hardly shorter than that
-    FlatMesh mesh =
-        join_band(cut_border(graph, size, shortest_edge, check), graph.loners, {}, check).mesh;
+    FlatMesh mesh = mesh_without_lattice(graph, cut_border(graph, size, shortest_edge, check),
+                                         shortest_edge, check);
     refine(mesh,
            {least_angle, std::numeric_limits<double>::infinity(), shortest_edge, most_vertices},
            size, 0, {}, check);
@@ -388,6 +388,11 @@ private:
                                                   kClearance, placing));
             }
         }
+        const bool has_lattice =
+            std::any_of(lattices.begin(), lattices.end(),
+                        [](const TriangleLattice& l) { return !l.points.empty(); });
+        if (request_.mesher == Mesher::kFrontal && !has_lattice)
+            return {mesh_without_lattice(graph_, border, finest, joining), 0, {}};
         return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
     }
 

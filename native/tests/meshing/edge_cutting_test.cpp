@@ -24,7 +24,7 @@ TEST(EdgeCutting, CutsAnEdgeAtAllItsPoints) {
         EXPECT_TRUE(cutting.has(point));
     EXPECT_FALSE(cutting.between(3, 4).is_none());
     EXPECT_TRUE(cutting.between(0, 1).is_none());
-    const FlatMesh& mesh = cutting.mesh();
+    const FlatMesh mesh = std::move(cutting).take_inside(1e-3, 1e-15);
     EXPECT_EQ(mesh.corners.size(), 4U);
     EXPECT_EQ(area_of({mesh.points, mesh.corners}), 8);
 }
