@@ -361,45 +361,63 @@ std::vector<std::uint8_t> merge_coincident_faces(RoundedParts& parts) {
 
 namespace {
 
+/// Whether a polygon turns one way and rises and falls once on both axes, but for rounding.
+bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePosition& rounding) {
+    bool left = true, right = true;
+    const std::size_t n = corners.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const PlanePosition &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
+        const double turn = cross(minus(b, a), minus(c, b));
+        const double allowed = arrangement::slack(a, b, c, rounding);
+        left = left && turn >= -allowed;
+        right = right && turn <= allowed;
+    }
+    if (!left && !right) return false;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        int changes = 0, last = 0, first = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double step = corners[(i + 1) % n][axis] - corners[i][axis];
+            if (step == 0) continue;
+            const int direction = step > 0 ? 1 : -1;
+            if (last == 0) first = direction;
+            changes += last != 0 && direction != last ? 1 : 0;
+            last = direction;
+        }
+        changes += last != first ? 1 : 0;
+        if (changes > 2) return false;
+    }
+    return true;
+}
+
 /// Whether a polygon has more than the area that rounding may give to one that has none.
-bool has_area(const arrangement::Loop& loop, double twice_area, const PlanePosition& rounding) {
+bool has_area(std::span<const PlanePosition> corners, double twice_area,
+              const PlanePosition& rounding) {
     PlanePosition around{0, 0};  // the length along each axis
-    for (std::size_t i = 0; i < loop.size(); ++i) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
         for (std::size_t axis = 0; axis < 2; ++axis)
-            around[axis] += std::abs(loop[(i + 1) % loop.size()].at[axis] - loop[i].at[axis]);
+            around[axis] += std::abs(corners[(i + 1) % corners.size()][axis] - corners[i][axis]);
     }
     return std::abs(twice_area) > 4 * (rounding[0] * around[1] + rounding[1] * around[0]);
 }
 
-/// A piece in the memory of another one before it.
-struct SeenPiece {
-    std::vector<Position> corners;
-    arrangement::Loop loop;
-};
-
 /// Whether rounding may have bent a polygon, so that it is no longer convex.
 bool is_bent(const RoundedParts& parts, std::size_t piece,
-             bool (*is_bent_too)(std::span<const Position> corners), SeenPiece& scratch) {
+             bool (*is_bent_too)(std::span<const Position> corners)) {
     const auto nodes = parts.pieces.polygons[piece];
     const auto& [face, cells, sides, is_on_cutter, of] = parts.pieces[piece];
     const bool is_wall = parts.surface_of(piece, kCutFace) == kWall;
     if (nodes.size() <= 3 || parts.is_whole_face(piece) || (is_wall && !is_on_cutter)) return false;
-    auto& [corners, loop] = scratch;
-    corners.clear();
-    for (const NodeId node : nodes)
-        corners.push_back(parts.at(node));
-    if (is_bent_too != nullptr && is_bent_too(corners)) return true;
+    const auto corners = transformed(nodes, [&](NodeId node) { return parts.at(node); });
     const Position normal = polygon_normal(corners);
+    if (is_bent_too != nullptr && is_bent_too(corners)) return true;
     // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen best
     const bool lay_on_surface = face >= 0 && !is_on_cutter && normal[2] != 0;
     const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
-    loop.clear();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        loop.push_back({nodes[i], seen(corners[i])});
+    const std::vector<PlanePosition> flat = transformed(corners, seen);
     const PlanePosition rounding = seen.rounding(corners);
     // of what has no area it is not sure how it is seen best
-    const bool is_sure = lay_on_surface || is_wall || has_area(loop, normal[seen.axis()], rounding);
-    return !is_sure || !arrangement::is_convex(loop, rounding);
+    const bool is_sure = lay_on_surface || is_wall || has_area(flat, normal[seen.axis()], rounding);
+    return !is_sure || !is_nearly_convex(flat, rounding);
 }
 
 /// Whether triangles about a middle would include one of what may be a wall that has no extent in
@@ -490,12 +508,11 @@ void triangulate_nonplanar(RoundedParts& parts, std::span<const std::uint8_t> is
     parallel_ranges(
         parts.pieces.size(), 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
-            SeenPiece scratch;
             for (std::size_t p = begin; p < end; ++p) {
-                is_whole[p] = is_doubled[p] == 0 && !is_bent(parts, p, is_bent_too, scratch) &&
-                                      !parts.is_upright(p)
-                                  ? 1
-                                  : 0;
+                is_whole[p] =
+                    is_doubled[p] == 0 && !is_bent(parts, p, is_bent_too) && !parts.is_upright(p)
+                        ? 1
+                        : 0;
             }
         },
         0.05);
