@@ -37,7 +37,7 @@ py::list level_sets(const LatticeTuple& lattice, const Array<double>& values,
     py::list sets;
     for (fields::LevelSet& each : found)
         sets.append(py::make_tuple(to_array(std::move(each.vertices)),
-                                   to_array(std::move(each.triangles)), each.own));
+                                   to_array(std::move(each.triangles)), each.on_level));
     return sets;
 }
 

@@ -133,7 +133,7 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     made["block_layers"] = mesh.block_layers;
     made["skewed"] =
         py::make_tuple(mesh.skewed.faces, mesh.skewed.most, mesh.skewed.place, mesh.skewed.tall);
-    made["kept"] = mesh.kept;
+    made["kept"] = mesh.unrepaired_blocks;
     return made;
 }
 

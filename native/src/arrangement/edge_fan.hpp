@@ -26,8 +26,8 @@ struct EdgeUse {
         const auto key = [](const EdgeUse& use) {
             return std::array{use.key(), packed_pair(use.item, use.direction + 1)};
         };
-        const auto own = key(*this), to = key(other);
-        return own[0] != to[0] ? own[0] < to[0] : own[1] < to[1];
+        const auto a = key(*this), b = key(other);
+        return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1];
     }
     /// Of the edge: as many keys as edges, in the same order.
     std::uint64_t key() const { return packed_pair(edge[0], edge[1]); }

@@ -37,20 +37,20 @@ public:
     /// The numbers of the boxes that a ray may meet, in order.
     /// @throws Cancelled
     std::vector<std::int32_t> find(const spatial::Box& ray, Progress* progress) {
-        std::vector<std::int32_t> found;
+        std::vector<std::int32_t> numbers;
         if (!tree_ && ++rays_ > kFewRays) {
             tree_.emplace(std::vector(boxes_.begin(), boxes_.end()), Execution{1, progress});
             boxes_ = {};
         }
         if (tree_) {
-            tree_->find(ray, [&found](std::int32_t box) { found.push_back(box); });
-            std::sort(found.begin(), found.end());
-            return found;
+            tree_->find(ray, [&numbers](std::int32_t box) { numbers.push_back(box); });
+            std::sort(numbers.begin(), numbers.end());
+            return numbers;
         }
         for (std::size_t i = 0; i < boxes_.size(); ++i) {
-            if (boxes_[i].meets(ray)) found.push_back(static_cast<std::int32_t>(i));
+            if (boxes_[i].meets(ray)) numbers.push_back(static_cast<std::int32_t>(i));
         }
-        return found;
+        return numbers;
     }
 
 private:

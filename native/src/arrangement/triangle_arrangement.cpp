@@ -104,11 +104,11 @@ std::int32_t TriangleArrangement::add_line(std::int32_t triangle, SpacePointId p
 }
 
 TriangleArrangement::CornerSides TriangleArrangement::sides_of(
-    const ArrangedTriangle& own, const ArrangedTriangle& plane) const {
+    const ArrangedTriangle& t, const ArrangedTriangle& plane) const {
     CornerSides sides;
     const exact::SidesOfPlane side_of(points_, plane.corners);
     for (std::size_t i = 0; i < 3; ++i) {
-        sides.of[i] = side_of(own.corners[i]);
+        sides.of[i] = side_of(t.corners[i]);
         sides.above += sides.of[i] > 0;
         sides.below += sides.of[i] < 0;
     }
@@ -120,11 +120,11 @@ TriangleArrangement::CornerSides TriangleArrangement::sides_of(
 bool TriangleArrangement::are_folded_apart(const ArrangedTriangle& a,
                                            const ArrangedTriangle& b) const {
     std::array<SpacePointId, 2> edge{}, tip{};
-    std::size_t found = 0;
+    std::size_t shared = 0;
     for (const SpacePointId p : a.corners) {
         const bool both = std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
         if (both) {
-            edge[found++] = p;
+            edge[shared++] = p;
         } else {
             tip[0] = p;
         }
@@ -135,7 +135,7 @@ bool TriangleArrangement::are_folded_apart(const ArrangedTriangle& a,
     return orientation(a, edge[0], edge[1], tip[0]) != orientation(a, edge[0], edge[1], tip[1]);
 }
 
-TriangleArrangement::LineInterval TriangleArrangement::interval_of(const ArrangedTriangle& own,
+TriangleArrangement::LineInterval TriangleArrangement::interval_of(const ArrangedTriangle& t,
                                                                    const CornerSides& sides,
                                                                    std::int32_t plane) {
     assert(sides.above < 3 && sides.below < 3 && sides.above + sides.below > 0);
@@ -145,15 +145,15 @@ TriangleArrangement::LineInterval TriangleArrangement::interval_of(const Arrange
         const int here = sides.of[i];
         if (here == 0) {
             const int from = sides.of[before], to = sides.of[next];
-            const SegmentEnd corner{own.corners[i]};
+            const SegmentEnd corner{t.corners[i]};
             if (from <= 0 && to >= 0 && from != to) interval.up = corner;
             if (from >= 0 && to <= 0 && from != to) interval.down = corner;
             if (from == to) interval = {corner, corner};
         } else if (here * sides.of[next] < 0) {
             if (here < 0) {
-                interval.up = {own.corners[i], own.corners[next], plane};
+                interval.up = {t.corners[i], t.corners[next], plane};
             } else {
-                interval.down = {own.corners[next], own.corners[i], plane};
+                interval.down = {t.corners[next], t.corners[i], plane};
             }
         }
     }

@@ -151,9 +151,9 @@ private:
                     SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }
-    CornerSides sides_of(const ArrangedTriangle& own, const ArrangedTriangle& plane) const;
+    CornerSides sides_of(const ArrangedTriangle& t, const ArrangedTriangle& plane) const;
     bool are_folded_apart(const ArrangedTriangle& a, const ArrangedTriangle& b) const;
-    static LineInterval interval_of(const ArrangedTriangle& own, const CornerSides& sides,
+    static LineInterval interval_of(const ArrangedTriangle& t, const CornerSides& sides,
                                     std::int32_t plane);
     int order(const ArrangedTriangle& a, const CornerSides& sides, const SegmentEnd& on_a,
               const ArrangedTriangle& b, const SegmentEnd& on_b) const;

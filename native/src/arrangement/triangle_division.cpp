@@ -52,16 +52,16 @@ std::vector<std::vector<TriangleArrangement::LineRange>> TriangleArrangement::li
     std::size_t lines = kChunk;  // of the last chunk
     std::int32_t shared = 0;
     for (const std::int32_t triangle : among) {
-        const std::size_t own = count(triangle);
-        const bool is_shared = own > 2 * kChunk;
-        for (std::size_t begin = 0; begin < own; begin += kChunk) {
+        const std::size_t line_count = count(triangle);
+        const bool is_shared = line_count > 2 * kChunk;
+        for (std::size_t begin = 0; begin < line_count; begin += kChunk) {
             if (is_shared || lines >= kChunk) {
                 chunks.emplace_back();
                 lines = 0;
             }
-            const std::size_t end = is_shared ? std::min(own, begin + kChunk) : own;
+            const std::size_t end = is_shared ? std::min(line_count, begin + kChunk) : line_count;
             chunks.back().push_back({triangle, begin, end, is_shared ? shared : -1});
-            lines += is_shared ? kChunk : own;
+            lines += is_shared ? kChunk : line_count;
             if (!is_shared) break;
         }
         shared += is_shared ? 1 : 0;
@@ -109,11 +109,11 @@ public:
     }
 
     /// The nodes between two others, in order from the first to the second.
-    void find(const std::array<SpacePointId, 2>& line, std::vector<SpacePointId>& found) const {
+    void find(const std::array<SpacePointId, 2>& line, std::vector<SpacePointId>& nodes) const {
         const SpacePointId a = line[0], b = line[1];
-        found.clear();
+        nodes.clear();
         const auto visit = [&](SpacePointId p) {
-            if (is_between(p, a, b)) found.push_back(p);
+            if (is_between(p, a, b)) nodes.push_back(p);
         };
         std::ranges::for_each(t_.corners, visit);
         const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
@@ -123,9 +123,9 @@ public:
         for (; next != in_order_.end() && coordinate(*next) <= high; ++next) {
             if (std::ranges::find(t_.corners, *next) == t_.corners.end()) visit(*next);
         }
-        if (found.size() < 2) return;
+        if (nodes.size() < 2) return;
         const int direction = compare(points_, a, b);
-        std::sort(found.begin(), found.end(), [this, direction](SpacePointId p, SpacePointId q) {
+        std::sort(nodes.begin(), nodes.end(), [this, direction](SpacePointId p, SpacePointId q) {
             return compare(points_, p, q) * direction > 0;
         });
     }
@@ -208,28 +208,28 @@ void TriangleArrangement::exchange_segments() {
                                  [&](const SharedSegment& s) { return box_of(points_, s.ends); });
         return trees.try_emplace(triangle, std::move(boxes)).first->second;
     };
-    std::vector<ExchangedSegment> found;
+    std::vector<ExchangedSegment> clips;
     for (const auto& [one, other] : in_one_plane_) {
         for (const auto& pair : {std::pair(one, other), std::pair(other, one)}) {
             const std::int32_t of = pair.first, into = pair.second;
             const auto& segments = triangles_[index(of)].segments;
-            const std::size_t first = found.size();
+            const std::size_t first = clips.size();
             tree_of(of).find(box_of(points_, triangles_[index(into)].corners), [&](std::int32_t n) {
                 const SharedSegment& s = segments[index(n)];
-                if (s.other != into) found.push_back({s, of, into});
+                if (s.other != into) clips.push_back({s, of, into});
             });
-            const auto own = found.begin() + static_cast<std::ptrdiff_t>(first);
-            std::sort(own, found.end(), [](const ExchangedSegment& a, const ExchangedSegment& b) {
+            const auto begin = clips.begin() + static_cast<std::ptrdiff_t>(first);
+            std::sort(begin, clips.end(), [](const ExchangedSegment& a, const ExchangedSegment& b) {
                 return a.segment < b.segment;
             });
-            found.erase(std::unique(own, found.end(),
+            clips.erase(std::unique(begin, clips.end(),
                                     [](const ExchangedSegment& a, const ExchangedSegment& b) {
                                         return a.segment.ends == b.segment.ends;
                                     }),
-                        found.end());
+                        clips.end());
         }
     }
-    for (const auto& [segment, of, into] : found)
+    for (const auto& [segment, of, into] : clips)
         clip_segment(segment.ends[0], segment.ends[1], of, into);
 }
 
@@ -240,7 +240,7 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
         const ArrangedTriangle& t = triangles_[index(i)];
         return t.facing == 0 || t.segments.size() < 2 ? 0 : t.segments.size();
     });
-    std::vector<std::vector<std::pair<std::size_t, SegmentPair>>> found(chunks.size());
+    std::vector<std::vector<std::pair<std::size_t, SegmentPair>>> crossings(chunks.size());
     each_range<BoxedSegments>(
         chunks, execution,
         [&](std::size_t chunk, const LineRange& range, const BoxedSegments& segments) {
@@ -253,11 +253,11 @@ void TriangleArrangement::intersect_segments(const Execution& execution) {
                     if (!boxed[i].box.meets(boxed[j].box)) continue;
                     const auto [c, d] = boxed[j].segment->ends;
                     if (do_cross(t, {a, b, c, d}))
-                        found[chunk].push_back({index(range.triangle), {a, b, c, d}});
+                        crossings[chunk].push_back({index(range.triangle), {a, b, c, d}});
                 }
             }
         });
-    const auto pairs = concatenated(found);
+    const auto pairs = concatenated(crossings);
     // where they do is found on all threads and numbered in order
     constexpr std::size_t kAtOnce = 1 << 14;
     std::vector<exact::SpacePoints::Reduced> at;
@@ -343,8 +343,8 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
                             range.shared >= 0 ? of_shared[chunk] : edges[index(range.triangle)]);
             });
         for (std::size_t i = 0; i < chunks.size(); ++i) {
-            auto& own = edges[index(chunks[i][0].triangle)];
-            own.insert(own.end(), of_shared[i].begin(), of_shared[i].end());
+            auto& triangle_edges = edges[index(chunks[i][0].triangle)];
+            triangle_edges.insert(triangle_edges.end(), of_shared[i].begin(), of_shared[i].end());
         }
         changed.clear();
         for (const auto& chunk : messages) {
@@ -472,15 +472,15 @@ void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::greater<>(),
                              [&](std::size_t r) { return ranges[r].lines; });
-    std::vector<Regions> found(ranges.size());
+    std::vector<Regions> regions(ranges.size());
     parallel_workers(ranges.size(), execution, [&] {
         return [&, finder = RegionFinder(*this)](std::size_t at) mutable {
             const std::size_t r = order[at];
             for (std::size_t i = ranges[r].begin; i < ranges[r].end; ++i)
-                finder.add_regions(static_cast<std::int32_t>(i), edges[i], found[r]);
+                finder.add_regions(static_cast<std::int32_t>(i), edges[i], regions[r]);
         };
     });
-    regions_ = joined(found, execution);
+    regions_ = joined(regions, execution);
 }
 
 void TriangleArrangement::divide(const Execution& execution) {

@@ -174,10 +174,10 @@ void EarClipping::join_holes(std::span<const std::int32_t> holes) {
     std::vector<PlanePosition> places;
     std::vector<std::array<LoopCorner, 2>> edges;
     std::vector<spatial::Box> boxes;
-    for (const Link& own : links_) {
-        places.push_back(own.corner.at);
-        edges.push_back({own.corner, link(own.next).corner});
-        boxes.emplace_back().include(own.corner.at);
+    for (const Link& start : links_) {
+        places.push_back(start.corner.at);
+        edges.push_back({start.corner, link(start.next).corner});
+        boxes.emplace_back().include(start.corner.at);
         boxes.back().include(edges.back()[1].at);
     }
     const spatial::NearestPoints corners(places);
@@ -288,8 +288,8 @@ void EarClipping::remove(std::int32_t i) {
 bool EarClipping::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c,
                          EarTest test) {
     const NodeId node = link(other).corner.node;
-    for (const std::int32_t own : {a, tip, c})
-        if (node == link(own).corner.node) return false;
+    for (const std::int32_t i : {a, tip, c})
+        if (node == link(i).corner.node) return false;
     const bool is_fat = test <= EarTest::kFat;
     const auto is_beyond = [&](std::int32_t p, std::int32_t q, int turned) {
         return turned < 0 &&
@@ -437,7 +437,7 @@ bool contains(const Loop& loop, const LoopCorner& p, const CornerTurns& turns) {
 std::size_t outline_around(std::span<const Loop> loops, const std::vector<double>& areas,
                            std::size_t hole, const PlanePosition& rounding,
                            const CornerTurns& turns) {
-    std::size_t found = loops.size(), only = loops.size(), outlines = 0;
+    std::size_t smallest = loops.size(), only = loops.size(), outlines = 0;
     double allowed = 0;
     for (std::size_t i = 0; i < loops[hole].size(); ++i) {
         const PlanePosition &p = loops[hole][i].at,
@@ -452,10 +452,10 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
         const bool touches =
             std::ranges::find(loops[i], corner.node, &LoopCorner::node) != loops[i].end();
         if (!touches && !contains(loops[i], corner, turns)) continue;
-        if (found == loops.size() || areas[i] < areas[found]) found = i;
+        if (smallest == loops.size() || areas[i] < areas[smallest]) smallest = i;
     }
-    if (found == loops.size() && outlines == 1 && areas[hole] < -allowed) return only;
-    return found;
+    if (smallest == loops.size() && outlines == 1 && areas[hole] < -allowed) return only;
+    return smallest;
 }
 
 }  // namespace
@@ -489,12 +489,12 @@ bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
     }
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (areas[i] <= 0) continue;
-        std::vector<Loop> own{loops[i]};
+        std::vector<Loop> region{loops[i]};
         for (const std::size_t hole : holes[i])
-            own.push_back(loops[hole]);
-        const std::vector<LoopCorner> corners = concatenated(own);
+            region.push_back(loops[hole]);
+        const std::vector<LoopCorner> corners = concatenated(region);
         std::vector<std::array<std::int32_t, 3>> ears;
-        clean = cut_ears(own, rounding, turns, EarChoice::kAny, ears) && clean;
+        clean = cut_ears(region, rounding, turns, EarChoice::kAny, ears) && clean;
         for (const auto& [a, b, c] : ears)
             triangles.push_back({corners[index(a)], corners[index(b)], corners[index(c)]});
     }

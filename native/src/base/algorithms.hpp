@@ -80,11 +80,11 @@ void sort_unique(std::vector<Element>& elements) {
 /// Keeps of sorted elements those that occur once.
 template <class Element>
 void keep_single(std::vector<Element>& sorted) {
-    std::size_t kept = 0;
+    std::size_t single_count = 0;
     for (const auto group : groups_of(sorted)) {
-        if (group.size() == 1) sorted[kept++] = group[0];
+        if (group.size() == 1) sorted[single_count++] = group[0];
     }
-    sorted.erase(sorted.begin() + static_cast<std::ptrdiff_t>(kept), sorted.end());
+    sorted.erase(sorted.begin() + static_cast<std::ptrdiff_t>(single_count), sorted.end());
 }
 
 /// What a function gives for each of some items, in their order.
@@ -113,25 +113,25 @@ std::vector<Item> concatenated(const std::vector<std::vector<Item>>& lists) {
     return all;
 }
 
-/// Calls work(begin, end, found) for ranges, as parallel_ranges() does.
-/// @return what they have added to their `found`, in the order of ranges
+/// Calls work(begin, end, list) for ranges, as parallel_ranges() does.
+/// @return what they have added to their `list`, in the order of ranges
 template <class Item, class Work>
 std::vector<Item> found_in_ranges(std::size_t count, std::size_t size, const Execution& execution,
                                   const Work& work, double share = 0.2) {
-    std::vector<std::vector<Item>> found((count + size - 1) / size);
+    std::vector<std::vector<Item>> lists((count + size - 1) / size);
     parallel_ranges(
         count, size, execution,
-        [&](std::size_t begin, std::size_t end) { work(begin, end, found[begin / size]); }, share);
-    return concatenated(found);
+        [&](std::size_t begin, std::size_t end) { work(begin, end, lists[begin / size]); }, share);
+    return concatenated(lists);
 }
 
-/// The same of work(i, found) for every item, many of them in a chunk, as parallel_each() does.
+/// The same of work(i, list) for every item, many of them in a chunk, as parallel_each() does.
 template <class Item, class Work>
 std::vector<Item> found_in_each(std::size_t count, const Execution& execution, const Work& work) {
     return found_in_ranges<Item>(count, 1 << 12, execution,
-                                 [&](std::size_t begin, std::size_t end, auto& found) {
+                                 [&](std::size_t begin, std::size_t end, auto& list) {
                                      for (std::size_t i = begin; i < end; ++i)
-                                         work(i, found);
+                                         work(i, list);
                                  });
 }
 

@@ -134,11 +134,11 @@ public:
         return table_.find(hash(key), [&](std::int32_t i) { return keys_[index(i)] == key; });
     }
     std::int32_t add(const Key& key) {
-        const auto found =
+        const auto entry =
             table_.find_or_add(hash(key), static_cast<std::int32_t>(keys_.size()),
                                [&](std::int32_t i) { return keys_[index(i)] == key; });
-        if (found.is_new) keys_.push_back(key);
-        return found.number;
+        if (entry.is_new) keys_.push_back(key);
+        return entry.number;
     }
     /// @return false where it is there already
     bool insert(const Key& key) {

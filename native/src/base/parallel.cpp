@@ -27,21 +27,21 @@ std::mutex making_threads;  // held, so that no other call takes what one has fo
 
 }  // namespace
 
-void run_threads(int threads, const std::function<void(std::size_t own)>& work) {
+void run_threads(int threads, const std::function<void(std::size_t rank)>& work) {
     const auto team = static_cast<std::size_t>(std::max(1, threads));
     std::vector<std::thread> others;
     others.reserve(team - 1);
-    std::size_t own = 1;
+    std::size_t rank = 1;
     try {
         const std::lock_guard lock(making_threads);
-        for (; own < team; ++own)
-            others.emplace_back(work, own);
+        for (; rank < team; ++rank)
+            others.emplace_back(work, rank);
     } catch (const std::exception&) {
         // There are no more threads to be had: this one does their work.
     }
     work(0);
-    for (; own < team; ++own)
-        work(own);
+    for (; rank < team; ++rank)
+        work(rank);
     for (std::thread& other : others)
         other.join();
 }
@@ -108,11 +108,11 @@ thread_local bool in_team = false;
 
 }  // namespace
 
-void run_team(int threads, const std::function<void(std::size_t own, std::size_t team)>& work) {
+void run_team(int threads, const std::function<void(std::size_t rank, std::size_t team)>& work) {
     if (threads <= 1 || in_team) return work(0, 1);
-    run_threads(threads, [&](std::size_t own) {
+    run_threads(threads, [&](std::size_t rank) {
         in_team = true;
-        work(own, static_cast<std::size_t>(threads));
+        work(rank, static_cast<std::size_t>(threads));
         in_team = false;
     });
 }
@@ -140,7 +140,7 @@ void keep_waiting_threads_asleep() {
 }
 
 void parallel_tasks(std::size_t count, const Execution& execution, double share,
-                    const std::function<void(std::size_t task, const Execution& own)>& work) {
+                    const std::function<void(std::size_t task, const Execution& part)>& work) {
     const int all = thread_count(execution.threads);
     const int at_once = static_cast<int>(std::min(count, static_cast<std::size_t>(all)));
     // Twice as many threads as there are: while one task keeps one busy, another uses the rest.

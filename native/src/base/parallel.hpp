@@ -32,8 +32,8 @@ inline int thread_count(int threads) {
 #endif
 }
 
-/// Calls work(own, team) at once for every own below team, which is `threads`, or less where there
-/// are not so many threads to be had; inside of such a call it is 1. The work must not throw.
+/// Calls work(rank, team) at once for every rank below team, which is `threads`, or less where
+/// there are not so many threads to be had; inside of such a call it is 1. The work must not throw.
 #if defined(_OPENMP)
 /// How many of `threads` may work in a region of OpenMP, which ends the process where it cannot get
 /// a thread that it wants: whenever this thread's team grows, as many are tried first.
@@ -47,13 +47,13 @@ void run_team(int threads, const Work& work) {
          static_cast<std::size_t>(omp_get_num_threads()));
 }
 #else  // with threads of the C++ library
-void run_team(int threads, const std::function<void(std::size_t own, std::size_t team)>& work);
+void run_team(int threads, const std::function<void(std::size_t rank, std::size_t team)>& work);
 #endif
 
-/// Calls work(own) at once for every own below `threads`, on threads of the C++ library, made anew
-/// for every call. Where there are not so many to be had, this one does the work of several. The
-/// work must not throw.
-void run_threads(int threads, const std::function<void(std::size_t own)>& work);
+/// Calls work(rank) at once for every rank below `threads`, on threads of the C++ library, made
+/// anew for every call. Where there are not so many to be had, this one does the work of several.
+/// The work must not throw.
+void run_threads(int threads, const std::function<void(std::size_t rank)>& work);
 
 /// For loops of one thread: asks every 16384 rounds whether the caller wants to stop.
 /// @throws Cancelled
@@ -163,8 +163,8 @@ void parallel_each(std::size_t count, const Execution& execution, const Work& wo
 template <class Work>
 void parallel_even(std::size_t count, int threads, const Work& work) {
     LoopGuard guard(nullptr, count, 0.0);
-    run_team(count > 1 ? thread_count(threads) : 1, [&](std::size_t own, std::size_t team) {
-        for (std::size_t chunk = count * own / team; chunk < count * (own + 1) / team; ++chunk) {
+    run_team(count > 1 ? thread_count(threads) : 1, [&](std::size_t rank, std::size_t team) {
+        for (std::size_t chunk = count * rank / team; chunk < count * (rank + 1) / team; ++chunk) {
             if (!guard.run(chunk, [&] { work(chunk); })) break;
         }
     });
@@ -179,6 +179,6 @@ void parallel_even(std::size_t count, int threads, const Work& work) {
 /// @param share  of the whole progress: how much all tasks take
 /// @throws Cancelled, or what the work threw
 void parallel_tasks(std::size_t count, const Execution& execution, double share,
-                    const std::function<void(std::size_t task, const Execution& own)>& work);
+                    const std::function<void(std::size_t task, const Execution& part)>& work);
 
 }  // namespace realmodel

@@ -69,9 +69,9 @@ void running_totals(Array<Number>& counts, std::uint64_t largest, const Executio
     parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         std::size_t sum = before[begin / kChunk];
         for (std::size_t i = begin; i < end; ++i) {
-            const auto own = static_cast<std::size_t>(counts[i]);
+            const auto addend = static_cast<std::size_t>(counts[i]);
             counts[i] = static_cast<Number>(sum);
-            sum += own;
+            sum += addend;
         }
     });
     counts[count] = static_cast<Number>(total);

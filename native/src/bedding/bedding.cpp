@@ -81,8 +81,8 @@ public:
     /// The vertices of the triangles that have an area in plan, counter-clockwise.
     std::span<const std::array<std::int32_t, 3>> triangles() const { return numbers_; }
     SheetLocation at(const PlanPosition& position) const {
-        SheetLocation found;
-        if (triangles_.empty() || !tiles_.frame().contains(position)) return found;
+        SheetLocation location;
+        if (triangles_.empty() || !tiles_.frame().contains(position)) return location;
         double best = -HUGE_VAL;
         for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
             const SheetTriangle& triangle = triangles_[index(t)];
@@ -97,17 +97,17 @@ public:
                 std::min({areas[0] / slack[0], areas[1] / slack[1], areas[2] / slack[2]});
             if (least > best) {
                 best = least;
-                found = {HeightState::kHeight, t, areas};
+                location = {HeightState::kHeight, t, areas};
             }
         }
-        return found;
+        return location;
     }
     /// A triangle that holds a position, or none: -1.
     std::int32_t holding(const PlanPosition& position) const {
         if (triangles_.empty() || !tiles_.frame().contains(position)) return -1;
         for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
-            const Areas found = areas(t, position);
-            if (found[0] >= 0 && found[1] >= 0 && found[2] >= 0) return t;
+            const Areas signed_areas = areas(t, position);
+            if (signed_areas[0] >= 0 && signed_areas[1] >= 0 && signed_areas[2] >= 0) return t;
         }
         return -1;
     }
@@ -118,8 +118,8 @@ public:
     template <class Visit>
     void for_each_near(const PlanPosition& position, const Visit& visit) const {
         for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
-            const Areas found = areas(t, position);
-            if (triangles_[index(t)].is_near(found)) visit(t, found);
+            const Areas signed_areas = areas(t, position);
+            if (triangles_[index(t)].is_near(signed_areas)) visit(t, signed_areas);
         }
     }
 
@@ -130,11 +130,11 @@ private:
         std::uint8_t border_edges = 0, border_corners = 0;  ///< bits
 
         Areas areas(const PlanPosition& p) const {
-            Areas found{};
+            Areas signed_areas{};
             for (std::size_t i = 0; i < 3; ++i) {
-                found[i] = twice_area(corner[i], corner[(i + 1) % 3], p);
+                signed_areas[i] = twice_area(corner[i], corner[(i + 1) % 3], p);
             }
-            return found;
+            return signed_areas;
         }
         bool is_near(const Areas& areas) const {
             return areas[0] >= -slack[0] && areas[1] >= -slack[1] && areas[2] >= -slack[2];
@@ -238,11 +238,11 @@ public:
         double low = HUGE_VAL, high = -HUGE_VAL;
         heights_.reserve(plan.triangles().size());
         for (const auto& corners : plan.triangles()) {
-            auto& own = heights_.emplace_back();
+            auto& heights = heights_.emplace_back();
             for (std::size_t i = 0; i < 3; ++i) {
-                own[i] = sheet.vertices[3 * index(corners[i]) + 2];
-                low = std::min(low, own[i]);
-                high = std::max(high, own[i]);
+                heights[i] = sheet.vertices[3 * index(corners[i]) + 2];
+                low = std::min(low, heights[i]);
+                high = std::max(high, heights[i]);
             }
         }
         same_ = kSame * std::max(0.0, high - low);
@@ -254,9 +254,9 @@ public:
                                     : 0.0};
     }
     /// The height at a border, on the side of a triangle that is there; -1: no triangle.
-    SheetHeight beside(std::int32_t there, const PlanPosition& position) const {
-        if (there < 0) return {HeightState::kAbsent, 0};
-        const double guess = height(there, plan_->areas(there, position));
+    SheetHeight beside(std::int32_t triangle, const PlanPosition& position) const {
+        if (triangle < 0) return {HeightState::kAbsent, 0};
+        const double guess = height(triangle, plan_->areas(triangle, position));
         // Of the triangles around the position the first at about that height: all polygons on one
         // side get the same.
         std::vector<double> heights;
@@ -276,16 +276,16 @@ public:
 
 private:
     double height(std::int32_t triangle, const SheetPlan::Areas& areas) const {
-        const auto& own = heights_[index(triangle)];
+        const auto& heights = heights_[index(triangle)];
         double sum = 0, weighted = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const double weight =
                 std::max(0.0, areas[(i + 1) % 3]);  // of the corner across that edge
             sum += weight;
-            weighted += weight * own[i];
+            weighted += weight * heights[i];
         }
-        if (!(sum > 0)) return own[0];
-        const auto [low, high] = std::minmax({own[0], own[1], own[2]});
+        if (!(sum > 0)) return heights[0];
+        const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
         return std::clamp(weighted / sum, low, high);
     }
 
@@ -311,12 +311,12 @@ struct HistoryColumn {
     double floor = 0;
 
     /// Lays a sheet on it.
-    void lay(const History& history, std::size_t sheet, const SheetHeights::SheetHeight& found) {
+    void lay(const History& history, std::size_t sheet, const SheetHeights::SheetHeight& height) {
         has_layer = false;
-        has_border |= found.state == HeightState::kBorder;
-        if (found.state != HeightState::kHeight) return;
+        has_border |= height.state == HeightState::kBorder;
+        if (height.state != HeightState::kHeight) return;
         const auto rule = meaning(history.rules.empty() ? Rule::kErosional : history.rules[sheet]);
-        double level = std::max(found.height, history.base_elevation.value_or(found.height));
+        double level = std::max(height.height, history.base_elevation.value_or(height.height));
         if (!rule.cuts && has_top) level = std::max(level, top);
         if (has_floor) level = std::max(level, floor);
         has_layer = sheet == 0 ? history.base_elevation.has_value() : has_top;
@@ -488,13 +488,13 @@ void BeddingCorners::make_sheets() {
     std::map<std::pair<const void*, const void*>, std::size_t> known;
     std::vector<const TriangleView*> distinct;
     for (const History& history : histories_) {
-        auto& own = sheets_of_.emplace_back();
+        auto& sheet_numbers = sheets_of_.emplace_back();
         for (const TriangleView& sheet : history.sheets) {
             const auto key =
                 std::pair<const void*, const void*>(sheet.vertices.data(), sheet.triangles.data());
             const auto [entry, is_new] = known.try_emplace(key, distinct.size());
             if (is_new) distinct.push_back(&sheet);
-            own.push_back(entry->second);
+            sheet_numbers.push_back(entry->second);
         }
     }
     std::vector<const TriangleView*> first;  // of the sheets of each plan
@@ -660,50 +660,50 @@ std::vector<HistoryColumn> BeddingCorners::columns_at(
     std::span<const SheetPlan::SheetLocation> locations,
     std::span<const std::int32_t> triangles) const {
     const auto& sheets = sheets_of_[history];
-    std::vector<HistoryColumn> found(1);
+    std::vector<HistoryColumn> columns(1);
     for (std::size_t k = 0; k < sheets.size(); ++k) {
         const SheetPlan::SheetLocation& location = locations[plan_of_[sheets[k]]];
         const SheetHeights& heights = *sheets_[sheets[k]];
-        found.push_back(found.back());
-        found.back().lay(histories_[history], k,
-                         location.state == HeightState::kBorder
-                             ? heights.beside(triangles[plan_of_[sheets[k]]], position)
-                             : heights.at(location));
+        columns.push_back(columns.back());
+        columns.back().lay(histories_[history], k,
+                           location.state == HeightState::kBorder
+                               ? heights.beside(triangles[plan_of_[sheets[k]]], position)
+                               : heights.at(location));
     }
-    return found;
+    return columns;
 }
 
 BeddingCorners::Facing BeddingCorners::facing(const Polygon& polygon) const {
     const auto face = complex_.face(index(polygon.face));
     const auto origin = complex_.vertex(face[0]);
-    Facing found{};
+    Facing facing{};
     for (std::size_t i = 0; i < face.size(); ++i) {
         auto a = complex_.vertex(face[i]), b = complex_.vertex(face[(i + 1) % face.size()]);
         for (std::size_t axis = 0; axis < 2; ++axis)
-            found.middle[axis] += a[axis] / static_cast<double>(face.size());
+            facing.middle[axis] += a[axis] / static_cast<double>(face.size());
         for (std::size_t axis = 0; axis < 3; ++axis) {
             a[axis] -= origin[axis];
             b[axis] -= origin[axis];
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-            found.normal[axis] += (a[u] * b[v] - a[v] * b[u]) * (polygon.reversed ? -0.5 : 0.5);
+            facing.normal[axis] += (a[u] * b[v] - a[v] * b[u]) * (polygon.reversed ? -0.5 : 0.5);
         }
     }
-    return found;
+    return facing;
 }
 
 /// A position in plan that lies in the polygon, or inside of an upright one, near its corner.
 PlanPosition BeddingCorners::beside(const PlanPosition& position, const Polygon& polygon) const {
     const auto [normal, middle] = facing(polygon);
-    PlanPosition found = moved(position, kInwards, minus({middle[0], middle[1]}, position));
+    PlanPosition inner = moved(position, kInwards, minus({middle[0], middle[1]}, position));
     const double across = elementary::hypot(normal[0], normal[1]);
     if (across > 0 && std::abs(normal[2]) <= 1e-6 * across) {
         const double step = kBeside * largest_plan_ / across;
-        found[0] -= step * normal[0];
-        found[1] -= step * normal[1];
+        inner[0] -= step * normal[0];
+        inner[1] -= step * normal[1];
     }
-    return found;
+    return inner;
 }
 
 /// Height and thickness of a corner. column: as far as the sheet over its layer.

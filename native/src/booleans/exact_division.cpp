@@ -51,14 +51,14 @@ std::uint8_t turns_of(const SpacePoints& points, const TriangleCorners& c) {
 
 /// Whether a filter can tell that, seen along an axis, a line along an edge of a triangle has all
 /// corners of another one beyond it but those that they share, which are ends of that edge.
-bool is_beside(const SpacePoints& points, const TriangleCorners& own, std::uint8_t turns_of_own,
+bool is_beside(const SpacePoints& points, const TriangleCorners& triangle, std::uint8_t turns,
                const TriangleCorners& other) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int turn = (turns_of_own >> 2 * axis & 1) - (turns_of_own >> 2 * axis >> 1 & 1);
+        const int turn = (turns >> 2 * axis & 1) - (turns >> 2 * axis >> 1 & 1);
         if (turn == 0) continue;
         const auto at = seen_along(points, axis);
         for (std::size_t k = 0; k < 3; ++k) {
-            const SpacePointId from = own[k], to = own[(k + 1) % 3];
+            const SpacePointId from = triangle[k], to = triangle[(k + 1) % 3];
             if (std::ranges::all_of(other, [&](SpacePointId p) {
                     return p == from || p == to ||
                            exact::orient2d_filter(at(from), at(to), at(p)) == -turn;
@@ -116,14 +116,14 @@ ExactDivision::ExactDivision(TrianglePieces& pieces, std::vector<PieceId>&& chos
 
 /// Whether a filter in doubles can tell that the corners that a piece does not share with another
 /// one are on one side of the plane of that: then the two meet in what they share only.
-bool ExactDivision::is_aside(const TriangleCorners& own, const TriangleCorners& other,
+bool ExactDivision::is_aside(const TriangleCorners& triangle, const TriangleCorners& other,
                              const exact::SideFilter& plane_of_other) const {
     int side = 0;
-    for (const SpacePointId p : own) {
+    for (const SpacePointId p : triangle) {
         if (has(other, p)) continue;
-        const auto found = plane_of_other(pieces_.points.rounded(p));
-        if (!found || (side != 0 && *found != side)) return false;
-        side = *found;
+        const auto corner_side = plane_of_other(pieces_.points.rounded(p));
+        if (!corner_side || (side != 0 && *corner_side != side)) return false;
+        side = *corner_side;
     }
     return true;
 }
@@ -158,12 +158,12 @@ void ExactDivision::find_candidates() {
     const SpacePoints& points = pieces_.points;
     const std::size_t count = chosen_.size();
     // the tree of the inputs is that of their pieces, as long as none is divided
-    std::optional<BoxTree> own;
+    std::optional<BoxTree> chosen_tree;
     if (!pieces_.are_whole() || count != pieces_.input_count()) {
         const auto box_of = [this](const PieceId& id) { return pieces_.box(pieces_[id].corners); };
-        own.emplace(transformed(chosen_, box_of), execution_);
+        chosen_tree.emplace(transformed(chosen_, box_of), execution_);
     }
-    const BoxTree& tree = own ? *own : pieces_.tree();
+    const BoxTree& tree = chosen_tree ? *chosen_tree : pieces_.tree();
     std::vector<CandidatePiece> items(
         count);  // in the order of the tree, which has near ones together
     parallel_ranges(count, kFacetsAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
@@ -226,10 +226,10 @@ void ExactDivision::find_meetings() {
     }
     meetings_ = found_in_ranges<Meeting>(
         candidates_.size(), kFacetsAtOnce, execution_,
-        [&](std::size_t begin, std::size_t end, std::vector<Meeting>& found) {
+        [&](std::size_t begin, std::size_t end, std::vector<Meeting>& contacts) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
-                if (met && is_contact(*met)) found.push_back(*met);
+                if (met && is_contact(*met)) contacts.push_back(*met);
             }
         });
 }
@@ -254,8 +254,8 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
     const auto is_within = [&](SpacePointId p, SpacePointId a, SpacePointId b) {
         return p != a && p != b && exact::compare(points, a, p) * exact::compare(points, p, b) > 0;
     };
-    for (const auto& [own, of] : {std::pair(one, other), std::pair(other, one)}) {
-        const TriangleCorners &a = arrangement_.corners(own), &b = arrangement_.corners(of);
+    for (const auto& [first, second] : {std::pair(one, other), std::pair(other, one)}) {
+        const TriangleCorners &a = arrangement_.corners(first), &b = arrangement_.corners(second);
         const int facing = exact::orient2d(points, axis, a[0], a[1], a[2]);
         for (std::size_t k = 0; k < 3; ++k) {
             const SpacePointId from = a[k], to = a[(k + 1) % 3];
@@ -291,13 +291,13 @@ std::vector<TriangleCorners> ExactDivision::divided(const Region& region) const 
             loop.push_back({p.number(), view(positions.back())});
         }
     }
-    std::vector<std::array<arrangement::LoopCorner, 3>> found;
+    std::vector<std::array<arrangement::LoopCorner, 3>> triangles;
     const auto point_of = [](std::int32_t node) { return SpacePointId(node); };
-    arrangement::triangulate(loops, view.rounding(positions), found,
+    arrangement::triangulate(loops, view.rounding(positions), triangles,
                              arrangement::PointTurns(pieces_.points, view, point_of));
     // corners, and two more for each hole, which a bridge joins with the outline
-    assert(found.size() + 2 == positions.size() + 2 * (loops.size() - 1));
-    return transformed(found, [](const auto& t) -> TriangleCorners {
+    assert(triangles.size() + 2 == positions.size() + 2 * (loops.size() - 1));
+    return transformed(triangles, [](const auto& t) -> TriangleCorners {
         return {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)};
     });
 }
@@ -369,16 +369,16 @@ std::vector<std::vector<TrianglePiece>> ExactDivision::parts_of_triangles() {
     std::vector<std::vector<TrianglePiece>> made(piece_of_.size());
     for (std::size_t r = 0; r < regions.size(); ++r) {
         poll(execution_.progress, r);
-        auto& own = made[index(regions.triangles[r])];
+        auto& pieces = made[index(regions.triangles[r])];
         const Copy& copy = copies[r];
         if (copy.of < 0) {
             const auto nodes = regions[r].loops[0];
-            own.push_back(make({nodes[0], nodes[1], nodes[2]}));
+            pieces.push_back(make({nodes[0], nodes[1], nodes[2]}));
             continue;
         }
         for (TriangleCorners nodes : triangles[index(copy.of)]) {
             if (copy.is_reversed) std::swap(nodes[1], nodes[2]);
-            own.push_back(make(nodes));
+            pieces.push_back(make(nodes));
         }
     }
     return made;
@@ -409,8 +409,8 @@ void ExactDivision::divide_regions() {
         for (std::size_t k = 0; k < old.size(); ++k) {
             if (i < changed.size() &&
                 changed[i].first == PieceId{input, static_cast<std::int32_t>(k)}) {
-                const auto& own = made[index(changed[i++].second)];
-                all.insert(all.end(), own.begin(), own.end());
+                const auto& pieces = made[index(changed[i++].second)];
+                all.insert(all.end(), pieces.begin(), pieces.end());
             } else {
                 all.push_back(old[k]);
             }

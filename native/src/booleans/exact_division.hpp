@@ -49,7 +49,7 @@ private:
     };
     std::vector<std::uint8_t> flat_stars(std::span<const CandidatePiece> items) const;
     void find_candidates();
-    bool is_aside(const TriangleCorners& own, const TriangleCorners& other,
+    bool is_aside(const TriangleCorners& triangle, const TriangleCorners& other,
                   const exact::SideFilter& plane_of_other) const;
     void find_meetings();
     bool is_contact(const Meeting& met) const;

@@ -37,16 +37,16 @@ class FacetDivision {
 public:
     FacetDivision(const SpacePoints& points, const FacetPoints& facet, Progress* progress)
         : global_(points), progress_(progress) {
-        TriangleCorners own;
+        TriangleCorners local;
         for (std::size_t k = 0; k < 3; ++k)
-            own[k] = enter(places_.add(points.rounded(facet.corners[k])), facet.corners[k]);
+            local[k] = enter(places_.add(points.rounded(facet.corners[k])), facet.corners[k]);
         find_best_axis(facet.corners);
         if (facing_ == 0) return;
-        note_corners(mesh_.add_triangle({own[0].number(), own[1].number(), own[2].number()}));
+        note_corners(mesh_.add_triangle({local[0].number(), local[1].number(), local[2].number()}));
         for (std::size_t k = 0; k < 3; ++k)
-            divide_edge(own[k], own[(k + 1) % 3], facet.on_edges[k]);
+            divide_edge(local[k], local[(k + 1) % 3], facet.on_edges[k]);
         for (const SpacePointId p : facet.within)
-            insert(p, own);
+            insert(p, local);
         for (const Edge& edge : facet.wanted)
             insert_edge(edge);
         improve();
@@ -55,10 +55,11 @@ public:
 
     bool has_area() const { return facing_ != 0; }
     std::vector<TriangleCorners> result() const {
-        std::vector<TriangleCorners> found;
+        std::vector<TriangleCorners> triangles;
         for (const auto& [a, b, c] : mesh_.corners)
-            found.push_back({name(SpacePointId(a)), name(SpacePointId(b)), name(SpacePointId(c))});
-        return found;
+            triangles.push_back(
+                {name(SpacePointId(a)), name(SpacePointId(b)), name(SpacePointId(c))});
+        return triangles;
     }
 
 private:
@@ -67,13 +68,13 @@ private:
     bool is_triangulation(const FacetPoints& facet) const {
         std::size_t outer = 0, points = 0;
         bool agrees = true;
-        mesh_.for_each_edge([&](HalfEdge own) {
-            const HalfEdge other = mesh_.twin(own);
+        mesh_.for_each_edge([&](HalfEdge edge) {
+            const HalfEdge other = mesh_.twin(edge);
             if (other.is_none()) {
                 ++outer;
             } else {
-                agrees = agrees && mesh_.twin(other) == own && from(own) == to(other) &&
-                         to(own) == from(other);
+                agrees = agrees && mesh_.twin(other) == edge && from(edge) == to(other) &&
+                         to(edge) == from(other);
             }
         });
         for (const SpacePointId p : names_)
@@ -90,11 +91,11 @@ private:
         double largest = -1;
         const Vec3 normal = triangle_normal(
             global_.rounded(corners[0]), global_.rounded(corners[1]), global_.rounded(corners[2]));
-        const TriangleCorners own{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
+        const TriangleCorners local{SpacePointId(0), SpacePointId(1), SpacePointId(2)};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double area = std::abs(normal[axis]);
             if (area <= largest) continue;
-            const int turn = exact::orient2d(places_, axis, own[0], own[1], own[2]);
+            const int turn = exact::orient2d(places_, axis, local[0], local[1], local[2]);
             if (turn == 0) continue;
             largest = area;
             axis_ = axis;
@@ -112,8 +113,8 @@ private:
     }
     SpacePointId name(SpacePointId place) const { return names_[index(place)]; }
     SpacePointId place_of(SpacePointId p) const {
-        const auto found = by_name_.find(p);
-        return found == by_name_.end() ? SpacePointId(kNone) : found->second;
+        const auto at = by_name_.find(p);
+        return at == by_name_.end() ? SpacePointId(kNone) : at->second;
     }
     int turn(SpacePointId a, SpacePointId b, SpacePointId c) const {
         return facing_ * exact::orient2d(places_, axis_, a, b, c);
@@ -131,11 +132,11 @@ private:
     }
     /// The edge from a to b as the triangle to its left has it; none where there is none.
     HalfEdge left_of(SpacePointId a, SpacePointId b) const {
-        HalfEdge found;
+        HalfEdge left;
         mesh_.visit_star(around_[index(a)], [&](HalfEdge edge) {
-            if (found.is_none() && to(edge) == b) found = edge;
+            if (left.is_none() && to(edge) == b) left = edge;
         });
-        return found;
+        return left;
     }
     /// Divides the triangles beside an edge at a point of it; of the first one the part before the
     /// point keeps its number.
@@ -247,14 +248,14 @@ private:
             if (to_b < 0 && to_c > 0) crossed = edge.next();
         });
         if (!is_free || crossed.is_none()) return std::nullopt;
-        std::vector<Edge> found;
+        std::vector<Edge> edges;
         for (;;) {
             if (mesh_.is_fixed(crossed)) return std::nullopt;
-            found.push_back({from(crossed), to(crossed)});
+            edges.push_back({from(crossed), to(crossed)});
             const HalfEdge next = mesh_.twin(crossed);
             if (next.is_none()) return std::nullopt;
             const SpacePointId tip = apex(next);
-            if (tip == q) return found;
+            if (tip == q) return edges;
             const int side = turn(p, q, tip);
             if (side == 0) return std::nullopt;
             // of the two edges at the tip the one whose other end is on the other side
@@ -273,8 +274,8 @@ private:
         const SpacePointId p = place_of(edge[0]), q = place_of(edge[1]);
         if (!p.has_value() || !q.has_value() || p == q) return;
         for (const auto& [from, to] : {std::pair(p, q), std::pair(q, p)}) {
-            const HalfEdge own = left_of(from, to);
-            if (!own.is_none()) return keep(own);
+            const HalfEdge existing = left_of(from, to);
+            if (!existing.is_none()) return keep(existing);
         }
         auto crossed = crossed_edges(p, q);
         if (!crossed) return;
@@ -322,12 +323,12 @@ private:
     void improve() {
         for (std::size_t pass = 0; pass < 64; ++pass) {
             bool changed = false;
-            mesh_.for_each_edge([&](HalfEdge own) {
-                if (own.index() == 0) poll(progress_, index(own.triangle()));
-                const HalfEdge other = mesh_.twin(own);
-                if (other.is_none() || mesh_.is_fixed(own)) return;
-                if (is_worse(name(from(own)), name(to(own)), name(apex(own)), name(apex(other))) &&
-                    flip(own))
+            mesh_.for_each_edge([&](HalfEdge e) {
+                if (e.index() == 0) poll(progress_, index(e.triangle()));
+                const HalfEdge other = mesh_.twin(e);
+                if (other.is_none() || mesh_.is_fixed(e)) return;
+                if (is_worse(name(from(e)), name(to(e)), name(apex(e)), name(apex(other))) &&
+                    flip(e))
                     changed = true;
             });
             if (!changed) break;

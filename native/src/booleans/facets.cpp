@@ -291,8 +291,8 @@ void CellFinder::join_along_rays() {
             part = static_cast<std::int32_t>(parts.size());
             parts.emplace_back();
         }
-        auto& own = parts[index(part)];
-        if (own.size() < kTried) own.push_back(static_cast<std::int32_t>(f));
+        auto& part_facets = parts[index(part)];
+        if (part_facets.size() < kTried) part_facets.push_back(static_cast<std::int32_t>(f));
     }
     // of the places that are tried in a facet two at most are in line with an edge
     const std::size_t most_places = 2 * mesh_.edges.size() + 1;
@@ -374,19 +374,19 @@ FacetCells CellFinder::number_cells() {
     const std::size_t count = mesh_.facets.size();
     cells_.number([](std::size_t) { return true; }, execution_);
     assert(cells_.of(kOutsideSide) == FacetCells::kOutside);
-    FacetCells found;
-    found.of_facet.resize(count);
+    FacetCells cells;
+    cells.of_facet.resize(count);
     parallel_each(count, execution_, [&](std::size_t f) {
         for (std::size_t side = 0; side < 2; ++side)
-            found.of_facet[f][side] = cells_.of(index(side_of(f, side)));
+            cells.of_facet[f][side] = cells_.of(index(side_of(f, side)));
     });
     cells_.connect([&](const auto& visit) {
         std::array<std::int32_t, 2> last{-1, -1};  // most are between the cells of the one before
         for (std::size_t f = 0; f < count; ++f) {
             poll(execution_.progress, f);
-            const auto& [below, above] = found.of_facet[f];
-            if (below != above && found.of_facet[f] != last) visit(f, below, above);
-            last = found.of_facet[f];
+            const auto& [below, above] = cells.of_facet[f];
+            if (below != above && cells.of_facet[f] != last) visit(f, below, above);
+            last = cells.of_facet[f];
         }
     });
     std::vector<std::optional<Winding>> windings(cells_.size());
@@ -401,8 +401,8 @@ FacetCells CellFinder::number_cells() {
     };
     cells_.spread(FacetCells::kOutside, windings, beyond, [](const auto&) {});
     for (const auto& winding : windings)
-        found.winding.push_back(winding.value_or(Winding{0, 0}));
-    return found;
+        cells.winding.push_back(winding.value_or(Winding{0, 0}));
+    return cells;
 }
 
 }  // namespace

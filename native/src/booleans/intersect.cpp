@@ -86,15 +86,15 @@ void find_sub_surfaces(const RefinedTriangles& parts, const FacetMesh& mesh,
     });
     for (std::size_t t = 0; t < root.size(); ++t) {
         poll(execution.progress, t);
-        std::int32_t& own = number[index(root[t])];
-        if (own < 0) {
-            own = static_cast<std::int32_t>(result.sub_surfaces.size());
+        std::int32_t& sub_surface = number[index(root[t])];
+        if (sub_surface < 0) {
+            sub_surface = static_cast<std::int32_t>(result.sub_surfaces.size());
             const auto& [below, above] = cells.of_facet[index(mesh.of_part[t])];
             const bool is_between =
                 below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
             result.sub_surfaces.push_back({parts.triangles[t].source, {}, {}, is_between});
         }
-        result.sub_surfaces[index(own)].triangles.push_back(static_cast<std::int32_t>(t));
+        result.sub_surfaces[index(sub_surface)].triangles.push_back(static_cast<std::int32_t>(t));
     }
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         poll(execution.progress, e);
@@ -190,13 +190,13 @@ Refinement intersect(const TriangleView& first, const TriangleView& second,
     Refinement result;
     result.is_closed = closed_surfaces(mesh, execution);
     assert(are_wound(mesh, cells, result.is_closed));
-    parallel_tasks(3, execution, 0.01, [&](std::size_t task, const Execution& own) {
+    parallel_tasks(3, execution, 0.01, [&](std::size_t task, const Execution& task_execution) {
         if (task == 0) {
-            find_sub_surfaces(parts, mesh, loops, cells, result, own);
+            find_sub_surfaces(parts, mesh, loops, cells, result, task_execution);
         } else if (task == 1) {
-            find_sub_blocks(mesh, cells, result, own.progress);
+            find_sub_blocks(mesh, cells, result, task_execution.progress);
         } else {
-            write_triangles(parts, mesh, cells, result, own);
+            write_triangles(parts, mesh, cells, result, task_execution);
         }
     });
     result.loops = std::move(loops.loops);

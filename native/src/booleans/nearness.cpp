@@ -110,7 +110,7 @@ bool Nearness::is_over(SpacePointId p, const TriangleCorners& t, double within) 
     return s > 0 && r > 0 && s + r < 1;
 }
 
-void Nearness::find_same(const FacetPair& pair, double within, NearParts& found) const {
+void Nearness::find_same(const FacetPair& pair, double within, NearParts& parts) const {
     std::array<SpacePointId, 6> all;
     std::copy(pair[0].begin(), pair[0].end(), all.begin());
     std::copy(pair[1].begin(), pair[1].end(), all.begin() + 3);
@@ -119,14 +119,14 @@ void Nearness::find_same(const FacetPair& pair, double within, NearParts& found)
             if (all[i] == all[j]) continue;
             const Position &p = points_.rounded(all[i]), &q = points_.rounded(all[j]);
             if (std::abs(p[0] - q[0]) > within || length(minus(p, q)) > within) continue;
-            found.same.push_back(unordered(all[i], all[j]));
+            parts.same.push_back(unordered(all[i], all[j]));
         }
     }
 }
 
 /// Two edges that pass each other get a common vertex, unless the end of one is near the other:
 /// then that gets this end, and a new vertex would only make more edges that are nearly parallel.
-void Nearness::find_crossing(const Edge& e, const Edge& f, double within, NearParts& found) const {
+void Nearness::find_crossing(const Edge& e, const Edge& f, double within, NearParts& parts) const {
     const Position &a = points_.rounded(e[0]), &b = points_.rounded(e[1]),
                    &c = points_.rounded(f[0]), &d = points_.rounded(f[1]);
     if (!are_boxes_near({a, b}, {c, d}, within)) return;
@@ -144,47 +144,47 @@ void Nearness::find_crossing(const Edge& e, const Edge& f, double within, NearPa
     if (!(r > 0 && r < 1)) return;
     const Position on_f = along(c, d, r);
     if (length(minus(on_e, on_f)) > within) return;
-    found.crossings.push_back({e, f, along(on_e, on_f, 0.5), within});
+    parts.crossings.push_back({e, f, along(on_e, on_f, 0.5), within});
 }
 
-void Nearness::find(const FacetPair& pair, NearParts& found) const {
+void Nearness::find(const FacetPair& pair, NearParts& parts) const {
     const double within = distance_of(pair);
-    find_same(pair, within, found);
+    find_same(pair, within, parts);
     // whether a vertex is near edges of a triangle, which then get it
     const auto find_near_edges = [&](SpacePointId p, const TriangleCorners& t) {
         bool is_near = false;
         for (const Edge& edge : edges_of(t)) {
             if (!is_near_edge(p, edge, within)) continue;
-            found.on_edges.emplace_back(edge, p);
+            parts.on_edges.emplace_back(edge, p);
             is_near = true;
         }
         return is_near;
     };
     for (std::size_t k = 0; k < 2; ++k) {
-        const TriangleCorners &own = pair[k], &other = pair[1 - k];
-        for (const SpacePointId p : own) {
-            find_near_edges(p, own);  // a corner near the edge across it: a triangle of no width
+        const TriangleCorners &t = pair[k], &other = pair[1 - k];
+        for (const SpacePointId p : t) {
+            find_near_edges(p, t);  // a corner near the edge across it: a triangle of no width
             if (has(other, p) || find_near_edges(p, other) || !is_over(p, other, within)) continue;
-            found.over.emplace_back(other, p);
+            parts.over.emplace_back(other, p);
         }
     }
     for (const Edge& e : edges_of(pair[0])) {
         for (const Edge& f : edges_of(pair[1])) {
             if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
             // one place for two edges, whichever triangles they are of
-            find_crossing(std::min(e, f), std::max(e, f), within, found);
+            find_crossing(std::min(e, f), std::max(e, f), within, parts);
         }
     }
 }
 
 /// Whether what a triangle has on one side of the plane of another is near that plane.
-bool Nearness::passes_little(const TriangleCorners& own, const TriangleCorners& plane,
+bool Nearness::passes_little(const TriangleCorners& triangle, const TriangleCorners& plane,
                              double within) const {
     const Position& a = points_.rounded(plane[0]);
     const Position normal =
         cross(minus(points_.rounded(plane[1]), a), minus(points_.rounded(plane[2]), a));
     double above = 0, below = 0;
-    for (const SpacePointId p : own) {
+    for (const SpacePointId p : triangle) {
         if (has(plane, p)) continue;
         const double height = dot(normal, minus(points_.rounded(p), a));
         above = std::max(above, height);

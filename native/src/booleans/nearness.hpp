@@ -48,7 +48,7 @@ public:
     /// The largest one where no coordinate is larger than this.
     double distance_at(double coordinate) const;
     /// Adds what is near in a pair.
-    void find(const FacetPair& pair, NearParts& found) const;
+    void find(const FacetPair& pair, NearParts& parts) const;
     /// Whether one of two triangles passes through the plane of the other by so little that all of
     /// it on one side of that plane is near the plane.
     bool is_shallow(const FacetPair& pair) const;
@@ -59,9 +59,9 @@ public:
     bool is_between(SpacePointId p, const Edge& edge) const;
 
 private:
-    void find_same(const FacetPair& pair, double within, NearParts& found) const;
-    void find_crossing(const Edge& e, const Edge& f, double within, NearParts& found) const;
-    bool passes_little(const TriangleCorners& own, const TriangleCorners& plane,
+    void find_same(const FacetPair& pair, double within, NearParts& parts) const;
+    void find_crossing(const Edge& e, const Edge& f, double within, NearParts& parts) const;
+    bool passes_little(const TriangleCorners& triangle, const TriangleCorners& plane,
                        double within) const;
 
     const SpacePoints& points_;

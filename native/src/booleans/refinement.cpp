@@ -105,20 +105,20 @@ bool Refiner::is_flat(const TriangleCorners& c) const {
 /// meets another piece there, and gets it; later their edges get it.
 void Refiner::drop_flat() {
     for (;;) {
-        std::vector<std::vector<TriangleCorners>> found(fresh_.size());
+        std::vector<std::vector<TriangleCorners>> flat_pieces(fresh_.size());
         parallel_ranges(fresh_.size(), kItemsAtOnce, execution_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end; ++i) {
                                 for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
                                     if (piece.is_fresh && is_flat(piece.corners))
-                                        found[i].push_back(in_order(piece.corners).first);
+                                        flat_pieces[i].push_back(in_order(piece.corners).first);
                                 }
                             }
                         });
         std::vector<TriangleCorners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
-            flat.insert(flat.end(), found[i].begin(), found[i].end());
-            if (state_ == RefinementStage::kUntouched && !found[i].empty())
+            flat.insert(flat.end(), flat_pieces[i].begin(), flat_pieces[i].end());
+            if (state_ == RefinementStage::kUntouched && !flat_pieces[i].empty())
                 pieces_.replace(fresh_[i], {});
         }
         if (state_ == RefinementStage::kUntouched || flat.empty()) return;
@@ -132,37 +132,38 @@ void Refiner::drop_flat() {
 
 /// All pieces that may meet a fresh one, in order.
 std::vector<PieceId> Refiner::pieces_near_fresh() const {
-    std::vector<PieceId> found;
+    std::vector<PieceId> near_pieces;
     Numbers inputs;
     if (state_ == RefinementStage::kUntouched) {
         inputs = fresh_;
     } else {
         inputs = found_in_ranges<std::int32_t>(
-            fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end, Numbers& own) {
+            fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end, Numbers& near) {
                 for (std::size_t i = begin; i < end; ++i) {
                     for (const TrianglePiece& piece : pieces_.of(fresh_[i])) {
                         if (!piece.is_fresh) continue;
                         pieces_.find_inputs(pieces_.box(piece.corners),
-                                            [&](std::int32_t input) { own.push_back(input); });
+                                            [&](std::int32_t input) { near.push_back(input); });
                     }
                 }
-                sort_unique(own);
+                sort_unique(near);
             });
         sort_unique(inputs);
     }
-    found.reserve(inputs.size());
+    near_pieces.reserve(inputs.size());
     for (const std::int32_t input : inputs) {
         for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
-            found.push_back({input, static_cast<std::int32_t>(k)});
+            near_pieces.push_back({input, static_cast<std::int32_t>(k)});
     }
-    return found;
+    return near_pieces;
 }
 
 void Refiner::find_fresh(const Numbers& among) {
     fresh_.clear();
     for (const std::int32_t input : among) {
-        const auto own = pieces_.of(input);
-        if (std::any_of(own.begin(), own.end(), [](const TrianglePiece& p) { return p.is_fresh; }))
+        const auto pieces = pieces_.of(input);
+        if (std::any_of(pieces.begin(), pieces.end(),
+                        [](const TrianglePiece& p) { return p.is_fresh; }))
             fresh_.push_back(input);
     }
 }
@@ -273,9 +274,9 @@ std::vector<std::uint8_t> Refiner::near_meetings(const ExactDivision& division) 
     parallel_ranges(meetings.size(), kItemsAtOnce, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
-                            NearParts found;
-                            nearness.find(pair_of(division, meetings[i]), found);
-                            is_near[i] = found.empty() ? 0 : 1;
+                            NearParts parts;
+                            nearness.find(pair_of(division, meetings[i]), parts);
+                            is_near[i] = parts.empty() ? 0 : 1;
                         }
                     });
     return is_near;
@@ -290,8 +291,8 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
         // first only what does not settle, then all that is near it
         const double of_the_rest = snap_rounds_ < kLocalRounds ? kNearest : ulps_;
         Snapping snapping(pieces_, pairs, {ulps_, of_the_rest}, execution_);
-        const auto own = snapping.apply();
-        changed.insert(changed.end(), own.begin(), own.end());
+        const auto inputs = snapping.apply();
+        changed.insert(changed.end(), inputs.begin(), inputs.end());
         if (!snapping.merges()) break;
         // what remains of the pairs, with the vertices that remain
         std::vector<FacetPair> left;
@@ -332,12 +333,12 @@ RefinedTriangles Refiner::result() const {
             assert(!piece.is_fresh && !has_equal_corners(piece.corners));
             RefinedTriangle part{{}, pieces_.row(input), pieces_.source(input)};
             for (std::size_t k = 0; k < 3; ++k) {
-                std::int32_t& own = number[index(piece.corners[k])];
-                if (own < 0) {
-                    own = checked_number(parts.vertices.size(), "vertices");
+                std::int32_t& vertex = number[index(piece.corners[k])];
+                if (vertex < 0) {
+                    vertex = checked_number(parts.vertices.size(), "vertices");
                     parts.vertices.push_back(pieces_.points.rounded(piece.corners[k]));
                 }
-                part.corners[k] = own;
+                part.corners[k] = vertex;
             }
             parts.triangles.push_back(part);
         }
@@ -352,7 +353,7 @@ RefinedTriangles refine(const std::array<TriangleView, 2>& surfaces, const Execu
     // surfaces that are farther apart than what is brought together first may cross in splinters
     // that never settle: then more is brought together first
     for (double ulps = kNearest; ulps <= kFarthest; ulps *= kGrowth * kGrowth) {
-        if (auto found = Refiner(surfaces, ulps, execution).run()) return std::move(*found);
+        if (auto triangles = Refiner(surfaces, ulps, execution).run()) return std::move(*triangles);
     }
     throw InputError(
         "too_close",

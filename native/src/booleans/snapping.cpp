@@ -44,11 +44,11 @@ void cancel_folds(std::vector<TrianglePiece>& pieces) {
              ++even, ++back)
             goes[even->piece] = goes[back->piece] = 1;
     }
-    std::size_t kept = 0;
+    std::size_t remaining = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (goes[i] == 0) pieces[kept++] = pieces[i];
+        if (goes[i] == 0) pieces[remaining++] = pieces[i];
     }
-    pieces.resize(kept);
+    pieces.resize(remaining);
 }
 
 }  // namespace
@@ -69,18 +69,18 @@ Snapping::Snapping(TrianglePieces& pieces, std::span<const FacetPair> pairs, con
     }
     sort_unique(facets);
     first_ = facets_.size();
-    NearParts found;
+    NearParts parts;
     Waves waves;
     for (std::int32_t wave = 0; !facets.empty(); ++wave) {
         waves.resize(facets_.size(), -1);
         for (const std::int32_t facet : facets)
             waves[index(facet)] = wave;
         const auto around = pairs_around(facets, waves);
-        facets = find_near(around, waves, found);
+        facets = find_near(around, waves, parts);
     }
-    merge_vertices(found.same);
+    merge_vertices(parts.same);
     // where vertices become one the rest is found again, with those that remain
-    if (merged_.empty()) place(std::move(found));
+    if (merged_.empty()) place(std::move(parts));
 }
 
 Snapping::Snapping(TrianglePieces& pieces, std::span<const TriangleCorners> flat,
@@ -109,14 +109,14 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
         parallel_ranges(count, kTrianglesAtOnce, execution_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end; ++i) {
-                                auto& own = around[i];
-                                own.clear();
+                                auto& neighbors = around[i];
+                                neighbors.clear();
                                 spatial::Box box = pieces_.box(facets_[facets[first + i]]);
                                 box.widen(reach(facets[first + i]));
-                                pieces_.find(box, [&own](const TrianglePiece& piece) {
-                                    own.push_back(in_order(piece.corners).first);
+                                pieces_.find(box, [&neighbors](const TrianglePiece& piece) {
+                                    neighbors.push_back(in_order(piece.corners).first);
                                 });
-                                sort_unique(own);
+                                sort_unique(neighbors);
                             }
                         });
         for (std::size_t i = 0; i < count; ++i) {
@@ -125,8 +125,8 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
             for (const TriangleCorners& corners : around[i]) {
                 const std::int32_t other = facets_.add(corners);
                 waves.resize(facets_.size(), -1);
-                const std::int32_t own = waves[index(facet)], wave = waves[index(other)];
-                if (wave < 0 || (wave == own && facet < other)) pairs.push_back({facet, other});
+                const std::int32_t current = waves[index(facet)], wave = waves[index(other)];
+                if (wave < 0 || (wave == current && facet < other)) pairs.push_back({facet, other});
             }
         }
     }
@@ -142,29 +142,29 @@ std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pair
         std::vector<FacetNumbers> near;
         double moved = 0;
     };
-    std::vector<NearPairs> found((pairs.size() + kPairs - 1) / kPairs);
+    std::vector<NearPairs> chunks((pairs.size() + kPairs - 1) / kPairs);
     const auto work = [&](std::size_t begin, std::size_t end) {
-        NearPairs& own = found[begin / kPairs];
+        NearPairs& chunk = chunks[begin / kPairs];
         NearParts parts;
         for (std::size_t i = begin; i < end; ++i) {
             const FacetPair pair = pair_of(facets_[pairs[i][0]], facets_[pairs[i][1]]);
             const Nearness& own_nearness = nearness(pairs[i]);
             own_nearness.find(pair, parts);
             if (parts.empty()) continue;
-            own.near.push_back(pairs[i]);
-            own.moved = std::max(own.moved, own_nearness.distance_of(pair));
-            own.parts.take(parts);
+            chunk.near.push_back(pairs[i]);
+            chunk.moved = std::max(chunk.moved, own_nearness.distance_of(pair));
+            chunk.parts.take(parts);
         }
-        own.parts.make_unique();
+        chunk.parts.make_unique();
     };
     parallel_ranges(pairs.size(), kPairs, execution_, work);
     std::vector<std::int32_t> next;
-    for (NearPairs& own : found) {
+    for (NearPairs& chunk : chunks) {
         if (execution_.progress != nullptr) execution_.progress->check();
-        all.take(own.parts);
-        near_.insert(near_.end(), own.near.begin(), own.near.end());
-        moved_ = std::max(moved_, own.moved);
-        for (const FacetNumbers& pair : own.near) {
+        all.take(chunk.parts);
+        near_.insert(near_.end(), chunk.near.begin(), chunk.near.end());
+        moved_ = std::max(moved_, chunk.moved);
+        for (const FacetNumbers& pair : chunk.near) {
             for (const std::int32_t facet : pair) {
                 if (waves[index(facet)] < 0) next.push_back(facet);
             }
@@ -203,15 +203,15 @@ void Snapping::merge_vertices(const std::vector<Edge>& same) {
 }
 
 /// Gives what was found to the edges and facets.
-void Snapping::place(NearParts&& found) {
+void Snapping::place(NearParts&& parts) {
     places_.resize(facets_.size());
     for (std::size_t i = 0; i < near_.size(); ++i) {
         poll(execution_.progress, i);
         const auto [one, other] = near_[i];
-        for (const auto& [own, near] : {std::pair(one, other), std::pair(other, one)}) {
-            NearFacet& place = places_[index(own)];
+        for (const auto& [facet, near] : {std::pair(one, other), std::pair(other, one)}) {
+            NearFacet& place = places_[index(facet)];
             if (place.near.empty()) {
-                const auto edges = edges_of(facets_[own]);
+                const auto edges = edges_of(facets_[facet]);
                 for (std::size_t k = 0; k < 3; ++k)
                     place.edges[k] = edges_.add(edges[k]);
             }
@@ -219,16 +219,16 @@ void Snapping::place(NearParts&& found) {
         }
     }
     near_ = {};
-    for (const auto& [corners, p] : found.over)
+    for (const auto& [corners, p] : parts.over)
         places_[index(facets_.find(corners))].over.push_back(p);
     std::vector<OnEdge> on_edges;
     const auto give = [&](const Edge& edge, SpacePointId p) {
         on_edges.emplace_back(edges_.add(edge), p);
     };
-    for (const auto& [edge, p] : found.on_edges)
+    for (const auto& [edge, p] : parts.on_edges)
         give(edge, p);
-    sort_unique(found.crossings);
-    if (!found.crossings.empty()) {
+    sort_unique(parts.crossings);
+    if (!parts.crossings.empty()) {
         std::vector<SpacePointId> vertices;
         for (const TriangleCorners& facet : facets_.keys())
             vertices.insert(vertices.end(), facet.begin(), facet.end());
@@ -238,7 +238,7 @@ void Snapping::place(NearParts&& found) {
             poll(execution_.progress, i);
             grid.add(pieces_.points.rounded(vertices[i]));
         }
-        for (const NearParts::NearCrossing& crossing : found.crossings) {
+        for (const NearParts::NearCrossing& crossing : parts.crossings) {
             if (execution_.progress != nullptr) execution_.progress->check();
             // the nearest vertex, of equally near ones the first
             std::pair<double, SpacePointId> nearest{crossing.within, kNone};
@@ -268,14 +268,14 @@ void Snapping::place(NearParts&& found) {
 
 /// Adds points to edges, each once.
 /// @return whether any is new
-bool Snapping::add_points(std::vector<OnEdge>&& found) {
-    parallel_sort(found, std::less<>(), execution_);
+bool Snapping::add_points(std::vector<OnEdge>&& on_edges) {
+    parallel_sort(on_edges, std::less<>(), execution_);
     for (DividedEdge& edge : on_edges_)
         edge.old = edge.points.size();
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    on_edges.erase(std::unique(on_edges.begin(), on_edges.end()), on_edges.end());
     bool is_new = false;
     std::size_t round = 0;
-    for (const auto group : groups_of(found, &OnEdge::first)) {
+    for (const auto group : groups_of(on_edges, &OnEdge::first)) {
         DividedEdge& edge = on_edges_[index(group[0].first)];
         std::vector<SpacePointId> known = edge.points;
         std::sort(known.begin(), known.end());
@@ -295,16 +295,16 @@ void Snapping::spread_points() {
     for (std::size_t f = 0; f < places_.size(); ++f) {
         if (!places_[f].near.empty()) facets.push_back(static_cast<std::int32_t>(f));
     }
-    const auto take = [&](std::size_t begin, std::size_t end, std::vector<OnEdge>& found) {
+    const auto take = [&](std::size_t begin, std::size_t end, std::vector<OnEdge>& on_edges) {
         for (std::size_t i = begin; i < end; ++i)
-            take_points(facets[i], found);
+            take_points(facets[i], on_edges);
     };
     while (add_points(found_in_ranges<OnEdge>(facets.size(), kTrianglesAtOnce, execution_, take))) {
     }
 }
 
 /// Gives a facet the new points on the edges of those near it.
-void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
+void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& on_edges) {
     NearFacet& place = places_[index(facet)];
     const TriangleCorners& t = facets_[facet];
     spatial::Box box = pieces_.box(t);
@@ -321,9 +321,9 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
                 if (at != place.seen.end() && *at == p) continue;
                 place.seen.insert(at, p);
                 bool is_on_edge = false;
-                for (const std::int32_t own : place.edges) {
-                    if (!own_nearness.is_near_edge(p, edges_[own], within)) continue;
-                    found.emplace_back(own, p);
+                for (const std::int32_t facet_edge : place.edges) {
+                    if (!own_nearness.is_near_edge(p, edges_[facet_edge], within)) continue;
+                    on_edges.emplace_back(facet_edge, p);
                     is_on_edge = true;
                 }
                 if (!is_on_edge && own_nearness.is_over(p, t, within)) place.over.push_back(p);
@@ -360,10 +360,9 @@ void Snapping::order_points() {
 }
 
 SpacePointId Snapping::merged(SpacePointId p) const {
-    const auto found =
-        std::lower_bound(merged_.begin(), merged_.end(), p,
-                         [](const Merge& merge, SpacePointId q) { return merge.from < q; });
-    return found == merged_.end() || found->from != p ? p : found->to;
+    const auto merge = std::lower_bound(merged_.begin(), merged_.end(), p,
+                                        [](const Merge& m, SpacePointId q) { return m.from < q; });
+    return merge == merged_.end() || merge->from != p ? p : merge->to;
 }
 
 /// The points that an edge is to get, in the order along it.
@@ -392,10 +391,10 @@ std::vector<TriangleCorners> Snapping::divided(const TriangleCorners& in_order) 
     for (std::size_t k = 0; k < 3; ++k) {
         const SpacePointId from = in_order[k], to = in_order[(k + 1) % 3];
         const auto on = points_on(unordered(from, to));
-        auto& own = facet.on_edges[k];
-        own.assign(on.begin(), on.end());
-        if (to < from) std::reverse(own.begin(), own.end());
-        append(all, own);
+        auto& edge_points = facet.on_edges[k];
+        edge_points.assign(on.begin(), on.end());
+        if (to < from) std::reverse(edge_points.begin(), edge_points.end());
+        append(all, edge_points);
     }
     if (const NearFacet* place = place_of(in_order)) {
         facet.within = place->over;
@@ -442,10 +441,10 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
     }
     auto inputs = found_in_ranges<std::int32_t>(
         boxes.size(), kTrianglesAtOnce, execution_,
-        [&](std::size_t begin, std::size_t end, std::vector<std::int32_t>& found) {
+        [&](std::size_t begin, std::size_t end, std::vector<std::int32_t>& near) {
             for (std::size_t i = begin; i < end; ++i)
-                pieces_.find_inputs(boxes[i], [&](std::int32_t input) { found.push_back(input); });
-            sort_unique(found);
+                pieces_.find_inputs(boxes[i], [&](std::int32_t input) { near.push_back(input); });
+            sort_unique(near);
         });
     parallel_sort(inputs, std::less<>(), execution_);
     inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
@@ -459,17 +458,17 @@ std::vector<std::int32_t> Snapping::apply() {
     std::vector<std::uint8_t> is_changed(inputs.size(), 0);
     const auto change = [&](std::size_t i) {
         for (const TrianglePiece& piece : pieces_.of(inputs[i])) {
-            TrianglePiece own = piece;
-            for (SpacePointId& p : own.corners)
+            TrianglePiece merged_piece = piece;
+            for (SpacePointId& p : merged_piece.corners)
                 p = merged(p);
-            if (own.corners != piece.corners) {
-                own.is_fresh = true;
+            if (merged_piece.corners != piece.corners) {
+                merged_piece.is_fresh = true;
                 is_changed[i] = 1;
             }
-            if (has_equal_corners(own.corners)) continue;
-            const auto [corners, is_odd] = in_order(own.corners);
+            if (has_equal_corners(merged_piece.corners)) continue;
+            const auto [corners, is_odd] = in_order(merged_piece.corners);
             if (!is_divided(corners)) {
-                made[i].push_back(own);
+                made[i].push_back(merged_piece);
                 continue;
             }
             is_changed[i] = 1;

@@ -85,11 +85,11 @@ private:
     std::vector<std::int32_t> find_near(std::span<const FacetNumbers> pairs, const Waves& waves,
                                         NearParts& all);
     void merge_vertices(const std::vector<Edge>& same);
-    void place(NearParts&& found);
+    void place(NearParts&& parts);
     void spread_points();
     using OnEdge = std::pair<std::int32_t, SpacePointId>;
-    void take_points(std::int32_t facet, std::vector<OnEdge>& found);
-    bool add_points(std::vector<OnEdge>&& found);
+    void take_points(std::int32_t facet, std::vector<OnEdge>& on_edges);
+    bool add_points(std::vector<OnEdge>&& on_edges);
     void order_points();
     std::span<const SpacePointId> points_on(const Edge& edge) const;
     const NearFacet* place_of(const TriangleCorners& in_order) const;

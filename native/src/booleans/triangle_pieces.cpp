@@ -44,11 +44,11 @@ TrianglePieces::TrianglePieces(const std::array<TriangleView, 2>& surfaces,
     for (std::uint8_t source = 0; source < 2; ++source)
         check(surfaces[source], source);
     checked_number(second_ + surfaces[1].triangle_count(), "triangles");
-    parallel_tasks(2, execution, 0.02, [&](std::size_t task, const Execution& own) {
+    parallel_tasks(2, execution, 0.02, [&](std::size_t task, const Execution& task_execution) {
         if (task == 0) {
-            add_triangles(surfaces, own.progress);
+            add_triangles(surfaces, task_execution.progress);
         } else {
-            make_tree(surfaces, own);
+            make_tree(surfaces, task_execution);
         }
     });
     count_ = whole_.size();
@@ -96,17 +96,17 @@ void TrianglePieces::replace(std::int32_t input, std::vector<TrianglePiece>&& pi
         pieces, [](const TrianglePiece& p) { return has_equal_corners(p.corners); }));
     count_ += pieces.size();
     count_ -= of(input).size();
-    std::int32_t& list = list_[index(input)];
-    if (list < 0) {
-        list = static_cast<std::int32_t>(lists_.size());
+    std::int32_t& number = list_[index(input)];
+    if (number < 0) {
+        number = static_cast<std::int32_t>(lists_.size());
         lists_.emplace_back();
     }
-    PieceList& own = lists_[index(list)];
-    own.pieces = std::move(pieces);
-    own.tree.reset();
-    if (own.pieces.size() < kMany) return;
-    auto boxes = transformed(own.pieces, [this](const auto& piece) { return box(piece.corners); });
-    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
+    PieceList& list = lists_[index(number)];
+    list.pieces = std::move(pieces);
+    list.tree.reset();
+    if (list.pieces.size() < kMany) return;
+    auto boxes = transformed(list.pieces, [this](const auto& piece) { return box(piece.corners); });
+    list.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), Execution{1, progress_});
 }
 
 }  // namespace realmodel::booleans

@@ -11,8 +11,8 @@ namespace {
 /// The position of a node: of the model's vertices, or of the new nodes after them.
 Position position_of(const ComplexView& model, const std::vector<Position>& new_positions,
                      NodeId node) {
-    const std::size_t own = model.vertex_count();
-    return index(node) < own ? model.vertex(node) : new_positions[index(node) - own];
+    const std::size_t vertices = model.vertex_count();
+    return index(node) < vertices ? model.vertex(node) : new_positions[index(node) - vertices];
 }
 
 /// One half while it is put together.
@@ -49,13 +49,14 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
     // calls visit(half, polygon, piece, cells in the half) for what the halves have of a chunk
     const auto each_of_half = [&](std::size_t chunk, const auto& visit) {
         pieces.each_of(chunk, [&](std::span<const NodeId> polygon, const CutPiece& piece) {
-            std::array<std::array<std::int32_t, 2>, 2> own{{{-1, -1}, {-1, -1}}};
+            std::array<std::array<std::int32_t, 2>, 2> cells{{{-1, -1}, {-1, -1}}};
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::int32_t part = piece.parts[k];
-                if (part >= 0) own[half_of(part)][k] = number[index(part)];
+                if (part >= 0) cells[half_of(part)][k] = number[index(part)];
             }
             for (std::size_t h = 0; h < 2; ++h) {
-                if (own[h][0] >= 0 || own[h][1] >= 0) visit(halves[h], polygon, piece, own[h]);
+                if (cells[h][0] >= 0 || cells[h][1] >= 0)
+                    visit(halves[h], polygon, piece, cells[h]);
             }
         });
     };
@@ -76,10 +77,10 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
             ChunkedComplex::Writer(halves[0].chunked, chunk),
             ChunkedComplex::Writer(halves[1].chunked, chunk)};
         each_of_half(chunk, [&](HalfAssembly& half, std::span<const NodeId> polygon,
-                                const CutPiece& piece, const std::array<std::int32_t, 2>& own) {
-            const bool is_exposed = (own[0] < 0 || own[1] < 0) && piece.cells[1] >= 0;
+                                const CutPiece& piece, const std::array<std::int32_t, 2>& cells) {
+            const bool is_exposed = (cells[0] < 0 || cells[1] < 0) && piece.cells[1] >= 0;
             writers[static_cast<std::size_t>(&half - halves.data())].write(
-                polygon, own,
+                polygon, cells,
                 is_exposed || piece.face < 0 ? kCutFace : model.face_surface[index(piece.face)]);
         });
     });
@@ -96,12 +97,12 @@ Section assemble_section(const ComplexView& model, const std::vector<Position>& 
     Section section;
     std::vector<std::int32_t> number(model.vertex_count() + new_positions.size(), -1);
     const auto renumbered = [&](NodeId node) {
-        std::int32_t& own = number[index(node)];
-        if (own < 0) {
-            own = static_cast<std::int32_t>(section.vertices.size());
+        std::int32_t& vertex = number[index(node)];
+        if (vertex < 0) {
+            vertex = static_cast<std::int32_t>(section.vertices.size());
             section.vertices.push_back(position_of(model, new_positions, node));
         }
-        return own;
+        return vertex;
     };
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         if (!pieces[p].is_in_section()) continue;

@@ -29,10 +29,10 @@ public:
     /// Notes that a node comes up in a chunk: of one chunk one thread does, in order.
     void meet(std::size_t chunk, NodeId node) {
         std::uint32_t& first = nodes_[index(node)].chunk;
-        const auto own = static_cast<std::uint32_t>(chunk);
-        if (std::atomic_ref(first).load(std::memory_order_relaxed) <= own) return;
+        const auto chunk_number = static_cast<std::uint32_t>(chunk);
+        if (std::atomic_ref(first).load(std::memory_order_relaxed) <= chunk_number) return;
         first_of_[chunk].push_back(node);
-        atomic_min_by(first, own, std::less<>());
+        atomic_min_by(first, chunk_number, std::less<>());
     }
     /// Writes the positions of all that came up, by their new numbers.
     template <class PositionOf>

@@ -124,13 +124,13 @@ void CutterWinding::find_coinciding(Progress* progress) {
     KeyTable first;  // of the regions of the surface with one outline
     for (std::size_t r = 0; r < count; ++r) {
         if (!overlay_.of_cutter(r)) continue;
-        const auto found = first.find_or_add(arrangement::loop_hash(outline(r)),
+        const auto entry = first.find_or_add(arrangement::loop_hash(outline(r)),
                                              static_cast<std::int32_t>(r), [&](std::int32_t other) {
                                                  return arrangement::facing_of(
                                                             outline(r), outline(index(other))) != 0;
                                              });
-        auto& counts = counts_[index(found.number)];
-        if (found.is_new) {
+        auto& counts = counts_[index(entry.number)];
+        if (entry.is_new) {
             counts = 1;
         } else if (overlay_.surface().is_closed) {
             counts ^= 1;
@@ -140,13 +140,13 @@ void CutterWinding::find_coinciding(Progress* progress) {
         count, 1 << 12, {overlay_.threads(), progress}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 std::int8_t facing = 0;
-                const std::int32_t found =
+                const std::int32_t surface_region =
                     first.find(arrangement::loop_hash(outline(r)), [&](std::int32_t other) {
                         facing = arrangement::facing_of(outline(r), outline(index(other)));
                         return facing != 0;
                     });
-                if (found < 0 || counts_[index(found)] == 0) continue;
-                coincident_[r] = found;
+                if (surface_region < 0 || counts_[index(surface_region)] == 0) continue;
+                coincident_[r] = surface_region;
                 coincident_facing_[r] = facing;
             }
         });
@@ -170,7 +170,7 @@ void CutterWinding::collect_uses(Progress* progress) {
     }
     // of each edge that may be one of the surface's: all uses
     constexpr std::size_t kChunk = 1 << 12;
-    auto found = sorted_in_buckets<EdgeUse>(
+    auto uses_by_node = sorted_in_buckets<EdgeUse>(
         nodes, (count + kChunk - 1) / kChunk,
         [&](std::size_t chunk, const auto& put) {
             for (std::size_t r = chunk * kChunk; r < std::min(count, (chunk + 1) * kChunk); ++r) {
@@ -184,19 +184,19 @@ void CutterWinding::collect_uses(Progress* progress) {
         },
         {overlay_.threads(), progress});
     auto& uses = edges_.uses;
-    uses = std::move(found.values);
+    uses = std::move(uses_by_node.values);
     first_edge_.assign(nodes + 1, 0);
-    std::size_t kept = 0;
+    std::size_t use_count = 0;
     for (const auto of_edge : groups_of(uses, &EdgeUse::key)) {
         if (std::ranges::none_of(of_edge,
                                  [this](const EdgeUse& use) { return counts(index(use.item)); }))
             continue;
         ++first_edge_[index(of_edge[0].edge[0]) + 1];
         for (const EdgeUse& use : of_edge)
-            uses[kept++] = use;
-        edges_.begins.push_back(kept);
+            uses[use_count++] = use;
+        edges_.begins.push_back(use_count);
     }
-    uses.resize(kept);
+    uses.resize(use_count);
     for (std::size_t node = 0; node < nodes; ++node)
         first_edge_[node + 1] += first_edge_[node];
     edges_of_ = bucketize<std::int32_t>(count, [this](const auto& put) {
@@ -232,11 +232,11 @@ void CutterWinding::find_fans(Progress* progress) {
 }
 
 std::int32_t CutterWinding::number(const Winding& winding) {
-    const auto [found, is_new] =
+    const auto [number, is_new] =
         number_.find_or_add(hash_of(winding), static_cast<std::int32_t>(known_.size()),
                             [&](std::int32_t other) { return known_[index(other)] == winding; });
     if (is_new) known_.push_back(winding);
-    return found;
+    return number;
 }
 
 /// What changes where a face's region is crossed to its side `entered`.
@@ -402,8 +402,8 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
             for (std::size_t i = chunk * kChunk; i < std::min(items_, (chunk + 1) * kChunk); ++i) {
                 const std::int32_t face = face_of(i);
                 if (face < 0) continue;
-                const std::array own{model.cell(index(face), 0), model.cell(index(face), 1)};
-                if (std::ranges::none_of(own, [&](std::int32_t cell) {
+                const std::array cells{model.cell(index(face), 0), model.cell(index(face), 1)};
+                if (std::ranges::none_of(cells, [&](std::int32_t cell) {
                         return cell >= 0 && reaches[index(cell)] != 0;
                     }))
                     continue;

@@ -83,7 +83,7 @@ using Edge = std::array<NodeId, 2>;
 /// Triangles of a surface, and the number that each had in the input.
 class SurfaceInput {
 public:
-    explicit SurfaceInput(const TriangleView& given);
+    explicit SurfaceInput(const TriangleView& input);
     CutterSurface ready(bool with_seam) &&;
 
 private:
@@ -114,29 +114,29 @@ private:
     std::vector<std::int64_t> original_;
 };
 
-SurfaceInput::SurfaceInput(const TriangleView& given) {
+SurfaceInput::SurfaceInput(const TriangleView& input) {
     const std::int32_t count =
-        checked_number(given.vertices.size() / 3, "vertices of the surface that is to cut");
-    checked_number(given.triangles.size(), "corners of the surface that is to cut");
+        checked_number(input.vertices.size() / 3, "vertices of the surface that is to cut");
+    checked_number(input.triangles.size(), "corners of the surface that is to cut");
     KeyTable same;
     std::vector<NodeId> first;
     for (std::int32_t v = 0; v < count; ++v) {
         Position p;
         for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = given.vertices[3 * index(v) + k] + 0.0;  // both zeros alike
+            p[k] = input.vertices[3 * index(v) + k] + 0.0;  // both zeros alike
             if (!std::isfinite(p[k]))
                 throw InputError("not_finite", "a vertex of the surface is not finite", -1, {v});
         }
         surface_.vertices.push_back(p);
-        const auto found =
+        const auto vertex =
             same.find_or_add(KeyTable::hash(std::bit_cast<std::array<std::uint64_t, 3>>(p)), v,
                              [&](NodeId other) { return at(other) == p; });
-        first.push_back(found.number);
+        first.push_back(vertex.number);
     }
-    for (std::size_t t = 0; t + 2 < given.triangles.size(); t += 3) {
+    for (std::size_t t = 0; t + 2 < input.triangles.size(); t += 3) {
         Triangle corners{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t v = given.triangles[t + i];
+            const std::int32_t v = input.triangles[t + i];
             if (v < 0 || v >= count)
                 throw InputError("bad_index", "a triangle of the surface names no vertex", -1,
                                  {static_cast<std::int64_t>(t / 3)});
@@ -190,20 +190,20 @@ bool SurfaceInput::drop_repeated() {
         std::ranges::sort(sorted.back().first);
     }
     std::ranges::sort(sorted);
-    std::vector<Triangle> odd;           // those that are there an odd number of times
-    std::vector<std::size_t> all, kept;  // the first of each, and of these
+    std::vector<Triangle> odd;                // those that are there an odd number of times
+    std::vector<std::size_t> all, remaining;  // the first of each, and of these
     for (const auto equal : groups_of(sorted, &std::pair<Triangle, std::size_t>::first)) {
         all.push_back(equal[0].second);
         if (equal.size() % 2 == 0) continue;
         odd.push_back(equal[0].first);
-        kept.push_back(equal[0].second);
+        remaining.push_back(equal[0].second);
     }
     const bool closed = are_closed(odd);
-    if (!closed) kept = std::move(all);
-    std::ranges::sort(kept);
+    if (!closed) remaining = std::move(all);
+    std::ranges::sort(remaining);
     std::vector<Triangle> triangles;
     std::vector<std::int64_t> original;
-    for (const std::size_t t : kept) {
+    for (const std::size_t t : remaining) {
         triangles.push_back(surface_.triangles[t]);
         original.push_back(original_[t]);
     }
@@ -226,7 +226,7 @@ void SurfaceInput::divide_borders() {
     }
     sort_unique(corners);
     const BoxTree tree(boxes);
-    std::vector<OnEdge> found;
+    std::vector<OnEdge> on_edges;
     for (const NodeId v : corners) {
         const Position p = at(v);
         const double tolerance = rounding_of(std::span(&p, 1));
@@ -241,14 +241,14 @@ void SurfaceInput::divide_borders() {
             for (std::size_t k = 0; k < 3; ++k) {
                 if (std::abs(off[k] - share * line[k]) > tolerance) return;
             }
-            found.push_back({edge, share, v});
+            on_edges.push_back({edge, share, v});
         });
     }
-    if (found.empty()) return;
-    std::ranges::sort(found);
+    if (on_edges.empty()) return;
+    std::ranges::sort(on_edges);
     const std::size_t count = surface_.triangles.size();
     for (std::size_t t = 0; t < count; ++t)
-        divide_triangle(t, found);
+        divide_triangle(t, on_edges);
 }
 
 void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edges) {
@@ -269,8 +269,8 @@ void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edg
     std::vector<std::array<LoopCorner, 3>> triangles;
     triangulate(std::span(&loop, 1), view.rounding(positions), triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const auto& own = triangles[i];
-        const Triangle part{own[0].node, own[1].node, own[2].node};
+        const auto& triangle = triangles[i];
+        const Triangle part{triangle[0].node, triangle[1].node, triangle[2].node};
         if (i == 0) {
             surface_.triangles[t] = part;
         } else {
@@ -409,8 +409,8 @@ CutterSurface SurfaceInput::ready(bool with_seam) && {
 
 }  // namespace
 
-CutterSurface oriented_surface(const TriangleView& given, bool with_seam) {
-    return SurfaceInput(given).ready(with_seam);
+CutterSurface oriented_surface(const TriangleView& surface, bool with_seam) {
+    return SurfaceInput(surface).ready(with_seam);
 }
 
 }  // namespace realmodel::cutting

@@ -69,8 +69,8 @@ public:
             });
         parallel_each(faces_.size(), execution_, [&](std::size_t i) {
             if (!has(i, kNear)) return;
-            each_edge_of(i, [&](const EdgeUse& own) {
-                for (const EdgeUse& use : edges_.between(own.edge))
+            each_edge_of(i, [&](const EdgeUse& near_use) {
+                for (const EdgeUse& use : edges_.between(near_use.edge))
                     note(index(use.item), kBesideNear);
             });
         });
@@ -81,11 +81,11 @@ public:
     /// the first of each group.
     void join() {
         parallel_each(edges_.size(), execution_, [&](std::size_t e) {
-            const auto own = edges_[e];
-            if (is_within(own)) {
-                joined_.join(own[0].item, own[1].item);
+            const auto uses = edges_[e];
+            if (is_within(uses)) {
+                joined_.join(uses[0].item, uses[1].item);
             } else {
-                for (const EdgeUse& use : own)
+                for (const EdgeUse& use : uses)
                     note(index(use.item), kOfGroup);
             }
         });
@@ -102,8 +102,8 @@ public:
     template <class Visit>
     void each_edge_to_left_out(std::size_t i, const Visit& visit) {
         each_edge_of(i, [&](const EdgeUse& use) {
-            const auto own = edges_.between(use.edge);
-            if (is_within(own) && !(stays(index(own[0].item)) && stays(index(own[1].item))))
+            const auto uses = edges_.between(use.edge);
+            if (is_within(uses) && !(stays(index(uses[0].item)) && stays(index(uses[1].item))))
                 visit(use);
         });
     }
@@ -118,9 +118,9 @@ private:
                                static_cast<std::int32_t>(i), visit);
     }
     /// Of the uses of an edge: whether faces of one group may be on its two sides.
-    bool is_within(std::span<const EdgeUse> own) {
-        if (own.size() != 2 || own[0].direction == own[1].direction) return false;
-        const std::size_t one = index(own[0].item), other = index(own[1].item);
+    bool is_within(std::span<const EdgeUse> uses) {
+        if (uses.size() != 2 || uses[0].direction == uses[1].direction) return false;
+        const std::size_t one = index(uses[0].item), other = index(uses[1].item);
         return !has(one, kNear | kBesideNear) && !has(other, kNear | kBesideNear) &&
                model_.cell(index(faces_[one]), 0) == model_.cell(index(faces_[other]), 0) &&
                model_.cell(index(faces_[one]), 1) == model_.cell(index(faces_[other]), 1);
@@ -161,15 +161,15 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
         count, execution, [&](std::size_t i) { return is_group[i] != 0; },
         [this](std::size_t groups) { first_.resize(groups); },
         [&](std::size_t i, std::size_t group) { number[i] = static_cast<std::int32_t>(group); });
-    std::vector<std::int32_t> kept;
+    std::vector<std::int32_t> remaining_faces;
     number_in_order(
         count, execution, [&](std::size_t i) { return connection.stays(i); },
         [&](std::size_t size) {
-            kept.resize(size);
+            remaining_faces.resize(size);
             group_.resize(size);
         },
         [&](std::size_t i, std::size_t at) {
-            kept[at] = faces[i];
+            remaining_faces[at] = faces[i];
             group_[at] = number[connection.first_of_group(i)];
             if (number[i] >= 0) first_[index(number[i])] = static_cast<std::int32_t>(at);
         });
@@ -198,7 +198,7 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
             i, [this](const EdgeUse& use) { edges_.push_back(use.key()); });
     }
     std::ranges::sort(edges_);
-    faces = std::move(kept);
+    faces = std::move(remaining_faces);
 }
 
 void FarFaces::renumber(std::span<const NodeId> number) {
@@ -219,9 +219,9 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
     const std::size_t vertices = model.vertex_count();
     std::vector<double> largest((vertices + kChunk - 1) / kChunk, 0);
     parallel_ranges(vertices, kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        double& own = largest[begin / kChunk];
+        double& chunk_largest = largest[begin / kChunk];
         for (std::size_t i = 3 * begin; i < 3 * end; ++i)
-            own = std::max(own, std::abs(model.vertices[i]));
+            chunk_largest = std::max(chunk_largest, std::abs(model.vertices[i]));
     });
     if (!largest.empty()) rounding = 4 * kComputedUlps * ulp(std::ranges::max(largest));
     spatial::Box around;
@@ -250,10 +250,10 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
                 bits |= within[index(v)];
             for (std::size_t k = 0; k < 2; ++k) {
                 if (model.cell(f, k) < 0) continue;
-                const std::atomic_ref own(of_cell[index(model.cell(f, k))]);
-                if ((own.load(std::memory_order_relaxed) | bits) !=
-                    own.load(std::memory_order_relaxed))
-                    own.fetch_or(bits, std::memory_order_relaxed);
+                const std::atomic_ref cell_bits(of_cell[index(model.cell(f, k))]);
+                if ((cell_bits.load(std::memory_order_relaxed) | bits) !=
+                    cell_bits.load(std::memory_order_relaxed))
+                    cell_bits.fetch_or(bits, std::memory_order_relaxed);
             }
         }
     });
@@ -361,20 +361,20 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
     part_.face_offsets.push_back(0);
     for (const std::int32_t face : faces_) {
         const auto f = index(face);
-        std::array<std::int32_t, 2> own{-1, -1};
+        std::array<std::int32_t, 2> cells{-1, -1};
         for (std::size_t k = 0; k < 2; ++k) {
-            if (model.cell(f, k) >= 0) own[k] = number_[index(model.cell(f, k))];
+            if (model.cell(f, k) >= 0) cells[k] = number_[index(model.cell(f, k))];
         }
-        assert(own[0] >= 0 || own[1] >= 0);
+        assert(cells[0] >= 0 || cells[1] >= 0);
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
+            const NodeId v = corners[cells[0] >= 0 ? i : corners.size() - 1 - i];
             part_.face_vertices.push_back(own_vertex[index(v)]);
         }
         part_.face_offsets.push_back(static_cast<std::int64_t>(part_.face_vertices.size()));
-        part_.face_cells.push_back(own[0] >= 0 ? own : std::array{own[1], -1});
+        part_.face_cells.push_back(cells[0] >= 0 ? cells : std::array{cells[1], -1});
         part_.face_surface.push_back(model.face_surface[f]);
-        beyond_.push_back(own[0] < 0 ? model.cell(f, 0) : own[1] < 0 ? model.cell(f, 1) : -1);
+        beyond_.push_back(cells[0] < 0 ? model.cell(f, 0) : cells[1] < 0 ? model.cell(f, 1) : -1);
     }
 }
 
@@ -435,7 +435,7 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
     std::ranges::stable_sort(of_faces, {}, key);
     auto beside = std::ranges::count_if(
         beyond_, [&](std::int32_t cell) { return cell >= 0 && whole.far_part_[index(cell)] >= 0; });
-    const auto own = static_cast<NodeId>(part_.vertices.size());
+    const auto part_vertices = static_cast<NodeId>(part_.vertices.size());
     const auto all = static_cast<NodeId>(model_.vertex_count());
     whole.near_.origins.reserve(near.size());
     whole.near_.polygons.nodes.reserve(near.polygons.nodes.size());
@@ -473,8 +473,8 @@ std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<Ha
             }
         }
         for (const NodeId node : polygon) {
-            whole.near_.polygons.nodes.push_back(node < own ? vertices_of_[index(node)]
-                                                            : node - own + all);
+            whole.near_.polygons.nodes.push_back(node < part_vertices ? vertices_of_[index(node)]
+                                                                      : node - part_vertices + all);
         }
         whole.near_.polygons.close();
         whole.near_.origins.push_back(piece);

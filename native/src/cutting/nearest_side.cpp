@@ -63,8 +63,8 @@ NearestSide::NearestSide(const CutterSurface& surface, const Execution& executio
         if (edges[e].size() != 1) continue;
         const auto t = index(edges[e][0].item);
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto& own = surface.triangles[t];
-            if (unordered(own[i], own[(i + 1) % 3]) == edges.ends(e))
+            const auto& triangle = surface.triangles[t];
+            if (unordered(triangle[i], triangle[(i + 1) % 3]) == edges.ends(e))
                 border_[t] |= static_cast<std::uint8_t>(1U << i);
         }
     }
@@ -184,8 +184,8 @@ std::int8_t NearestSide::within(exact::SpacePoints& points, exact::SpacePointId 
                                 bool from_below) const {
     bool inside = false;
     tree_.find(arrangement::ray_box(points, p, axis), [&](std::int32_t t) {
-        const auto own = corners(t);
-        const std::array of{points.add(own[0]), points.add(own[1]), points.add(own[2])};
+        const auto corner = corners(t);
+        const std::array of{points.add(corner[0]), points.add(corner[1]), points.add(corner[2])};
         if (exact::ray_crosses(points, axis, p, of, from_below) != 0) inside = !inside;
     });
     return inside ? kBelow : kAbove;

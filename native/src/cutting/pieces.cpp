@@ -76,9 +76,9 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         return;
     }
     const auto [loop, rounding] = loop_of(model, model.face(face));
-    std::vector<std::array<LoopCorner, 3>> found;
-    triangulate(std::span(&loop, 1), rounding, found);
-    for (const auto& t : found)
+    std::vector<std::array<LoopCorner, 3>> loop_triangles;
+    triangulate(std::span(&loop, 1), rounding, loop_triangles);
+    for (const auto& t : loop_triangles)
         triangles.push_back({t[0].node, t[1].node, t[2].node});
 }
 
@@ -114,20 +114,20 @@ FaceTriangles triangulate_faces(std::span<const double> vertices,
     complex.face_vertices = face_vertices;
     const std::size_t faces = face_offsets.empty() ? 0 : face_offsets.size() - 1;
     require_faces(complex, faces);
-    FaceTriangles found;
-    found.offsets.resize(faces + 1, 0);
-    found.triangles = found_in_ranges<std::array<std::int32_t, 3>>(
+    FaceTriangles face_triangles;
+    face_triangles.offsets.resize(faces + 1, 0);
+    face_triangles.triangles = found_in_ranges<std::array<std::int32_t, 3>>(
         faces, kFacesOfChunk, execution, [&](std::size_t begin, std::size_t end, auto& of_chunk) {
             std::vector<std::array<std::int32_t, 3>> triangles;
             for (std::size_t f = begin; f < end; ++f) {
                 triangulate_face(complex, f, triangles);
-                found.offsets[f + 1] = static_cast<std::int64_t>(triangles.size());
+                face_triangles.offsets[f + 1] = static_cast<std::int64_t>(triangles.size());
                 of_chunk.insert(of_chunk.end(), triangles.begin(), triangles.end());
             }
         });
     for (std::size_t f = 0; f < faces; ++f)
-        found.offsets[f + 1] += found.offsets[f];
-    return found;
+        face_triangles.offsets[f + 1] += face_triangles.offsets[f];
+    return face_triangles;
 }
 
 }  // namespace realmodel::cutting

@@ -142,12 +142,12 @@ void PlaneCutter::mark_sides() {
     parallel_ranges(
         face_sides_.size(), kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) {
-                std::uint8_t found = 0;
+                std::uint8_t face_sides = 0;
                 for (const NodeId v : model_.face(f)) {
                     const std::int8_t side = sides_[index(v)];
-                    found |= side == kAbove ? kHasAbove : side == kBelow ? kHasBelow : 0;
+                    face_sides |= side == kAbove ? kHasAbove : side == kBelow ? kHasBelow : 0;
                 }
-                face_sides_[f] = found;
+                face_sides_[f] = face_sides;
             }
         });
     cell_sides_.assign(model_.cell_block.size(), 0);
@@ -230,7 +230,7 @@ CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
     find_cuts();
-    std::vector<CutPieces> found((model_.face_count() + kFacesAtOnce - 1) / kFacesAtOnce);
+    std::vector<CutPieces> chunk_pieces((model_.face_count() + kFacesAtOnce - 1) / kFacesAtOnce);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
@@ -238,7 +238,7 @@ void PlaneCutter::divide_faces(bool all) {
         model_.face_count(), kFacesAtOnce, execution_, [&](std::size_t begin, std::size_t end) {
             FaceSplitter splitter(model_, sides_, *cuts_);
             SplitFace parts;
-            CutPieces& own = found[begin / kFacesAtOnce];
+            CutPieces& pieces = chunk_pieces[begin / kFacesAtOnce];
             for (std::size_t f = begin; f < end; ++f) {
                 const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
                 const auto face = model_.face(f);
@@ -261,13 +261,13 @@ void PlaneCutter::divide_faces(bool all) {
                 }
                 for (std::size_t p = 0; p < parts.sides.size(); ++p) {
                     if (parts.polygons[p].size() < 3) continue;
-                    own.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
+                    pieces.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
                 }
             }
         });
     pieces_ = {};
-    for (const CutPieces& own : found)
-        pieces_.add(own, 0, own.size());
+    for (const CutPieces& pieces : chunk_pieces)
+        pieces_.add(pieces, 0, pieces.size());
     first_cap_ = pieces_.size();
 }
 
@@ -468,7 +468,7 @@ public:
                 const NodeId a = section_.polygon_vertices[i];
                 const NodeId b = section_.polygon_vertices[i + 1 < end ? i + 1 : begin];
                 any = any || side(a) == kAbove;
-                if (side(a) != kBelow) polygon.push_back(kept(a));
+                if (side(a) != kBelow) polygon.push_back(node_of(a));
                 if (side(a) * side(b) < 0) polygon.push_back(intersection(a, b));
             }
             if (!any || polygon.size() < 3) continue;
@@ -488,19 +488,19 @@ private:
         result_.vertices.push_back(p);
         return static_cast<NodeId>(result_.vertices.size()) - 1;
     }
-    NodeId kept(NodeId v) {
+    NodeId node_of(NodeId v) {
         NodeId& number = number_[index(v)];
         if (number < 0) number = add(section_.vertices[index(v)]);
         return number;
     }
     NodeId intersection(NodeId a, NodeId b) {
-        const auto [found, is_new] =
+        const auto [entry, is_new] =
             intersections_.try_emplace(std::pair(std::min(a, b), std::max(a, b)), -1);
         if (is_new) {
-            found->second = add(plane_.intersection(section_.vertices[index(found->first.first)],
-                                                    section_.vertices[index(found->first.second)]));
+            entry->second = add(plane_.intersection(section_.vertices[index(entry->first.first)],
+                                                    section_.vertices[index(entry->first.second)]));
         }
-        return found->second;
+        return entry->second;
     }
     /// Nodes of polygons that merely touch the plane.
     void drop_unused() {

@@ -47,10 +47,10 @@ EdgeIntersections::EdgeIntersections(const ComplexView& model, const exact::Orie
 
 NodeId EdgeIntersections::node(NodeId a, NodeId b) const {
     const std::array<NodeId, 2> edge = unordered(a, b);
-    const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
-    if (found == edges_.end() || *found != edge)
+    const auto cut_edge = std::lower_bound(edges_.begin(), edges_.end(), edge);
+    if (cut_edge == edges_.end() || *cut_edge != edge)
         throw InternalError("an edge from one side of the plane to the other is cut");
-    return first_ + static_cast<NodeId>(found - edges_.begin());
+    return first_ + static_cast<NodeId>(cut_edge - edges_.begin());
 }
 
 exact::RationalPoint PlanePoints::exact_point(NodeId node) const {
@@ -128,21 +128,21 @@ void FaceSplitter::split(std::span<const NodeId> face, SplitFace& parts) {
 bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& parts) {
     cycle_.clear();
     std::array<std::size_t, 2> on{};
-    std::size_t found = 0;
+    std::size_t on_count = 0;
     for (std::size_t i = 0; i < face.size(); ++i) {
         const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
         if (side(a) == kOn) {
-            if (found == 2) return false;
-            on[found++] = cycle_.size();
+            if (on_count == 2) return false;
+            on[on_count++] = cycle_.size();
         }
         cycle_.push_back(a);
         if (side(a) * side(b) < 0) {
-            if (found == 2) return false;
-            on[found++] = cycle_.size();
+            if (on_count == 2) return false;
+            on[on_count++] = cycle_.size();
             cycle_.push_back(cuts_.node(a, b));
         }
     }
-    if (found != 2 || on[1] - on[0] < 2 || on[0] + cycle_.size() - on[1] < 2) return false;
+    if (on_count != 2 || on[1] - on[0] < 2 || on[0] + cycle_.size() - on[1] < 2) return false;
     const auto side_after = [&](std::size_t i) { return side(cycle_[(i + 1) % cycle_.size()]); };
     for (const auto& [from, to] : {std::pair(on[0], on[1]), std::pair(on[1], on[0])}) {
         parts.sides.push_back(side_after(from));
@@ -423,12 +423,12 @@ std::int8_t CellCutter::side_of(std::int32_t item) const {
 
 /// The edges of the caps, as seen from below, beside the others.
 void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
-    const auto own = static_cast<std::ptrdiff_t>(uses_.size());
+    const auto cap_begin = static_cast<std::ptrdiff_t>(uses_.size());
     for (std::int32_t c = 0; index(c) < caps.size(); ++c)
         each_edge(std::array{caps[index(c)]}, pieces + 2 * c,
                   [this](const EdgeUse& use) { uses_.push_back(use); });
-    std::sort(uses_.begin() + own, uses_.end());
-    std::inplace_merge(uses_.begin(), uses_.begin() + own, uses_.end());
+    std::sort(uses_.begin() + cap_begin, uses_.end());
+    std::inplace_merge(uses_.begin(), uses_.begin() + cap_begin, uses_.end());
 }
 
 /// Joins what meets at an edge on one side of the plane: each cap with a face, and what finds no

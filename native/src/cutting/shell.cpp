@@ -146,8 +146,8 @@ void join_hollows(
         if (hollow.sixfold_volume > 0) continue;
         // what contains the first of its corners that touches none
         std::vector<std::int32_t> containing;
-        const auto own = items_with_key(questions, inner, &Question::hollow);
-        for (const auto of_corner : groups_of(own, &Question::number)) {
+        const auto of_hollow = items_with_key(questions, inner, &Question::hollow);
+        for (const auto of_corner : groups_of(of_hollow, &Question::number)) {
             if (std::ranges::any_of(of_corner, &Question::is_on)) continue;
             for (const Question& question : of_corner) {
                 if (question.turns != 0) containing.push_back(question.around);

@@ -84,12 +84,12 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution&
     }
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(execution.progress, f);
-        const std::array<std::int32_t, 2> own{model.cell(f, 0), model.cell(f, 1)};
-        const std::array<std::int8_t, 2> sides{side(own[0]), side(own[1])};
+        const std::array<std::int32_t, 2> face_cells{model.cell(f, 0), model.cell(f, 1)};
+        const std::array<std::int8_t, 2> sides{side(face_cells[0]), side(face_cells[1])};
         const bool bounds = (sides[0] == kBelow) != (sides[1] == kBelow);
-        const CutPiece origin{static_cast<std::int32_t>(f), own, sides, bounds, own};
+        const CutPiece origin{static_cast<std::int32_t>(f), face_cells, sides, bounds, face_cells};
         polygons.clear();
-        if (bounds && own[1] >= 0) {
+        if (bounds && face_cells[1] >= 0) {
             divide_face(model, f, polygons);
         } else {
             polygons.add(model.face(f));

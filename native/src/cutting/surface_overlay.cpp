@@ -123,13 +123,13 @@ std::vector<SurfaceOverlay::SurfaceFeature> SurfaceOverlay::features_near(NodeId
     std::vector<SurfaceFeature> features;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (const auto found = edge_near(p, tolerance, corner(t, i), corner(t, i + 1)))
-                features.push_back(*found);
+            if (const auto feature = edge_near(p, tolerance, corner(t, i), corner(t, i + 1)))
+                features.push_back(*feature);
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto found = triangle_near(p, tolerance, surface_.corners(index(t))))
-            features.push_back(*found);
+        if (const auto feature = triangle_near(p, tolerance, surface_.corners(index(t))))
+            features.push_back(*feature);
     }
     return features;
 }
@@ -144,9 +144,9 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(
         std::array<SpacePointId, 4> of{points_.add(p)};
         for (std::size_t i = 0; i < count; ++i)
             of[i + 1] = points_.add(corners[i]);
-        const SpacePointId found = count == 2 ? points_.projected(axis, of[0], of[1], of[2])
+        const SpacePointId point = count == 2 ? points_.projected(axis, of[0], of[1], of[2])
                                               : points_.projected(axis, of[0], of[1], of[2], of[3]);
-        if (is_within(p, points_.rounded(found), tolerance_of(p), 3)) return found;
+        if (is_within(p, points_.rounded(point), tolerance_of(p), 3)) return point;
     }
     return std::nullopt;
 }
@@ -181,11 +181,11 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         if (features[i].empty()) continue;
         poll(execution_.progress, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
-        const auto found = point_on_surface(model_.vertex(vertices[i]), features[i]);
-        if (!found || *found == point || is_taken(*found) != 0) continue;
+        const auto on_surface = point_on_surface(model_.vertex(vertices[i]), features[i]);
+        if (!on_surface || *on_surface == point || is_taken(*on_surface) != 0) continue;
         is_taken(point) = 0;
-        is_taken(*found) = 1;
-        point = *found;
+        is_taken(*on_surface) = 1;
+        point = *on_surface;
     }
 }
 
@@ -196,8 +196,8 @@ void SurfaceOverlay::overlay_all() {
     std::vector<std::int32_t> number_of(surface_.triangles.size(), -1);
     for (std::size_t i = 0; i < divided_.size(); ++i)
         number_of[index(divided_[i])] = first_cutter_ + static_cast<std::int32_t>(i);
-    for (const CrossedFace& own : parts_.crossed)
-        arrangement_.add_line(number_of[index(own.triangle)], own.ends[0], own.ends[1]);
+    for (const CrossedFace& cut : parts_.crossed)
+        arrangement_.add_line(number_of[index(cut.triangle)], cut.ends[0], cut.ends[1]);
     begin_phase(execution_.progress, 0.08, 0.15, "finding where surface and faces meet");
     const auto positions_of = [this](std::int32_t t) {
         const auto& corners = arrangement_.corners(t);
@@ -212,7 +212,7 @@ void SurfaceOverlay::overlay_all() {
         is_beyond[t] = box_of(static_cast<std::int32_t>(t)).meets(model_box_) ? 0 : 1;
     using TriangleIntersection = TriangleArrangement::TriangleIntersection;
     const auto find = [&](std::size_t begin, std::size_t end,
-                          std::vector<TriangleIntersection>& found) {
+                          std::vector<TriangleIntersection>& crossings) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             const PlaneOutline outline(positions_of(t), margin_);
@@ -221,7 +221,7 @@ void SurfaceOverlay::overlay_all() {
                 if (other <= t || (is_beyond[i] != 0 && is_beyond[index(other)] != 0) ||
                     outline.is_surely_beside(positions_of(other)))
                     return;
-                if (const auto met = arrangement_.intersection(t, other)) found.push_back(*met);
+                if (const auto met = arrangement_.intersection(t, other)) crossings.push_back(*met);
             });
         }
     };
@@ -295,21 +295,21 @@ void SurfaceOverlay::name_nodes() {
 
 /// Adds both halves of a crossed face as regions.
 /// @param within  the points between its ends, from the lesser to the greater
-void SurfaceOverlay::add_halves(const CrossedFace& own, std::span<const SpacePointId> within,
+void SurfaceOverlay::add_halves(const CrossedFace& cut, std::span<const SpacePointId> within,
                                 std::span<const NodeId> node_of_point) {
-    std::vector<SpacePointId> line{std::min(own.ends[0], own.ends[1])};
+    std::vector<SpacePointId> line{std::min(cut.ends[0], cut.ends[1])};
     line.insert(line.end(), within.begin(), within.end());
-    line.push_back(std::max(own.ends[0], own.ends[1]));
-    const auto corners = model_.face(index(own.face));
+    line.push_back(std::max(cut.ends[0], cut.ends[1]));
+    const auto corners = model_.face(index(cut.face));
     for (std::size_t k = 0; k < 2; ++k) {
-        for (std::size_t i = own.after[k]; i != own.after[1 - k]; i = (i + 1) % corners.size())
+        for (std::size_t i = cut.after[k]; i != cut.after[1 - k]; i = (i + 1) % corners.size())
             loops_.nodes.push_back(corners[i]);
-        if (line[0] != own.ends[1 - k]) std::ranges::reverse(line);
+        if (line[0] != cut.ends[1 - k]) std::ranges::reverse(line);
         for (const SpacePointId p : line)
             loops_.nodes.push_back(node_of_point[index(p)]);
         loops_.end_loop();
         loops_.end_region();
-        parts_.face_of_beside.push_back(own.face);
+        parts_.face_of_beside.push_back(cut.face);
     }
 }
 
@@ -349,17 +349,17 @@ SpacePointId SurfaceOverlay::exact(NodeId node) {
 SpacePointId SurfaceOverlay::far_corner(std::span<const NodeId> polygon,
                                         const std::array<NodeId, 2>& edge) {
     const Position a = position(edge[0]), b = position(edge[1]);
-    NodeId found = edge[0];
+    NodeId far_node = edge[0];
     double farthest = -1;
     for (const NodeId v : polygon) {
         const Position normal = polygon_normal(std::array{a, b, position(v)});
         const double away = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
         if (away > farthest) {
             farthest = away;
-            found = v;
+            far_node = v;
         }
     }
-    return exact(found);
+    return exact(far_node);
 }
 
 void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
@@ -403,19 +403,19 @@ SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    const auto own = transformed(outline, [this](NodeId node) { return exact(node); });
+    const auto ring = transformed(outline, [this](NodeId node) { return exact(node); });
     std::size_t lowest = 0;
-    for (std::size_t i = 1; i < own.size(); ++i) {
-        const int x = exact::compare(points_, k, own[i], own[lowest]);
-        if (x < 0 || (x == 0 && exact::compare(points_, l, own[i], own[lowest]) < 0)) lowest = i;
+    for (std::size_t i = 1; i < ring.size(); ++i) {
+        const int x = exact::compare(points_, k, ring[i], ring[lowest]);
+        if (x < 0 || (x == 0 && exact::compare(points_, l, ring[i], ring[lowest]) < 0)) lowest = i;
     }
     // an outline may pass its lowest node twice: of the corners there, one that turns left
     SpacePointId a = kNone, c = kNone;
-    const SpacePointId b = own[lowest];
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        if (own[i] != b) continue;
-        a = own[(i + own.size() - 1) % own.size()];
-        c = own[(i + 1) % own.size()];
+    const SpacePointId b = ring[lowest];
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        if (ring[i] != b) continue;
+        a = ring[(i + ring.size() - 1) % ring.size()];
+        c = ring[(i + 1) % ring.size()];
         if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     SpacePointId farthest = kNone;

@@ -40,9 +40,9 @@ public:
             // rounding may have turned the plane itself, so that its own corners are beyond it
             double reach = -HUGE_VAL, least = HUGE_VAL, farthest = 0;
             for (const Position& corner : corners_) {
-                const Position own = minus(corner, corners_[i]);
-                reach = std::max(reach, dot(out, own));
-                farthest = std::max(farthest, length(own));
+                const Position offset = minus(corner, corners_[i]);
+                reach = std::max(reach, dot(out, offset));
+                farthest = std::max(farthest, length(offset));
             }
             for (const Position& other : others) {
                 const Position beyond = minus(other, corners_[i]);
@@ -265,7 +265,7 @@ private:
     bool passes_within(NodeId a, NodeId b, const std::array<SpacePointId, 3>& triangle) const;
     template <class Which>
     void divide_crossed(const Which& which);
-    void add_halves(const CrossedFace& own, std::span<const SpacePointId> within,
+    void add_halves(const CrossedFace& cut, std::span<const SpacePointId> within,
                     std::span<const NodeId> node_of_point);
     void divide(std::int32_t face, std::span<const NodeId> polygon, FaceParts& parts) const;
     template <class Which>

@@ -58,11 +58,12 @@ void SurfaceOverlay::find_same_faces(bool are_there) {
     std::iota(first_same_.begin(), first_same_.end(), 0);
     KeyTable first;
     for (std::int32_t f = 0; are_there && index(f) < model_.face_count(); ++f) {
-        const auto own = model_.face(index(f));
-        const auto found = first.find_or_add(
-            arrangement::loop_hash(own), f,
-            [&](std::int32_t other) { return std::ranges::equal(own, model_.face(index(other))); });
-        first_same_[index(f)] = found.number;
+        const auto face = model_.face(index(f));
+        const auto entry =
+            first.find_or_add(arrangement::loop_hash(face), f, [&](std::int32_t other) {
+                return std::ranges::equal(face, model_.face(index(other)));
+            });
+        first_same_[index(f)] = entry.number;
     }
     same_faces_ = bucketize<std::int32_t>(model_.face_count(), [this](const auto& put) {
         for (std::size_t f = 0; f < first_same_.size(); ++f)
@@ -200,17 +201,17 @@ bool SurfaceOverlay::passes_within(NodeId a, NodeId b,
 std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t face) const {
     const auto polygon = model_.face(index(face));
     const auto corners = positions_of(model_, polygon);
-    CrossedFace found{face, -1};
+    CrossedFace cut{face, -1};
     bool is_one = true;
     each_near(polygon, [&](std::int32_t t) {
         if (!is_one || is_beside(polygon, t) ||
             PlaneOutline(surface_.corners(index(t)), margin_).is_surely_beside(corners))
             return;
-        is_one = found.triangle < 0;
-        found.triangle = t;
+        is_one = cut.triangle < 0;
+        cut.triangle = t;
     });
-    if (!is_one || found.triangle < 0) return std::nullopt;
-    const auto triangle = surface_points(found.triangle);
+    if (!is_one || cut.triangle < 0) return std::nullopt;
+    const auto triangle = surface_points(cut.triangle);
     const exact::SidesOfPlane side_of(points_, triangle);
     std::size_t changes = 0;
     NodeId before = polygon.back();
@@ -220,20 +221,20 @@ std::optional<SurfaceOverlay::CrossedFace> SurfaceOverlay::crossed(std::int32_t 
         if (side == 0) return std::nullopt;
         if (side != side_before) {
             if (changes == 2 || !passes_within(before, polygon[i], triangle)) return std::nullopt;
-            found.after[changes++] = i;
+            cut.after[changes++] = i;
         }
         before = polygon[i];
         side_before = side;
     }
-    return changes == 2 ? std::optional(found) : std::nullopt;
+    return changes == 2 ? std::optional(cut) : std::nullopt;
 }
 
 /// Divides some of the crossed faces as other ones.
 template <class Which>
 void SurfaceOverlay::divide_crossed(const Which& which) {
-    std::erase_if(parts_.crossed, [&](CrossedFace& own) {
-        if (!which(own)) return false;
-        divide(own.face, model_.face(index(own.face)), parts_);
+    std::erase_if(parts_.crossed, [&](CrossedFace& cut) {
+        if (!which(cut)) return false;
+        divide(cut.face, model_.face(index(cut.face)), parts_);
         return true;
     });
 }
@@ -250,8 +251,8 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
     auto [loop, rounding] = loop_of(model_, polygon);
     std::vector<LoopTriangle> triangles;
     if (loop.size() == 3) {
-        const LoopTriangle own{loop[0], loop[1], loop[2]};
-        parts.add(face, std::span(&own, 1));
+        const LoopTriangle triangle{loop[0], loop[1], loop[2]};
+        parts.add(face, std::span(&triangle, 1));
         return;
     }
     const Position a = corner(passed, 0);
@@ -300,11 +301,12 @@ void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) con
 }
 
 Array<Box> SurfaceOverlay::face_boxes() const {
-    const std::size_t own = model_.face_count();
-    Array<Box> boxes(own + far_.faces().size());
+    const std::size_t faces = model_.face_count();
+    Array<Box> boxes(faces + far_.faces().size());
     parallel_each(boxes.size(), execution_, [&](std::size_t f) {
-        boxes[f] = f < own ? box_of(model_, model_.face(f))
-                           : box_of(far_.model(), far_.model().face(index(far_.faces()[f - own])));
+        boxes[f] = f < faces
+                       ? box_of(model_, model_.face(f))
+                       : box_of(far_.model(), far_.model().face(index(far_.faces()[f - faces])));
         boxes[f].widen(margin_);
     });
     return boxes;
@@ -327,9 +329,9 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
                 })};
     }
     FaceParts parts;
-    const std::int32_t own = first_same_[face];
-    const auto crossed = std::ranges::lower_bound(parts_.crossed, own, {}, &CrossedFace::face);
-    if (crossed != parts_.crossed.end() && crossed->face == own) {
+    const std::int32_t first = first_same_[face];
+    const auto crossed = std::ranges::lower_bound(parts_.crossed, first, {}, &CrossedFace::face);
+    if (crossed != parts_.crossed.end() && crossed->face == first) {
         // round a corner of each half; where such triangles overlap they turn against each other
         const auto half = 2 * static_cast<std::size_t>(parts_.crossed.end() - crossed);
         for (const std::size_t region : {size() - half, size() - half + 1}) {
@@ -338,9 +340,9 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
                 parts.triangles.push_back({loop[0], loop[i - 1], loop[i]});
         }
     } else if (is_active(face)) {
-        divide(own, model_.face(face), parts);
+        divide(first, model_.face(face), parts);
     } else {
-        parts.add_beside(own, model_.face(face));
+        parts.add_beside(first, model_.face(face));
     }
     triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
     return {{model_.cell(face, 0), model_.cell(face, 1)},
@@ -352,21 +354,21 @@ SurfaceOverlay::BoxedFace SurfaceOverlay::boxed_face(std::size_t face) {
 /// Divides more faces, on all threads.
 void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
     constexpr std::size_t kFaces = 1 << 9;  // at a time
-    std::vector<FaceParts> found((faces.size() + kFaces - 1) / kFaces);
+    std::vector<FaceParts> parts_of_chunks((faces.size() + kFaces - 1) / kFaces);
     parallel_ranges(
         faces.size(), kFaces, execution_,
         [&](std::size_t begin, std::size_t end) {
-            FaceParts& own = found[begin / kFaces];
+            FaceParts& parts = parts_of_chunks[begin / kFaces];
             for (std::size_t i = begin; i < end; ++i) {
                 if (const auto line = crossed(faces[i])) {
-                    own.crossed.push_back(*line);
+                    parts.crossed.push_back(*line);
                 } else {
-                    divide(faces[i], model_.face(index(faces[i])), own);
+                    divide(faces[i], model_.face(index(faces[i])), parts);
                 }
             }
         },
         0.02);
-    for (const FaceParts& parts : found)
+    for (const FaceParts& parts : parts_of_chunks)
         parts_.add(parts);
 }
 
@@ -376,7 +378,7 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     std::size_t first) const {
     constexpr std::size_t kTriangles = 1 << 11;  // at a time
     const std::size_t count = parts_.triangles.size() - first;
-    const auto find = [&](std::size_t begin, std::size_t end, auto& found) {
+    const auto find = [&](std::size_t begin, std::size_t end, auto& flat_edges) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto& t = parts_.triangles[first + i];
             bool flat = true;
@@ -385,7 +387,7 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
                                        vertex_point_[index(t[1])], vertex_point_[index(t[2])]) == 0;
             }
             for (std::size_t k = 0; flat && k < 3; ++k)
-                found.push_back(unordered(t[k], t[(k + 1) % 3]));
+                flat_edges.push_back(unordered(t[k], t[(k + 1) % 3]));
         }
     };
     auto edges = found_in_ranges<std::array<NodeId, 2>>(count, kTriangles, execution_, find);
@@ -400,16 +402,16 @@ void SurfaceOverlay::divide_active_faces() {
     vertex_point_.assign(model_.vertex_count(), kNone);
     name_vertices_of(active_faces_);
     divide_all(active_faces_);
-    divide_crossed([this](CrossedFace& own) {
-        const auto corners = model_.face(index(own.face));
-        const auto plane = surface_points(own.triangle);
+    divide_crossed([this](CrossedFace& cut) {
+        const auto corners = model_.face(index(cut.face));
+        const auto plane = surface_points(cut.triangle);
         for (std::size_t k = 0; k < 2; ++k) {
-            const std::size_t to = own.after[k], from = (to + corners.size() - 1) % corners.size();
-            own.ends[k] = points_.intersection(vertex_point_[index(corners[from])],
+            const std::size_t to = cut.after[k], from = (to + corners.size() - 1) % corners.size();
+            cut.ends[k] = points_.intersection(vertex_point_[index(corners[from])],
                                                vertex_point_[index(corners[to])], plane[0],
                                                plane[1], plane[2]);
         }
-        return own.ends[0] == own.ends[1];  // of a face without an extent there
+        return cut.ends[0] == cut.ends[1];  // of a face without an extent there
     });
     for (std::size_t first = 0; first < parts_.triangles.size();) {
         const auto edges = edges_of_flat_triangles(first);
@@ -433,7 +435,7 @@ void SurfaceOverlay::divide_active_faces() {
         divide_all(fresh);
         active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
         divide_crossed(
-            [&](const CrossedFace& own) { return has_edge(model_.face(index(own.face))); });
+            [&](const CrossedFace& cut) { return has_edge(model_.face(index(cut.face))); });
         triangulate_parts(parts_, has_edge);
     }
     std::sort(active_faces_.begin(), active_faces_.end());

@@ -96,16 +96,17 @@ public:
         std::int32_t count = 0;
         joined_.each_outline(
             [&](std::span<const arrangement::JoinedPolygons::PolygonHalfEdge> outline) {
-                std::int32_t& own = patch_of_[index(together.find(outline[0].polygon))];
-                if (own < 0) own = count++;
-                outlines_.push_back({own, edges_.size(), outline.size()});
+                std::int32_t& patch = patch_of_[index(together.find(outline[0].polygon))];
+                if (patch < 0) patch = count++;
+                outlines_.push_back({patch, edges_.size(), outline.size()});
                 edges_.insert(edges_.end(), outline.begin(), outline.end());
             });
         std::ranges::stable_sort(outlines_, {}, &Outline::patch);
         regions_.clear();
         for (std::size_t i = 0; i < regions.size(); ++i) {
-            const std::int32_t own = patch_of_[index(together.find(static_cast<std::int32_t>(i)))];
-            if (own >= 0) regions_.push_back({own, regions[i]});
+            const std::int32_t patch =
+                patch_of_[index(together.find(static_cast<std::int32_t>(i)))];
+            if (patch >= 0) regions_.push_back({patch, regions[i]});
         }
         std::ranges::stable_sort(regions_, {}, &std::pair<std::int32_t, std::int32_t>::first);
         auto outline = outlines_.begin();
@@ -170,12 +171,12 @@ void SurfaceParts::make_patches(Progress* progress) {
         }
         const std::int32_t first = overlay_.first_same(f);
         const auto position = std::ranges::lower_bound(active, first) - active.begin();
-        const DividedFaces& own = divided_[static_cast<std::size_t>(position) / kChunk];
-        const auto [begin, end] = std::equal_range(own.face.begin(), own.face.end(), first);
+        const DividedFaces& divided = divided_[static_cast<std::size_t>(position) / kChunk];
+        const auto [begin, end] = std::equal_range(divided.face.begin(), divided.face.end(), first);
         for (auto patch = begin; patch != end; ++patch) {
-            const auto number = static_cast<std::size_t>(patch - own.face.begin());
-            const auto region = index(own.regions_of(number)[0]);
-            add_patch({face, sides_.of_region(region, f), &own, number});
+            const auto number = static_cast<std::size_t>(patch - divided.face.begin());
+            const auto region = index(divided.regions_of(number)[0]);
+            add_patch({face, sides_.of_region(region, f), &divided, number});
         }
     }
 }
@@ -185,14 +186,14 @@ template <class Visit>
 void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
     for (const std::int32_t half_face : patch.half_faces) {
         if (half_face < 0 || !sides_.reaches(half_faces_[index(half_face)].cell)) continue;
-        const HalfFace& own = half_faces_[index(half_face)];
+        const HalfFace& bound = half_faces_[index(half_face)];
         if (patch.divided == nullptr) {
             const auto face = index(patch.face);
             const FarFaces& far = overlay_.far();
             each_edge(std::array{overlay_.model().face(face)},
                       static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
                           if (far.group(face) < 0 || !far.is_beyond(use.key()))
-                              visit(HalfFaceUse{own.cell, own.half, use, half_face});
+                              visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
                       });
             continue;
         }
@@ -202,7 +203,7 @@ void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
             static_cast<std::size_t>(loops[0].data() - patch.divided->loops.nodes.data());
         each_edge(loops, 0, [&](EdgeUse use) {
             use.item = patch.divided->beside[first + edge++];
-            visit(HalfFaceUse{own.cell, own.half, use, half_face});
+            visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
         });
     }
 }
@@ -211,15 +212,15 @@ template <class Visit>
 void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
     for (const auto& of_side : caps.half_faces) {
         for (const std::int32_t half_face : of_side) {
-            const HalfFace& own = half_faces_[index(half_face)];
-            if (!sides_.reaches(own.cell)) continue;
+            const HalfFace& bound = half_faces_[index(half_face)];
+            if (!sides_.reaches(bound.cell)) continue;
             if (caps.component >= 0) {
                 for (const UndividedBorder& border : winding_.borders(index(caps.component)))
-                    visit(HalfFaceUse{own.cell, own.half, border.use, half_face});
+                    visit(HalfFaceUse{bound.cell, bound.half, border.use, half_face});
                 continue;
             }
             each_edge(overlay_.loops(index(caps.region)), caps.region, [&](const EdgeUse& use) {
-                visit(HalfFaceUse{own.cell, own.half, use, half_face});
+                visit(HalfFaceUse{bound.cell, bound.half, use, half_face});
             });
         }
     }
@@ -413,8 +414,8 @@ void SurfaceParts::join_round_edge(std::span<const HalfFaceUse> uses) {
     for (std::size_t b = 0; b < fan.blades(); ++b) {
         for (const int change : {-1, 1}) {
             for (const std::size_t i : fan.blade(b)) {
-                const std::size_t own = half_faces_[index(uses[i].half_face)].sign > 0 ? 0 : 1;
-                if ((uses[i].use.ahead() == own) == (change > 0))
+                const std::size_t side = half_faces_[index(uses[i].half_face)].sign > 0 ? 0 : 1;
+                if ((uses[i].use.ahead() == side) == (change > 0))
                     steps.push_back({uses[i].half_face, change});
             }
         }

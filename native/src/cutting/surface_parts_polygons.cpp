@@ -32,18 +32,19 @@ public:
     DividedInChunks(std::size_t count, const Divide& divide, const Execution& execution)
         : chunks_((count + kChunk - 1) / kChunk) {
         parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
-            Chunk& own = chunks_[begin / kChunk];
+            Chunk& chunk = chunks_[begin / kChunk];
             for (std::size_t i = begin; i < end; ++i) {
-                divide(i, own.polygons);
-                own.ends.push_back(own.polygons.size());
+                divide(i, chunk.polygons);
+                chunk.ends.push_back(chunk.polygons.size());
             }
         });
     }
     /// Calls visit(polygons, first, end) for those of the i-th.
     template <class Visit>
     void visit(std::size_t i, const Visit& visit) const {
-        const Chunk& own = chunks_[i / kChunk];
-        visit(own.polygons, i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1], own.ends[i % kChunk]);
+        const Chunk& chunk = chunks_[i / kChunk];
+        visit(chunk.polygons, i % kChunk == 0 ? 0 : chunk.ends[i % kChunk - 1],
+              chunk.ends[i % kChunk]);
     }
 
 private:
@@ -69,14 +70,15 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<N
     positions.reserve(loops[0].size());
     auto next = corners.begin();
     for (const auto loop : loops) {
-        Loop& own = *next++;
-        own.reserve(loop.size());
+        Loop& ring = *next++;
+        ring.reserve(loop.size());
         for (const NodeId p : loop) {
             positions.push_back(overlay.position(p));
-            own.push_back({p, view(positions.back())});
+            ring.push_back({p, view(positions.back())});
         }
         // the same polygons wherever the loop begins
-        std::rotate(own.begin(), std::ranges::min_element(own, {}, &LoopCorner::node), own.end());
+        std::rotate(ring.begin(), std::ranges::min_element(ring, {}, &LoopCorner::node),
+                    ring.end());
     }
     const auto exact_of = [&](NodeId node) { return overlay.exact(node); };
     return divide_convex(corners, view.rounding(positions), {}, polygons,
@@ -96,8 +98,8 @@ void SurfaceParts::number_parts() {
     part_.assign(half_faces_.size(), -1);
     for (const std::int32_t root : roots) {
         part_[index(root)] = static_cast<std::int32_t>(half_cells.size());
-        const HalfFace& own = half_faces_[index(root)];
-        half_cells.push_back({own.cell, own.half, loses_[index(own.cell)] != 0});
+        const HalfFace& half_face = half_faces_[index(root)];
+        half_cells.push_back({half_face.cell, half_face.half, loses_[index(half_face.cell)] != 0});
     }
     for (std::size_t s = 0; s < half_faces_.size(); ++s) {
         part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];

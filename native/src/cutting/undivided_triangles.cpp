@@ -244,9 +244,9 @@ UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spati
     std::int32_t next = 0;
     for (std::size_t t = 0; t < count; ++t) {
         if (meets[t] != 0) continue;
-        std::int32_t& own = number[root(t)];
-        if (own < 0) own = next++;
-        component_[t] = own;
+        std::int32_t& component = number[root(t)];
+        if (component < 0) component = next++;
+        component_[t] = component;
     }
     triangles_ = bucketize<std::int32_t>(index(next), [&](const auto& put) {
         for (std::size_t t = 0; t < count; ++t) {
@@ -255,11 +255,11 @@ UndividedTriangles::UndividedTriangles(const CutterSurface& surface, const spati
     });
     borders_ = bucketize<Border>(index(next), [&](const auto& put) {
         each_pair([&](const auto& use, const auto& beyond) {
-            const std::int32_t own = component_[index(use.item)];
-            if (own < 0 || component_[index(beyond.item)] >= 0) return;
+            const std::int32_t component = component_[index(use.item)];
+            if (component < 0 || component_[index(beyond.item)] >= 0) return;
             std::array<std::int32_t, 2> edge = use.edge;
             if (use.direction < 0) std::swap(edge[0], edge[1]);
-            put(index(own), Border{use.item, beyond.item, edge});
+            put(index(component), Border{use.item, beyond.item, edge});
         });
     });
 }

@@ -47,15 +47,15 @@ std::int64_t odd_mantissa(double value, int& exponent) {
 }  // namespace
 
 int finest_exponent(double value, int exponent) {
-    int own = 0;
-    return odd_mantissa(value, own) == 0 ? exponent : std::min(own, exponent);
+    int value_exponent = 0;
+    return odd_mantissa(value, value_exponent) == 0 ? exponent : std::min(value_exponent, exponent);
 }
 
 mpz_class whole_number(double value, int exponent) {
-    int own = exponent;
-    mpz_class result = whole_number_of(Int128{odd_mantissa(value, own)});
-    assert(own >= exponent);
-    if (own > exponent) result <<= static_cast<unsigned>(own - exponent);
+    int value_exponent = exponent;
+    mpz_class result = whole_number_of(Int128{odd_mantissa(value, value_exponent)});
+    assert(value_exponent >= exponent);
+    if (value_exponent > exponent) result <<= static_cast<unsigned>(value_exponent - exponent);
     return result;
 }
 

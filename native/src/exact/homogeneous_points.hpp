@@ -101,21 +101,21 @@ public:
     }
     /// The point that is best taken as the origin of the others: one whose weight is 1, if any.
     static std::size_t simplest(std::span<const HomogeneousPoint> points) {
-        const auto found =
+        const auto whole =
             std::find_if(points.begin(), points.end(),
                          [](const HomogeneousPoint& point) { return point.is_whole; });
-        return found == points.end() ? 0 : static_cast<std::size_t>(found - points.begin());
+        return whole == points.end() ? 0 : static_cast<std::size_t>(whole - points.begin());
     }
     /// Whether an intersection of points given by doubles is exactly at these doubles; nothing
     /// where that is not known.
     std::optional<bool> is_at(const Intersection& of, const SpacePosition& doubles) {
         for (const double x : doubles)
             unit_ = finest_exponent(x, unit_);
-        const HomogeneousPoint found = point(of);
+        const HomogeneousPoint intersection = point(of);
         const auto at = minus(doubles, origin_);
         bool is_equal = true;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Integer off = times(at[k], found) - found.at[k];
+            const Integer off = times(at[k], intersection) - intersection.at[k];
             if (!is_known(off)) return std::nullopt;
             is_equal = is_equal && sign_of(off) == 0;
         }

@@ -21,13 +21,13 @@ public:
     /// The thing with a name; complete(thing) is called where it is new.
     template <class Complete>
     SomeId find_or_add(Thing& thing, const Complete& complete) {
-        const auto found = table_.insert(
+        const auto entry = table_.insert(
             thing.key(), [&](std::int32_t number) { return things_[index(number)].key(); });
-        if (found.is_new) {
+        if (entry.is_new) {
             complete(thing);
             things_.push_back(thing);
         }
-        return SomeId(kLocal + found.number);
+        return SomeId(kLocal + entry.number);
     }
     void reserve(std::size_t count) {
         things_.reserve(count);

@@ -41,31 +41,31 @@ void PlanArrangement::make_room(std::size_t lines, std::size_t points) {
 
 VertexId PlanArrangement::add_vertex(double x, double y) {
     assert(vertex_count_ == 0 && std::isfinite(x) && std::isfinite(y));
-    const auto found = vertex_table_.insert(position_key(x, y), [&](std::int32_t number) {
+    const auto entry = vertex_table_.insert(position_key(x, y), [&](std::int32_t number) {
         const Point& vertex = points_[static_cast<std::size_t>(number)];
         return position_key(vertex.x, vertex.y);
     });
-    if (found.is_new) {
+    if (entry.is_new) {
         check_ids(points_.size() + 1, "positions");
         Point vertex;
         vertex.x = x == 0.0 ? 0.0 : x;
         vertex.y = y == 0.0 ? 0.0 : y;
         points_.push_back(vertex);
     }
-    return VertexId(found.number);
+    return VertexId(entry.number);
 }
 
 SpaceId PlanArrangement::add_space_vertex(VertexId plan, double z) {
     assert(vertex_count_ == 0 && std::isfinite(z));
-    const auto found = space_table_.insert(height_key(plan, z), [&](std::int32_t number) {
+    const auto entry = space_table_.insert(height_key(plan, z), [&](std::int32_t number) {
         const SpaceVertex& vertex = space_[static_cast<std::size_t>(number)];
         return height_key(vertex.plan, vertex.z);
     });
-    if (found.is_new) {
+    if (entry.is_new) {
         check_ids(space_.size() + 1, "vertices");
         space_.push_back({plan, z == 0.0 ? 0.0 : z});
     }
-    return SpaceId(found.number);
+    return SpaceId(entry.number);
 }
 
 PlaneId PlanArrangement::add_plane(const std::array<SpaceId, 3>& corner) {
@@ -177,10 +177,10 @@ LineId PlanArrangement::find_or_add_line(const Line& wanted, LineId next) {
             [&, to = second](std::int32_t number) { return line(LineId(number)).ends()[1] == to; });
         if (known != OwnedNames::kElsewhere) return LineId(known);
     }
-    const auto found = line_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
+    const auto entry = line_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
         return line(LineId(number)).key();
     });
-    return LineId(found.number);
+    return LineId(entry.number);
 }
 
 DirectedLine PlanArrangement::add_edge(VertexId from, VertexId to) {
@@ -202,11 +202,11 @@ PointId PlanArrangement::add_point(const Point& wanted) {
     const auto key = [&](const Point& p) {
         return NamedPoint(p, piercing(line(p.first), line(p.second))).key();
     };
-    const auto found = point_table_.insert(key(wanted), next.number(), [&](std::int32_t number) {
+    const auto entry = point_table_.insert(key(wanted), next.number(), [&](std::int32_t number) {
         return key(point(PointId(number)));
     });
-    if (found.is_new) set_point(append(0, 1).point, wanted);
-    return PointId(found.number);
+    if (entry.is_new) set_point(append(0, 1).point, wanted);
+    return PointId(entry.number);
 }
 
 Piercing PlanArrangement::piercing(const Line& first, const Line& second) const {

@@ -19,17 +19,17 @@ SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
     const SpacePointId number(checked_number(rounded_.size(), "points where surfaces meet"));
     rounded_.push_back(rounded);
     source_.push_back(source);
-    const auto found = by_doubles_.find_or_add(
+    const auto entry = by_doubles_.find_or_add(
         KeyNumbers<SpacePosition>::hash(rounded), number.number(), [&](std::int32_t candidate) {
             const SpacePointId other(candidate);
             return rounded_[index(other)] == rounded && compare(*this, number, other) == 0;
         });
-    if (found.is_new) return number;
+    if (entry.is_new) return number;
     rounded_.pop_back();
     source_.pop_back();
     if (source.kind == Source::Form::kConstruction) constructions_.pop_back();
     if (source.kind == Source::Form::kFractions) fractions_.pop_back();
-    return SpacePointId(found.number);
+    return SpacePointId(entry.number);
 }
 
 SpacePointId SpacePoints::add(const SpacePosition& p) {
@@ -84,26 +84,26 @@ RationalPoint SpacePoints::exact(SpacePointId p) const {
     const SpacePosition& r = rounded(p);
     if (is_double(p)) return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
     const HomogeneousPoints<mpz_class> in(*this, std::array{p});
-    const auto found = in.absolute(in.point(p));
+    const auto point = in.absolute(in.point(p));
     RationalPoint result;
     for (std::size_t k = 0; k < 3; ++k) {
-        result[k] = mpq_class(found.at[k], found.weight);
+        result[k] = mpq_class(point.at[k], point.weight);
         result[k].canonicalize();
     }
     return result;
 }
 
 std::array<SpacePoints::Line, 2> SpacePoints::lines(SpacePointId p) const {
-    if (const Fractions* own = fractions(p)) return own->lines;
+    if (const Fractions* point = fractions(p)) return point->lines;
     const Line none{kNone, kNone};
-    const ConstructedPoint* own = construction(p);
-    return {own == nullptr ? none : Line{own->of.of[0], own->of.of[1]}, none};
+    const ConstructedPoint* point = construction(p);
+    return {point == nullptr ? none : Line{point->of.of[0], point->of.of[1]}, none};
 }
 
 bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const {
     const Line line{std::min(a, b), std::max(a, b)};
-    const auto own = lines(p);
-    return own[0] == line || own[1] == line;
+    const auto supporting_lines = lines(p);
+    return supporting_lines[0] == line || supporting_lines[1] == line;
 }
 
 void SpacePoints::reserve(std::size_t more) {
@@ -126,11 +126,11 @@ SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePoin
     std::array<SpacePointId, 3> plane{a, b, c};
     std::sort(plane.begin(), plane.end());
     const Intersection of{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
-    const auto found = by_intersection_.find_or_add(
+    const auto entry = by_intersection_.find_or_add(
         KeyNumbers<decltype(of.of)>::hash(of.of), static_cast<std::int32_t>(intersections_.size()),
         [&](std::int32_t i) { return intersections_[index(i)].first == of; });
-    if (found.is_new) intersections_.push_back({of, construct(of)});
-    return intersections_[index(found.number)].second;
+    if (entry.is_new) intersections_.push_back({of, construct(of)});
+    return intersections_[index(entry.number)].second;
 }
 
 SpacePointId SpacePoints::construct(const Intersection& of) {
@@ -190,18 +190,18 @@ std::array<DoubleDoubleInterval, 3> SpacePoints::coordinates(const Intersection&
 
 SpacePointId SpacePoints::in_fractions(const Intersection& of) {
     const HomogeneousPoints<mpz_class> in(*this, of.of);
-    auto found = in.absolute(in.point(of));
+    auto point = in.absolute(in.point(of));
     const Line line{of.of[0], of.of[1]};
     return add(
-        reduced({std::move(found.at), std::move(found.weight), {}, {line, Line{kNone, kNone}}}));
+        reduced({std::move(point.at), std::move(point.weight), {}, {line, Line{kNone, kNone}}}));
 }
 
 SpacePoints::Reduced SpacePoints::crossing(std::size_t axis, SpacePointId p, SpacePointId q,
                                            SpacePointId a, SpacePointId b) const {
     const HomogeneousPoints<mpz_class> in(*this, std::array{p, q, a, b});
-    auto found = in.absolute(in.crossing(axis, p, q, a, b));
-    return reduced({std::move(found.at),
-                    std::move(found.weight),
+    auto point = in.absolute(in.crossing(axis, p, q, a, b));
+    return reduced({std::move(point.at),
+                    std::move(point.weight),
                     {},
                     {Line{std::min(p, q), std::max(p, q)}, Line{std::min(a, b), std::max(a, b)}}});
 }

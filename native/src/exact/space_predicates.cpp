@@ -54,16 +54,16 @@ bool lie_on_one_line_by_construction(const SpacePoints& points,
 bool lie_on_one_plane_by_construction(const SpacePoints& points,
                                       const std::array<SpacePointId, 4>& of) {
     for (const SpacePointId candidate : of) {
-        const ConstructedPoint* own = points.construction(candidate);
-        if (own == nullptr) continue;
-        const auto corners = std::span(own->of.of).subspan<2>();
+        const ConstructedPoint* constructed = points.construction(candidate);
+        if (constructed == nullptr) continue;
+        const auto corners = std::span(constructed->of.of).subspan<2>();
         const auto is_corner = [&](SpacePointId p) {
             return std::find(corners.begin(), corners.end(), p) != corners.end();
         };
         const bool all = std::all_of(of.begin(), of.end(), [&](SpacePointId p) {
             const ConstructedPoint* other = points.construction(p);
             if (other == nullptr) return is_corner(p);
-            return other->of.is_on_plane_of(own->of) ||
+            return other->of.is_on_plane_of(constructed->of) ||
                    (is_corner(other->of.of[0]) && is_corner(other->of.of[1]));
         });
         if (all) return true;
@@ -78,8 +78,8 @@ bool lie_on_one_plane_by_construction(const SpacePoints& points,
 
 /// A coordinate to twice the precision of doubles.
 DoubleDoubleInterval interval(const SpacePoints& points, SpacePointId p, std::size_t axis) {
-    if (const ConstructedPoint* own = points.construction(p)) return own->at[axis];
-    if (const SpacePoints::Fractions* own = points.fractions(p)) return own->interval[axis];
+    if (const ConstructedPoint* point = points.construction(p)) return point->at[axis];
+    if (const SpacePoints::Fractions* point = points.fractions(p)) return point->interval[axis];
     return points.rounded(p)[axis];
 }
 
@@ -127,10 +127,10 @@ std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
         sign *= sign_of(at[i + 1].weight) * sign_of(at[0].weight);
     }
     const auto& [u, v, w] = from_first;
-    const Integer found = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-                          w[2] * (u[0] * v[1] - u[1] * v[0]);
-    if (!is_known(found)) return std::nullopt;
-    return sign * sign_of(found);
+    const Integer det = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+                        w[2] * (u[0] * v[1] - u[1] * v[0]);
+    if (!is_known(det)) return std::nullopt;
+    return sign * sign_of(det);
 }
 
 template <class Integer>
@@ -142,9 +142,9 @@ std::optional<int> orient2d_in(const HomogeneousPoints<Integer>& in, std::size_t
     const auto origin = static_cast<std::ptrdiff_t>(Homogeneous::simplest(at));
     std::rotate(at.begin(), at.begin() + origin, at.end());
     const auto u = Homogeneous::minus(at[1], at[0]), v = Homogeneous::minus(at[2], at[0]);
-    const Integer found = u[k] * v[l] - u[l] * v[k];
-    if (!is_known(found)) return std::nullopt;
-    return sign_of(found) * sign_of(at[1].weight) * sign_of(at[2].weight);
+    const Integer det = u[k] * v[l] - u[l] * v[k];
+    if (!is_known(det)) return std::nullopt;
+    return sign_of(det) * sign_of(at[1].weight) * sign_of(at[2].weight);
 }
 
 /// The lexicographic order of coordinates from axis `first` on, before `end`.
@@ -153,9 +153,9 @@ std::optional<int> compare_in(const HomogeneousPoints<Integer>& in, std::size_t 
                               std::size_t end, SpacePointId a, SpacePointId b) {
     const auto p = in.point(a), q = in.point(b);
     for (std::size_t axis = first; axis < end; ++axis) {
-        const Integer found = in.times(p.at[axis], q) - in.times(q.at[axis], p);
-        if (!is_known(found)) return std::nullopt;
-        if (const int sign = sign_of(found)) return sign * sign_of(p.weight) * sign_of(q.weight);
+        const Integer offset = in.times(p.at[axis], q) - in.times(q.at[axis], p);
+        if (!is_known(offset)) return std::nullopt;
+        if (const int sign = sign_of(offset)) return sign * sign_of(p.weight) * sign_of(q.weight);
     }
     return 0;
 }

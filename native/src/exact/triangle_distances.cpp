@@ -227,23 +227,23 @@ bool is_on_marked_edge(unsigned corners, unsigned edges) {
 NearestTriangles nearest_triangles(const std::array<double, 3>& p,
                                    std::span<const MarkedTriangle> triangles) {
     return exactly(p, triangles, [&](auto& seen) {
-        NearestTriangles found{{0}, false};
+        NearestTriangles nearest{{0}, false};
         auto best = seen.nearest_point(0);
-        found.are_on_edge = is_on_marked_edge(best.corners, triangles[0].edges);
+        nearest.are_on_edge = is_on_marked_edge(best.corners, triangles[0].edges);
         for (std::size_t i = 1; i < triangles.size(); ++i) {
             const auto point = seen.nearest_point(i);
             const bool is_same =
-                are_same(triangles[i], point.corners, triangles[found.numbers[0]], best.corners);
+                are_same(triangles[i], point.corners, triangles[nearest.numbers[0]], best.corners);
             const int order = is_same ? 0 : seen.compare(point.square, best.square);
             if (order > 0) continue;
             if (order < 0) {
-                found = {};
+                nearest = {};
                 best = point;
             }
-            found.numbers.push_back(i);
-            found.are_on_edge |= is_on_marked_edge(point.corners, triangles[i].edges);
+            nearest.numbers.push_back(i);
+            nearest.are_on_edge |= is_on_marked_edge(point.corners, triangles[i].edges);
         }
-        return found;
+        return nearest;
     });
 }
 

@@ -59,13 +59,13 @@ public:
 
     /// The best of some; the first of equal ones.
     AnisotropyCandidate best(std::span<const Likely> of) const {
-        std::vector<double> found(of.size(), kNever);
+        std::vector<double> likelihood(of.size(), kNever);
         parallel_chunks(of.size(), execution_, [&](std::size_t n) {
             const Spline spline(known_, of[n].smoothness(), {1, nullptr});
-            found[n] = spline.log_likelihood(error_).value_or(kNever);
+            likelihood[n] = spline.log_likelihood(error_).value_or(kNever);
         });
-        const auto at = std::max_element(found.begin(), found.end()) - found.begin();
-        return {of[at], found[at]};
+        const auto at = std::max_element(likelihood.begin(), likelihood.end()) - likelihood.begin();
+        return {of[at], likelihood[at]};
     }
     /// The best of some with the anisotropies in the place of theirs.
     AnisotropyCandidate best(std::span<const AxisRatios> of, const Likely& rest) const {
@@ -160,21 +160,21 @@ void search_second(const Search& search, AnisotropyCandidate& best) {
         for (const double ratio : {0.6, 0.3})
             tried.push_back(turned(first, degrees, ratio));
     }
-    AnisotropyCandidate found = search.best(tried, rest);
+    AnisotropyCandidate candidate = search.best(tried, rest);
     double step = 12, factor = 0.6;
     for (int round = 0; round < 8; ++round) {
-        const AxisRatios at = found.what.anisotropy;
+        const AxisRatios at = candidate.what.anisotropy;
         const double ratio = at.ratios[1];
         tried = {turned(at, step, ratio), turned(at, -step, ratio),
                  turned(at, 0, std::max(kLeastRatio, ratio * factor)),
                  turned(at, 0, std::min(1.0, ratio / factor))};
-        const double before = found.likelihood;
-        Search::improve(found, search.best(tried, rest), 0);
-        if (found.likelihood > before) continue;
+        const double before = candidate.likelihood;
+        Search::improve(candidate, search.best(tried, rest), 0);
+        if (candidate.likelihood > before) continue;
         step /= 2;
         factor = std::sqrt(factor);
     }
-    Search::improve(best, found, kWorth);
+    Search::improve(best, candidate, kWorth);
 }
 
 /// Those near one: turned about each axis, with other ratios along two of them, or with ranges
@@ -217,17 +217,17 @@ AxisRatios sorted(const AxisRatios& of) {
 }
 
 /// The best near one: smaller and smaller steps as long as they pay.
-AnisotropyCandidate climbed(const Search& search, AnisotropyCandidate found) {
+AnisotropyCandidate climbed(const Search& search, AnisotropyCandidate candidate) {
     double step = 20, factor = 0.5;
     while (step > 2) {
-        const double before = found.likelihood;
-        Search::improve(found, search.best(near(found.what, step, factor)), 0);
-        if (found.likelihood > before) continue;
+        const double before = candidate.likelihood;
+        Search::improve(candidate, search.best(near(candidate.what, step, factor)), 0);
+        if (candidate.likelihood > before) continue;
         step /= 2;
         factor = std::sqrt(factor);
     }
-    found.what.anisotropy = sorted(found.what.anisotropy);
-    return found;
+    candidate.what.anisotropy = sorted(candidate.what.anisotropy);
+    return candidate;
 }
 
 /// Any directions: rocks that are folded twice have no fold axis in common, but beds may have been
@@ -263,8 +263,8 @@ void search_errors(const Search& search, AnisotropyCandidate& best) {
 void search_lift(const Search& search, AnisotropyCandidate& best) {
     std::vector<Likely> tried(kLifts, best.what);
     double lift = kLeastLift;
-    for (Likely& each : tried) {
-        each.lift = lift;
+    for (Likely& kind : tried) {
+        kind.lift = lift;
         lift *= 2;
     }
     Search::improve(best, search.best(tried), 0);
@@ -277,9 +277,9 @@ std::vector<Likely> thrown(const Likely& of, std::size_t fault, const Vec3& norm
     std::vector<Likely> out(static_cast<std::size_t>(directions), of);
     for (int n = 0; n < directions; ++n) {
         const double angle = 2 * std::numbers::pi * n / directions;
-        Vec3& own = out[static_cast<std::size_t>(n)].throws[fault];
-        own = moved(own, step * elementary::cos(angle), first);
-        own = moved(own, step * elementary::sin(angle), second);
+        Vec3& fault_throw = out[static_cast<std::size_t>(n)].throws[fault];
+        fault_throw = moved(fault_throw, step * elementary::cos(angle), first);
+        fault_throw = moved(fault_throw, step * elementary::sin(angle), second);
     }
     return out;
 }
@@ -292,23 +292,23 @@ void search_throws(const Search& search, std::span<const Vec3> normals, Anisotro
         start.throws.assign(normals.size(), Vec3{});
         start.lift = kLeastLift;
     }
-    AnisotropyCandidate found = search.best(std::array{start});
+    AnisotropyCandidate candidate = search.best(std::array{start});
     const auto look = [&](std::span<const double> steps, int directions) {
         for (std::size_t fault = 0; fault < normals.size(); ++fault) {
             std::vector<Likely> tried;
             for (const double step : steps) {
-                for (Likely& each : thrown(found.what, fault, normals[fault], step, directions))
-                    tried.push_back(std::move(each));
+                for (Likely& kind : thrown(candidate.what, fault, normals[fault], step, directions))
+                    tried.push_back(std::move(kind));
             }
-            Search::improve(found, search.best(tried), 0);
+            Search::improve(candidate, search.best(tried), 0);
         }
     };
     for (int sweep = 0; is_first && sweep < kSweeps; ++sweep)
         look(kThrows, 12);
     for (double step = 0.04; step > kLeastThrow; step /= 2)
         look(std::array{step}, 6);
-    search_lift(search, found);
-    Search::improve(best, found, is_first ? kWorth : 0);
+    search_lift(search, candidate);
+    Search::improve(best, candidate, is_first ? kWorth : 0);
 }
 
 }  // namespace

@@ -97,8 +97,8 @@ std::vector<CriticalPoint> critical_points(const Lattice& lattice, std::span<con
         offsets[a] =
             i + static_cast<std::ptrdiff_t>(nx) * (j + static_cast<std::ptrdiff_t>(ny) * k);
     }
-    std::vector<std::vector<CriticalPoint>> found(static_cast<std::size_t>(nz));
-    parallel_chunks(found.size(), execution, [&, nx = nx, ny = ny, nz = nz](std::size_t layer) {
+    std::vector<std::vector<CriticalPoint>> layers(static_cast<std::size_t>(nz));
+    parallel_chunks(layers.size(), execution, [&, nx = nx, ny = ny, nz = nz](std::size_t layer) {
         const int k = static_cast<int>(layer);
         if (k == 0 || k == nz - 1) return;
         for (int j = 1; j < ny - 1; ++j) {
@@ -107,20 +107,20 @@ std::vector<CriticalPoint> critical_points(const Lattice& lattice, std::span<con
                     i + static_cast<std::ptrdiff_t>(nx) * (j + static_cast<std::ptrdiff_t>(ny) * k);
                 std::uint32_t higher = 0;
                 for (std::size_t a = 0; a < kNeighbors; ++a) {
-                    const double there = values[node + offsets[a]], here = values[node];
-                    if (there > here || (there == here && offsets[a] > 0)) higher |= 1U << a;
+                    const double other = values[node + offsets[a]], here = values[node];
+                    if (other > here || (other == here && offsets[a] > 0)) higher |= 1U << a;
                 }
                 const std::uint32_t lower = ~higher & ((1U << kNeighbors) - 1);
                 if (link.connected(higher) && link.connected(lower)) continue;
                 const CriticalKind kind = lower == 0    ? CriticalKind::kMinimum
                                           : higher == 0 ? CriticalKind::kMaximum
                                                         : CriticalKind::kSaddle;
-                found[layer].push_back({node, kind});
+                layers[layer].push_back({node, kind});
             }
         }
     });
     std::vector<CriticalPoint> all;
-    for (const auto& of_layer : found)
+    for (const auto& of_layer : layers)
         all.insert(all.end(), of_layer.begin(), of_layer.end());
     return all;
 }
@@ -161,7 +161,7 @@ struct MeanRise {
 class Rising {
 public:
     Rising(const LatticeField& field, const HeldData& held, const Execution& execution)
-        : lattice_(field, {}), given_(field), execution_(execution) {
+        : lattice_(field, {}), field_(field), execution_(execution) {
         const std::size_t nodes = field.lattice.nodes(), points = field.point_values.size();
         if (held.fixed.size() != nodes + points || held.dips.size() != held.normals.size() ||
             held.bounds.size() != held.signs.size() || held.bounds.size() != held.levels.size())
@@ -202,9 +202,9 @@ public:
             }
         }
         RisingField out;
-        const auto nodes = static_cast<std::ptrdiff_t>(given_.lattice.nodes());
+        const auto nodes = static_cast<std::ptrdiff_t>(field_.lattice.nodes());
         out.values.assign(values_.begin(), values_.begin() + nodes);
-        for (std::size_t p = 0; p < given_.point_values.size(); ++p)
+        for (std::size_t p = 0; p < field_.point_values.size(); ++p)
             out.point_values.push_back(values_[index(lattice_.corner_of(p))]);
         for (const std::int64_t corner : critical_)
             out.critical.push_back(lattice_.position(corner));
@@ -214,8 +214,8 @@ public:
 private:
     void find_critical() {
         const std::vector<std::int64_t> divided = lattice_.divided_corners();
-        const std::span<const double> nodes(values_.data(), given_.lattice.nodes());
-        for (const CriticalPoint& point : critical_points(given_.lattice, nodes, execution_)) {
+        const std::span<const double> nodes(values_.data(), field_.lattice.nodes());
+        for (const CriticalPoint& point : critical_points(field_.lattice, nodes, execution_)) {
             if (!std::ranges::binary_search(divided, point.node)) critical_.insert(point.node);
         }
         for (const std::int64_t corner : divided) {
@@ -242,9 +242,9 @@ private:
             for (const std::int64_t other : tetrahedron) {
                 if (other == corner) continue;
                 std::int32_t& before = last[is_less(other, corner) ? 1 : 0];
-                const std::int32_t own = number(other);
-                if (before >= 0) joined.push_back({before, own});
-                before = own;
+                const std::int32_t neighbor = number(other);
+                if (before >= 0) joined.push_back({before, neighbor});
+                before = neighbor;
             }
         });
         DisjointSets sets(others.size());
@@ -252,8 +252,8 @@ private:
             sets.join(a, b);
         std::array<int, 2> parts{};
         for (std::size_t n = 0; n < others.size(); ++n) {
-            const auto own = static_cast<std::int32_t>(n);
-            if (sets.find(own) == own) ++parts[is_less(others[n], corner) ? 1 : 0];
+            const auto neighbor = static_cast<std::int32_t>(n);
+            if (sets.find(neighbor) == neighbor) ++parts[is_less(others[n], corner) ? 1 : 0];
         }
         return parts != std::array{1, 1};
     }
@@ -268,42 +268,42 @@ private:
         std::vector<std::int64_t> critical{corner}, near;
         for (int round = 0; round < kGrowth && asked.size() < kMostAsked; ++round) {
             bool any = false;
-            for (const std::int64_t each : critical)
-                any |= asked.insert(each).second && ask_around(each);
+            for (const std::int64_t vertex : critical)
+                any |= asked.insert(vertex).second && ask_around(vertex);
             if (!any) break;
             project();
             near = near_changes();
             critical.clear();
             std::ranges::copy_if(near, std::back_inserter(critical),
-                                 [&](std::int64_t each) { return is_critical(each); });
+                                 [&](std::int64_t vertex) { return is_critical(vertex); });
         }
         const auto had = static_cast<std::size_t>(std::ranges::count_if(
-            near, [&](std::int64_t each) { return critical_.contains(each); }));
-        const auto value_of = [this](std::int64_t each) { return values_[index(each)]; };
-        const bool is_lost = std::ranges::any_of(near, [&](std::int64_t each) {
-            return fixed_[index(each)] != 0 && lattice_.sides(each) == 0 &&
-                   !lattice_.is_between(each, value_of);
+            near, [&](std::int64_t vertex) { return critical_.contains(vertex); }));
+        const auto value_of = [this](std::int64_t vertex) { return values_[index(vertex)]; };
+        const bool is_lost = std::ranges::any_of(near, [&](std::int64_t vertex) {
+            return fixed_[index(vertex)] != 0 && lattice_.sides(vertex) == 0 &&
+                   !lattice_.is_between(vertex, value_of);
         });
         if (critical.size() >= had || is_lost || !is_allowed(mean->steepness)) {
             for (const auto& [changed, value] : before_)
                 values_[index(changed)] = value;
             return false;
         }
-        for (const std::int64_t each : near)
-            critical_.erase(each);
+        for (const std::int64_t vertex : near)
+            critical_.erase(vertex);
         critical_.insert(critical.begin(), critical.end());
         return true;
     }
 
     /// Whether changes are small, and polarities and bounds hold.
     bool is_allowed(double steepness) const {
-        const double most = steepness * *std::ranges::min_element(given_.lattice.spacing);
-        return std::ranges::all_of(before_,
-                                   [&](const auto& each) {
-                                       return std::abs(values_[index(each.first)] - each.second) <
-                                              most;
-                                   }) &&
-               std::ranges::all_of(held_, [&](const Rise& each) { return holds(each); });
+        const double most = steepness * *std::ranges::min_element(field_.lattice.spacing);
+        return std::ranges::all_of(
+                   before_,
+                   [&](const auto& change) {
+                       return std::abs(values_[index(change.first)] - change.second) < most;
+                   }) &&
+               std::ranges::all_of(held_, [&](const Rise& rise) { return holds(rise); });
     }
 
     bool ask_around(std::int64_t corner) {
@@ -324,18 +324,18 @@ private:
             at[i] = lattice_.position(corners[i]);
         const Vec3 a = minus(at[1], at[0]), b = minus(at[2], at[0]), c = minus(at[3], at[0]);
         const double volume = dot(a, cross(b, c));
-        const auto& spacing = given_.lattice.spacing;
+        const auto& spacing = field_.lattice.spacing;
         if (!(std::abs(volume) > 1e-9 * spacing[0] * spacing[1] * spacing[2])) return std::nullopt;
-        Rise found{corners, {}, least};
-        auto& weights = found.weights;
+        Rise derivative{corners, {}, least};
+        auto& weights = derivative.weights;
         weights[1] = dot(along, cross(b, c)) / volume;
         weights[2] = dot(along, cross(c, a)) / volume;
         weights[3] = dot(along, cross(a, b)) / volume;
         weights[0] = -(weights[1] + weights[2] + weights[3]);
         for (std::size_t i = 0; i < 4; ++i) {
-            if (fixed_[index(corners[i])] == 0) found.square += weights[i] * weights[i];
+            if (fixed_[index(corners[i])] == 0) derivative.square += weights[i] * weights[i];
         }
-        return found;
+        return derivative;
     }
 
     bool holds(const Rise& rise) const { return of(rise) >= rise.least; }
@@ -349,7 +349,7 @@ private:
 
     /// How the field that was given rises around a corner, if along one direction.
     std::optional<MeanRise> mean_rise(std::int64_t corner) const {
-        const auto& [origin, spacing, counts] = given_.lattice;
+        const auto& [origin, spacing, counts] = field_.lattice;
         const Vec3 at = lattice_.position(corner);
         for (int around = kLeastAround; around <= kMostAround; around *= 2) {
             CellIndex low{}, high{}, cell{};
@@ -379,16 +379,16 @@ private:
 
     /// Along the edges from the lowest corner of a cell.
     Vec3 gradient_in(const CellIndex& cell) const {
-        const std::span<const double> values = given_.values;
-        Vec3 found{};
+        const std::span<const double> values = field_.values;
+        Vec3 gradient{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             CellIndex next = cell;
             ++next[axis];
-            found[axis] =
+            gradient[axis] =
                 (values[index(lattice_.node(next))] - values[index(lattice_.node(cell))]) /
-                given_.lattice.spacing[axis];
+                field_.lattice.spacing[axis];
         }
-        return found;
+        return gradient;
     }
 
     /// Onto the values nearest to those before that rise as is asked (C. Hildreth 1957, "A
@@ -397,17 +397,17 @@ private:
         bool any = true;
         for (int step = 0; step < kMostProjections && any; ++step) {
             any = false;
-            for (Rise& each : rises_) {
-                const double lack = each.least - of(each);
-                any |= lack > kEnough * each.least;
-                const double more = std::max(lack / each.square, -each.force);
+            for (Rise& rise : rises_) {
+                const double lack = rise.least - of(rise);
+                any |= lack > kEnough * rise.least;
+                const double more = std::max(lack / rise.square, -rise.force);
                 if (more == 0) continue;
-                each.force += more;
+                rise.force += more;
                 for (std::size_t i = 0; i < 4; ++i) {
-                    const std::int64_t corner = each.corners[i];
+                    const std::int64_t corner = rise.corners[i];
                     if (fixed_[index(corner)] != 0) continue;
                     before_.try_emplace(corner, values_[index(corner)]);
-                    values_[index(corner)] += more * each.weights[i];
+                    values_[index(corner)] += more * rise.weights[i];
                 }
             }
         }
@@ -426,7 +426,7 @@ private:
     }
 
     RefinedLattice lattice_;
-    const LatticeField& given_;
+    const LatticeField& field_;
     const Execution& execution_;
     std::vector<double> values_;  // of nodes, then of points
     std::vector<std::uint8_t> fixed_;

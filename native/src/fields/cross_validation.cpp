@@ -62,8 +62,8 @@ CrossValidation::CrossValidation(const KnownData& known, std::span<const double>
         at.push_back(known.contacts()[n]);
     }
     const FieldData& data = known.data();
-    const std::size_t each = (data.dips.size() + kMostDips - 1) / kMostDips;
-    for (std::size_t n = 0; n < data.dips.size(); n += each) {
+    const std::size_t stride = (data.dips.size() + kMostDips - 1) / kMostDips;
+    for (std::size_t n = 0; n < data.dips.size(); n += stride) {
         dips_.push_back(n);
         at.push_back(known.frame().to_local(data.dips[n]));
     }
@@ -119,13 +119,13 @@ std::vector<Inequality> CrossValidation::inequalities_without(int part, int orde
     for (std::size_t k = 0; k < dips_.size(); ++k)
         is_given[dips_[k]] = dip_parts_[k] == part ? 0 : 1;
     std::vector<Inequality> out;
-    for (Inequality& each : known_.inequalities()) {
-        if (each.kind == Inequality::Origin::kBound) continue;  // it may contradict other data
-        if (each.kind == Inequality::Origin::kPolarity &&
-            is_given[static_cast<std::size_t>(each.item)] == 0)
+    for (Inequality& inequality : known_.inequalities()) {
+        if (inequality.kind == Inequality::Origin::kBound) continue;  // may contradict other data
+        if (inequality.kind == Inequality::Origin::kPolarity &&
+            is_given[static_cast<std::size_t>(inequality.item)] == 0)
             continue;
-        each.functional = known_.for_order(order, each.functional);
-        out.push_back(std::move(each));
+        inequality.functional = known_.for_order(order, inequality.functional);
+        out.push_back(std::move(inequality));
     }
     return out;
 }

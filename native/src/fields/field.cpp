@@ -61,10 +61,10 @@ public:
                 is_center_[n] = 1;
         }
         begin_phase(execution_.progress, 0.0, 0.3, "anisotropy of the field");
-        LikelyField found = likely_field(known, options.is_even, execution);
-        likely_ = found.likely;
-        gaps_ = std::move(found.gaps);
-        plain_shares_ = std::move(found.plain_shares);
+        LikelyField field = likely_field(known, options.is_even, execution);
+        likely_ = field.likely;
+        gaps_ = std::move(field.gaps);
+        plain_shares_ = std::move(field.plain_shares);
         begin_phase(execution_.progress, 0.3, 0.7, "field through the data");
     }
 
@@ -109,18 +109,18 @@ public:
         out.misfit = misfit_ * unit;
         out.plain_shares = plain_shares_;
         report_missed(out);
-        std::vector<char> kept(known_.data().bounds.size(), 1);
+        std::vector<char> is_held(known_.data().bounds.size(), 1);
         for (const std::int64_t bound : out.bounds_missed)
-            kept[static_cast<std::size_t>(bound)] = 0;
-        keep_bounds(known_.lattice(), known_.data(), kept, out.levels, out.values);
+            is_held[static_cast<std::size_t>(bound)] = 0;
+        keep_bounds(known_.lattice(), known_.data(), is_held, out.levels, out.values);
         make_same(out.values);
         return out;
     }
 
 private:
     /// A function of the kind that was found, which the data condition.
-    void draw(const FieldDraw& given) {
-        const FunctionKind& kind = given.kind;
+    void draw(const FieldDraw& field_draw) {
+        const FunctionKind& kind = field_draw.kind;
         even_ = kind.even;
         even_error_ = kind.even_error;
         likely_ = {kind.anisotropy,
@@ -132,7 +132,7 @@ private:
         if (kind.centers.size() != is_center_.size())
             throw InputError("option", "a field is drawn with the contacts that it was found of");
         is_center_.assign(kind.centers.begin(), kind.centers.end());
-        const DrawnNumbers& numbers = given.numbers;
+        const DrawnNumbers& numbers = field_draw.numbers;
         const std::size_t slits = known_.data().slits.count;
         if (numbers.dimensions != 3 + slits || numbers.directions.empty() ||
             numbers.directions.size() % numbers.dimensions != 0 || numbers.steps.empty() ||
@@ -150,9 +150,9 @@ private:
     double farthest_lift() const {
         const Slits& slits = known_.data().slits;
         double sum = 0;
-        for (const std::span<const double> each :
+        for (const std::span<const double> coordinates :
              {slits.contacts, slits.dips, slits.bounds, slits.nodes}) {
-            for (const double coordinate : each)
+            for (const double coordinate : coordinates)
                 sum = std::max(sum, std::abs(coordinate));
         }
         double far = std::abs(likely_.lift) * sum * static_cast<double>(slits.count);
@@ -406,7 +406,7 @@ private:
             counts[{Datum::Kind::kContact, static_cast<std::int64_t>(n)}] +=
                 std::abs(weights[row++]);
         row = first_active_;  // after those of beds
-        const auto is_bound = [](const Inequality& each) { return each.kind == Origin::kBound; };
+        const auto is_bound = [](const Inequality& other) { return other.kind == Origin::kBound; };
         for (std::size_t n = 0; n < active_.all().size(); ++n) {
             if (!active_.states()[n].active) continue;
             const Inequality& other = active_.all()[n];

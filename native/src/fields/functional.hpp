@@ -38,8 +38,8 @@ inline double squared(const Lift& a, const Lift& b) {
     return sum;
 }
 inline Lift scaled(double factor, Lift lift) {
-    for (double& each : lift)
-        each *= factor;
+    for (double& coordinate : lift)
+        coordinate *= factor;
     return lift;
 }
 /// Adds to a sum, which has no coordinates at first.

@@ -86,7 +86,7 @@ void KnownData::check() const {
 void KnownData::check_slits() const {
     const Slits& slits = data_.slits;
     const auto all_finite = [](std::span<const double> of) {
-        return std::ranges::all_of(of, [](double each) { return std::isfinite(each); });
+        return std::ranges::all_of(of, [](double coordinate) { return std::isfinite(coordinate); });
     };
     const std::size_t nodes = slits.sides * lattice_.nodes();
     const bool of_data = slits.contacts.size() == slits.count * data_.contacts.size() &&
@@ -119,8 +119,8 @@ void KnownData::check_slits() const {
 
 /// The further coordinates of a datum.
 Lift KnownData::lift(std::span<const double> of, std::size_t n) const {
-    const std::span<const double> own = of.subspan(n * data_.slits.count, data_.slits.count);
-    return {own.begin(), own.end()};
+    const std::span<const double> row = of.subspan(n * data_.slits.count, data_.slits.count);
+    return {row.begin(), row.end()};
 }
 
 /// The derivative of f along a vector at a dip.
@@ -306,17 +306,17 @@ Cube cube_of(const KnownData& known, std::size_t contact, double size) {
 }
 
 std::vector<std::size_t> thinned(const KnownData& known, std::size_t most) {
-    std::vector<std::size_t> kept;
+    std::vector<std::size_t> contacts;
     for (double size = 1.0 / 64;; size *= 1.25) {
         std::map<Cube, std::size_t> first;
         for (std::size_t n = 0; n < known.contacts().size(); ++n)
             first.emplace(cube_of(known, n, size), n);
         if (first.size() > most && size < 4) continue;
-        kept.clear();
+        contacts.clear();
         for (const auto& [cube, n] : first)
-            kept.push_back(n);
-        std::sort(kept.begin(), kept.end());
-        return kept;
+            contacts.push_back(n);
+        std::sort(contacts.begin(), contacts.end());
+        return contacts;
     }
 }
 

@@ -151,12 +151,12 @@ struct HalfSpace {
 
 }  // namespace
 
-void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const char> kept,
+void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const char> is_held,
                  std::span<const double> levels, std::vector<double>& values) {
     const Slits& slits = data.slits;
     std::vector<HalfSpace> halves;
     for (std::size_t n = 0; n < data.bounds.size(); ++n) {
-        if (kept[n] == 0) continue;
+        if (is_held[n] == 0) continue;
         HalfSpace half{};
         const auto corners = corners_at(lattice, data.bounds[n]);
         const std::size_t first =

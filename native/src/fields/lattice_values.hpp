@@ -83,8 +83,8 @@ std::vector<double> balanced(const std::vector<double>& values, const Lattice& l
 /// Moves the values of nodes beside bounds as far as it takes for the function that is linear on
 /// the lattice's tetrahedra to keep them: by projections onto one bound after another (Kaczmarz
 /// 1937; Agmon 1954), in rounds. What contradicts others within one tetrahedron is left.
-/// @param kept  whether a bound is to be kept
-void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const char> kept,
+/// @param is_held  whether a bound is to be kept
+void keep_bounds(const Lattice& lattice, const FieldData& data, std::span<const char> is_held,
                  std::span<const double> levels, std::vector<double>& values);
 
 }  // namespace realmodel::fields

@@ -125,9 +125,9 @@ private:
         assert(inside > 0 && inside < 4);
         const auto& order = orders_[mask];
         const auto between = [&](std::size_t in, std::size_t out) -> Crossing {
-            const std::int64_t own = tetrahedron[order[in]];
-            if (values[order[in]] == at) return {own, own};
-            return unordered(own, tetrahedron[order[out]]);
+            const std::int64_t inner = tetrahedron[order[in]];
+            if (values[order[in]] == at) return {inner, inner};
+            return unordered(inner, tetrahedron[order[out]]);
         };
         const auto triangle = [&](const Crossing& a, const Crossing& b, const Crossing& c) {
             if (a != b && b != c && c != a) pieces_[level].triangles.push_back({a, b, c});
@@ -151,11 +151,11 @@ private:
         for (std::size_t i = 0; i < 4; ++i)
             sides[i] = lattice_.sides(tetrahedron[i]);
         for (const auto& [a, b, c] : kFaces) {
-            const unsigned own = sides[a] & sides[b] & sides[c];
-            if (own == 0) continue;
+            const unsigned common = sides[a] & sides[b] & sides[c];
+            if (common == 0) continue;
             for (std::size_t level = 0; level < levels_.size(); ++level)
                 add_face({tetrahedron[a], tetrahedron[b], tetrahedron[c]},
-                         static_cast<Side>(std::countr_zero(own)), level);
+                         static_cast<Side>(std::countr_zero(common)), level);
         }
     }
 
@@ -196,7 +196,7 @@ private:
 /// for nothing, on both sides alike.
 /// @return how many triangles are the level set itself
 std::size_t close(LevelPieces& pieces) {
-    const std::size_t own = pieces.triangles.size();
+    const std::size_t on_level = pieces.triangles.size();
     const auto add = [&](Side side, const Crossing& from, const Crossing& to) {
         const std::int64_t tip = -1 - side;
         pieces.triangles.push_back({from, to, {tip, tip}});
@@ -220,7 +220,7 @@ std::size_t close(LevelPieces& pieces) {
         for (std::size_t i = 0; i < from.size(); ++i)
             add(sides.first, from[i], to[i]);
     }
-    return own;
+    return on_level;
 }
 
 /// Where a level set passes between two corners.
@@ -240,8 +240,8 @@ Vec3 position_of(const RefinedLattice& lattice, const Crossing& crossing, double
 
 /// Takes away equal triangles that face each other: between them a level set touches itself. Only
 /// those can be equal whose corners are all at nodes.
-/// @return how many of the first `own` are left
-std::size_t cancel_equal(std::vector<CrossingTriangle>& triangles, std::size_t own) {
+/// @return how many of the first `on_level` are left
+std::size_t cancel_equal(std::vector<CrossingTriangle>& triangles, std::size_t on_level) {
     struct Turned {
         CrossingTriangle corners;
         int turn;
@@ -264,24 +264,24 @@ std::size_t cancel_equal(std::vector<CrossingTriangle>& triangles, std::size_t o
         is_gone[sorted[i].number] = is_gone[sorted[i + 1].number] = 1;
         ++i;
     }
-    std::size_t kept = 0, kept_own = 0;
+    std::size_t remaining = 0, remaining_on_level = 0;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (is_gone[t] != 0) continue;
-        kept_own += t < own ? 1 : 0;
-        triangles[kept++] = triangles[t];
+        remaining_on_level += t < on_level ? 1 : 0;
+        triangles[remaining++] = triangles[t];
     }
-    triangles.resize(kept);
-    return kept_own;
+    triangles.resize(remaining);
+    return remaining_on_level;
 }
 
 LevelSet numbered(const RefinedLattice& lattice, double level, LevelPieces pieces) {
-    LevelSet found;
-    const std::size_t own = close(pieces);
-    found.own = cancel_equal(pieces.triangles, own);
+    LevelSet level_set;
+    const std::size_t on_level = close(pieces);
+    level_set.on_level = cancel_equal(pieces.triangles, on_level);
     std::vector<std::pair<Crossing, std::int32_t>> crossings;  // and the number that each had first
     KeyTable known;
     for (const CrossingTriangle& triangle : pieces.triangles) {
-        auto& numbers = found.triangles.emplace_back();
+        auto& numbers = level_set.triangles.emplace_back();
         for (std::size_t i = 0; i < 3; ++i) {
             const Crossing& crossing = triangle[i];
             const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(crossing);
@@ -294,17 +294,17 @@ LevelSet numbered(const RefinedLattice& lattice, double level, LevelPieces piece
         }
     }
     std::ranges::sort(crossings);
-    found.vertices.resize(crossings.size());
+    level_set.vertices.resize(crossings.size());
     std::vector<std::int32_t> place(crossings.size());
     for (std::size_t v = 0; v < crossings.size(); ++v) {
-        found.vertices[v] = position_of(lattice, crossings[v].first, level);
+        level_set.vertices[v] = position_of(lattice, crossings[v].first, level);
         place[index(crossings[v].second)] = static_cast<std::int32_t>(v);
     }
-    for (auto& triangle : found.triangles) {
+    for (auto& triangle : level_set.triangles) {
         for (std::int32_t& v : triangle)
             v = place[index(v)];
     }
-    return found;
+    return level_set;
 }
 
 }  // namespace
@@ -322,14 +322,14 @@ std::vector<LevelSet> level_sets(const LatticeField& field, std::span<const doub
         }
         of_slabs[slab] = std::move(sets.pieces());
     });
-    std::vector<LevelSet> found(levels.size());
+    std::vector<LevelSet> sets(levels.size());
     parallel_chunks(levels.size(), execution, [&](std::size_t level) {
         LevelPieces pieces;
         for (const auto& slab : of_slabs)
             pieces.add(slab[level]);
-        found[level] = numbered(lattice, levels[level], std::move(pieces));
+        sets[level] = numbered(lattice, levels[level], std::move(pieces));
     });
-    return found;
+    return sets;
 }
 
 std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const double> levels) {
@@ -341,7 +341,7 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
     for (std::int32_t k = 0; k < counts[2]; ++k) {
         for (std::int32_t j = 0; j < counts[1]; ++j) {
             for (std::int32_t i = 0; i < counts[0]; ++i, ++number) {
-                const double own = field.values[number];
+                const double value = field.values[number];
                 double differs = 0;
                 for (const CellIndex& step : {CellIndex{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
                     for (const std::int32_t way : {-1, 1}) {
@@ -350,13 +350,13 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
                         for (std::size_t axis = 0; axis < 3; ++axis)
                             is_node &= at[axis] >= 0 && at[axis] < counts[axis];
                         if (is_node)
-                            differs =
-                                std::max(differs, std::abs(lattice.value(lattice.node(at)) - own));
+                            differs = std::max(differs,
+                                               std::abs(lattice.value(lattice.node(at)) - value));
                     }
                 }
-                const auto above = std::ranges::lower_bound(levels, own);
+                const auto above = std::ranges::lower_bound(levels, value);
                 for (const auto& near : {above, above - (above != levels.begin())}) {
-                    if (near != levels.end() && std::abs(*near - own) <= kNear * differs)
+                    if (near != levels.end() && std::abs(*near - value) <= kNear * differs)
                         moved[number] = *near;
                 }
             }
@@ -368,43 +368,43 @@ std::vector<double> moved_onto_levels(const LatticeField& field, std::span<const
 std::vector<double> field_at(const LatticeField& field, std::span<const double> positions,
                              const Execution& execution) {
     const RefinedLattice lattice(field, {});
-    std::vector<double> found(positions.size() / 3);
-    parallel_ranges(found.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> values(positions.size() / 3);
+    parallel_ranges(values.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            found[i] = lattice.at({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+            values[i] = lattice.at({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
     });
-    return found;
+    return values;
 }
 
 TetrahedraAt tetrahedra_at(const LatticeField& field, std::span<const double> positions,
                            const Execution& execution) {
     const RefinedLattice lattice(field, {});
-    TetrahedraAt found;
-    found.corners.resize(positions.size() / 3);
-    found.weights.resize(positions.size() / 3);
+    TetrahedraAt tetrahedra;
+    tetrahedra.corners.resize(positions.size() / 3);
+    tetrahedra.weights.resize(positions.size() / 3);
     parallel_ranges(
-        found.corners.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
+        tetrahedra.corners.size(), 1 << 10, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Vec3 p{positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
-                const auto own = lattice.located(p);
-                if (!own)
+                const auto tetrahedron = lattice.located(p);
+                if (!tetrahedron)
                     throw InputError("outside", "a position is outside of the lattice", -1,
                                      {static_cast<std::int64_t>(i)}, p);
-                found.corners[i] = own->corners;
-                found.weights[i] = own->weights;
+                tetrahedra.corners[i] = tetrahedron->corners;
+                tetrahedra.weights[i] = tetrahedron->weights;
             }
         });
-    return found;
+    return tetrahedra;
 }
 
 std::vector<std::uint8_t> points_between(const LatticeField& field, const Execution& execution) {
     const RefinedLattice lattice(field, {});
-    std::vector<std::uint8_t> found(field.point_values.size());
-    parallel_ranges(found.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> is_between(field.point_values.size());
+    parallel_ranges(is_between.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t point = begin; point < end; ++point)
-            found[point] = lattice.is_between(point) ? 1 : 0;
+            is_between[point] = lattice.is_between(point) ? 1 : 0;
     });
-    return found;
+    return is_between;
 }
 
 }  // namespace realmodel::fields

@@ -78,8 +78,8 @@ std::vector<std::int64_t> turning_points(const Lattice& lattice, std::span<const
                 (values[node + steps[axis]] - values[node - steps[axis]]) / lattice.spacing[axis];
         return out;
     };
-    std::vector<std::vector<std::int64_t>> found(static_cast<std::size_t>(nz));
-    parallel_chunks(found.size(), execution, [&, nx = nx, ny = ny, nz = nz](std::size_t layer) {
+    std::vector<std::vector<std::int64_t>> layers(static_cast<std::size_t>(nz));
+    parallel_chunks(layers.size(), execution, [&, nx = nx, ny = ny, nz = nz](std::size_t layer) {
         const auto k = static_cast<std::int64_t>(layer);
         if (k == 0 || k >= nz - 1) return;
         for (std::int64_t j = 1; j < ny - 1; ++j) {
@@ -89,13 +89,13 @@ std::vector<std::int64_t> turning_points(const Lattice& lattice, std::span<const
                 const std::array<bool, 3> has_next{i + 2 < nx, j + 2 < ny, k + 2 < nz};
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     if (!has_next[axis] || dot(here, gradient(node + steps[axis])) >= 0) continue;
-                    found[layer].push_back(node);
+                    layers[layer].push_back(node);
                     break;
                 }
             }
         }
     });
-    return concatenated(found);
+    return concatenated(layers);
 }
 
 /// How many connected parts nodes are. Where the field hardly changes along an axis they
@@ -153,7 +153,7 @@ public:
           coarse_(coarsened(known.lattice(), kMostCounted)),
           sample_(spread_pairs(known, kSampledPairs)) {}
 
-    LikelyField found() {
+    LikelyField likeliest() {
         refuse_wrong_order();
         look();
         if (known_.data().surfaces < 3) return result();
@@ -168,11 +168,11 @@ public:
     }
 
     /// Whether the field predicts data better if beds keep their thickness.
-    bool is_better_even(const LikelyField& found) const {
+    bool is_better_even(const LikelyField& field) const {
         if (!is_told_by_dips()) return false;
-        std::vector<Likely> kinds{found.likely, found.likely};
+        std::vector<Likely> kinds{field.likely, field.likely};
         kinds[1].is_even = true;
-        const auto costs = CrossValidation(known_, found.gaps).costs(kinds, execution_);
+        const auto costs = CrossValidation(known_, field.gaps).costs(kinds, execution_);
         return costs[1] + kBetter < costs[0];
     }
 
@@ -246,10 +246,10 @@ private:
     std::vector<Functional> with_some_dips(std::span<const double> gaps) const {
         std::vector<Functional> fixed = known_.fixed(gaps);
         const std::size_t dips = known_.data().dips.size();
-        const std::size_t each = (dips + kSampledDips - 1) / kSampledDips;
+        const std::size_t stride = (dips + kSampledDips - 1) / kSampledDips;
         std::vector<Functional> out;
         for (std::size_t n = 0; n < fixed.size(); ++n) {
-            if (n >= 2 * dips || n / 2 % each == 0) out.push_back(std::move(fixed[n]));
+            if (n >= 2 * dips || n / 2 % stride == 0) out.push_back(std::move(fixed[n]));
         }
         return out;
     }
@@ -276,12 +276,12 @@ private:
     std::vector<Likely> with_errors(const std::vector<Likely>& shapes) const {
         std::vector<Likely> out;
         const auto add = [&](Likely kind, std::span<const Errors> all) {
-            std::vector<Likely> own;
+            std::vector<Likely> kinds;
             for (const Errors& errors : all) {
                 kind.errors = errors;
-                own.push_back(kind);
+                kinds.push_back(kind);
             }
-            add_possible(std::move(own), out);
+            add_possible(std::move(kinds), out);
         };
         add({kIsotropic, {}, 3, likely_.lift, likely_.throws}, kErrorsOfThird);
         add({kIsotropic, {}, 2, likely_.lift, likely_.throws}, kErrorsOfSecond);
@@ -422,7 +422,7 @@ private:
 LikelyField likely_field(const KnownData& known, std::optional<bool> is_even,
                          const Execution& execution) {
     LikelySearch search(known, execution);
-    LikelyField out = search.found();
+    LikelyField out = search.likeliest();
     out.likely.is_even = is_even ? *is_even : search.is_better_even(out);
     return out;
 }

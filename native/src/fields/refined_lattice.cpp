@@ -76,12 +76,12 @@ Vec3 RefinedLattice::position(std::int64_t corner) const {
 
 unsigned RefinedLattice::sides(std::int64_t corner) const {
     const Vec3 p = position(corner);
-    unsigned found = 0;
+    unsigned side_bits = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (p[axis] == coordinate(axis, 0)) found |= 1U << axis;
-        if (p[axis] == coordinate(axis, counts_[axis] - 1)) found |= 8U << axis;
+        if (p[axis] == coordinate(axis, 0)) side_bits |= 1U << axis;
+        if (p[axis] == coordinate(axis, counts_[axis] - 1)) side_bits |= 8U << axis;
     }
-    return found;
+    return side_bits;
 }
 
 Vec3 RefinedLattice::beyond(Side side) const {
@@ -94,32 +94,32 @@ Vec3 RefinedLattice::beyond(Side side) const {
 }
 
 std::array<std::int64_t, 8> RefinedLattice::corners(const CellIndex& cell) const {
-    std::array<std::int64_t, 8> found{};
+    std::array<std::int64_t, 8> nodes{};
     for (std::size_t c = 0; c < 8; ++c)
-        found[c] = node(cell) + static_cast<std::int64_t>(c & 1) +
+        nodes[c] = node(cell) + static_cast<std::int64_t>(c & 1) +
                    stride_[1] * static_cast<std::int64_t>(c >> 1 & 1) +
                    stride_[2] * static_cast<std::int64_t>(c >> 2);
-    return found;
+    return nodes;
 }
 
 Tetrahedron RefinedLattice::tetrahedron(const std::array<std::int64_t, 8>& corners,
                                         std::size_t number) {
-    Tetrahedron found{};
+    Tetrahedron vertices{};
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& step = kTetrahedraOfCell[number][i];
-        found[i] = corners[static_cast<std::size_t>(step[0] + 2 * step[1] + 4 * step[2])];
+        vertices[i] = corners[static_cast<std::size_t>(step[0] + 2 * step[1] + 4 * step[2])];
     }
-    return found;
+    return vertices;
 }
 
 std::vector<std::int64_t> RefinedLattice::divided_corners() const {
-    std::vector<std::int64_t> found;
+    std::vector<std::int64_t> corners;
     for (const auto& [cell, tetrahedra] : divided_) {
         for (const Tetrahedron& tetrahedron : tetrahedra)
-            found.insert(found.end(), tetrahedron.begin(), tetrahedron.end());
+            corners.insert(corners.end(), tetrahedron.begin(), tetrahedron.end());
     }
-    sort_unique(found);
-    return found;
+    sort_unique(corners);
+    return corners;
 }
 
 std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
@@ -134,14 +134,14 @@ std::vector<CellIndex> RefinedLattice::cells_at(const Vec3& p) const {
                 along[axis].push_back(i);
         }
     }
-    std::vector<CellIndex> found;
+    std::vector<CellIndex> cells;
     for (const std::int32_t k : along[2]) {
         for (const std::int32_t j : along[1]) {
             for (const std::int32_t i : along[0])
-                found.push_back({i, j, k});
+                cells.push_back({i, j, k});
         }
     }
-    return found;
+    return cells;
 }
 
 std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
@@ -157,21 +157,21 @@ std::vector<Tetrahedron>& RefinedLattice::make_divided(const CellIndex& cell) {
 /// The corners of the vertex, edge, face or tetrahedron in which p lies; nothing if it is outside.
 std::optional<std::vector<std::int64_t>> RefinedLattice::carrier(const Tetrahedron& tetrahedron,
                                                                  exact::SpacePointId p) {
-    std::array<exact::SpacePointId, 4> own;
+    std::array<exact::SpacePointId, 4> corners;
     for (std::size_t i = 0; i < 4; ++i)
-        own[i] = exact_.add(position(tetrahedron[i]));
+        corners[i] = exact_.add(position(tetrahedron[i]));
     // the side of the volume of the tetrahedron itself, however orient3d counts
-    const int inside = orient3d(exact_, own[0], own[1], own[2], own[3]);
+    const int inside = orient3d(exact_, corners[0], corners[1], corners[2], corners[3]);
     if (inside == 0) return std::nullopt;  // nodes at one place: coordinates are too coarse
-    std::vector<std::int64_t> found;
+    std::vector<std::int64_t> simplex;
     for (std::size_t i = 0; i < 4; ++i) {
-        auto with = own;
+        auto with = corners;
         with[i] = p;
         const int side = orient3d(exact_, with[0], with[1], with[2], with[3]) * inside;
         if (side < 0) return std::nullopt;
-        if (side > 0) found.push_back(tetrahedron[i]);
+        if (side > 0) simplex.push_back(tetrahedron[i]);
     }
-    return found;
+    return simplex;
 }
 
 void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
@@ -208,8 +208,8 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
         corner_of_point_.push_back(corner);
         return;
     }
-    const std::int64_t own = nodes_ + static_cast<std::int64_t>(point);
-    corner_of_point_.push_back(own);
+    const std::int64_t new_corner = nodes_ + static_cast<std::int64_t>(point);
+    corner_of_point_.push_back(new_corner);
     [[maybe_unused]] std::size_t replaced = 0;
     for (const CellIndex& cell : cells) {
         std::vector<Tetrahedron> divided;
@@ -226,7 +226,7 @@ void RefinedLattice::add_point(std::size_t point, const Vec3& p) {
             ++replaced;
             for (const std::int64_t corner : *simplex) {
                 divided.push_back(tetrahedron);
-                divided.back()[static_cast<std::size_t>(place(corner))] = own;
+                divided.back()[static_cast<std::size_t>(place(corner))] = new_corner;
             }
         }
         make_divided(cell) = std::move(divided);
@@ -240,15 +240,15 @@ Located RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra
                                       const Vec3& p) const {
     const double least_whole = 1e-9 * spacing_[0] * spacing_[1] * spacing_[2];
     double best = -HUGE_VAL;
-    Located found{};
+    Located nearest{};
     for (const Tetrahedron& tetrahedron : tetrahedra) {
         std::array<Vec3, 4> at{};
-        Located own{tetrahedron, {}};
+        Located candidate{tetrahedron, {}};
         for (std::size_t i = 0; i < 4; ++i) {
             at[i] = position(tetrahedron[i]);
             if (at[i] != p) continue;
-            own.weights[i] = 1;
-            return own;
+            candidate.weights[i] = 1;
+            return candidate;
         }
         const double whole = sixfold_volume(at[0], at[1], at[2], at[3]);
         if (whole < least_whole) continue;
@@ -256,15 +256,15 @@ Located RefinedLattice::in_tetrahedra(const std::vector<Tetrahedron>& tetrahedra
         for (std::size_t i = 0; i < 4; ++i) {
             auto with = at;
             with[i] = p;
-            own.weights[i] = sixfold_volume(with[0], with[1], with[2], with[3]) / whole;
-            least = std::min(least, own.weights[i]);
+            candidate.weights[i] = sixfold_volume(with[0], with[1], with[2], with[3]) / whole;
+            least = std::min(least, candidate.weights[i]);
         }
         if (least > best) {
             best = least;
-            found = own;
+            nearest = candidate;
         }
     }
-    return found;
+    return nearest;
 }
 
 std::optional<Located> RefinedLattice::located(const Vec3& p) const {
@@ -277,18 +277,18 @@ std::optional<Located> RefinedLattice::located(const Vec3& p) const {
         shares[axis] =
             std::clamp((p[axis] - coordinate(axis, cell[axis])) / spacing_[axis], 0.0, 1.0);
     const Walk walk = walk_to(shares);
-    Located found{{node(cell)}, walk.weights};
+    Located tetrahedron{{node(cell)}, walk.weights};
     for (std::size_t i = 0; i < 3; ++i)
-        found.corners[i + 1] = found.corners[i] + stride_[walk.axes[i]];
-    return found;
+        tetrahedron.corners[i + 1] = tetrahedron.corners[i] + stride_[walk.axes[i]];
+    return tetrahedron;
 }
 
 double RefinedLattice::at(const Vec3& p) const {
-    const auto found = located(p);
-    if (!found) return std::numeric_limits<double>::quiet_NaN();
+    const auto tetrahedron = located(p);
+    if (!tetrahedron) return std::numeric_limits<double>::quiet_NaN();
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i)
-        sum += value(found->corners[i]) * found->weights[i];
+        sum += value(tetrahedron->corners[i]) * tetrahedron->weights[i];
     return sum;
 }
 

@@ -60,8 +60,8 @@ public:
     Vec3 beyond(Side side) const;
     /// The tetrahedra of a cell that points divide, nullptr for any other cell.
     const std::vector<Tetrahedron>* divided(const CellIndex& cell) const {
-        const auto found = divided_.find(node(cell));
-        return found == divided_.end() ? nullptr : &found->second;
+        const auto entry = divided_.find(node(cell));
+        return entry == divided_.end() ? nullptr : &entry->second;
     }
     /// The corners of all tetrahedra that points divide others into, rising.
     std::vector<std::int64_t> divided_corners() const;

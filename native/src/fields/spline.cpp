@@ -63,8 +63,8 @@ void Spline::factor(const Execution& execution) {
     };
     scales_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-        const double own = entry(i, i);
-        scales_(i) = own > 0 ? 1 / std::sqrt(own) : 0;
+        const double diagonal = entry(i, i);
+        scales_(i) = diagonal > 0 ? 1 / std::sqrt(diagonal) : 0;
     }
     const Eigen::Matrix3d moments = terms.transpose() * terms;
     const auto scaled = [&](Eigen::Index i, Eigen::Index j) {
@@ -218,13 +218,13 @@ void Spline::blocks_at(std::span<const Vec3> positions, std::span<const double> 
         const std::size_t count = std::min(kWidth, positions.size() - first);
         Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();
         for (std::size_t n = 0; n < count; ++n) {
-            const auto own = lifts.subspan((first + n) * further, further);
-            const Vec3 p = place(positions[first + n], own);
+            const auto lift = lifts.subspan((first + n) * further, further);
+            const Vec3 p = place(positions[first + n], lift);
             x(n) = p[0];
             y(n) = p[1];
             z(n) = p[2];
             for (std::size_t k = 0; k < further; ++k)
-                up[k](n) = smoothness_.lift * own[k];
+                up[k](n) = smoothness_.lift * lift[k];
         }
         Lanes sum = tilt_[0] * x + tilt_[1] * y + tilt_[2] * z;
         for (std::size_t k = 0; k < further; ++k)
@@ -295,8 +295,8 @@ Vec3 Spline::gradient(const Vec3& at, const Lift& lift) const {
 
 /// By how much what was measured differs from the function.
 double Spline::error_at(const Vec3& at, const Lift& lift) const {
-    const auto found = measured_.find({place(at, lift), scaled(smoothness_.lift, lift)});
-    return found == measured_.end() ? 0 : smoothness_.errors.value * found->second;
+    const auto weight = measured_.find({place(at, lift), scaled(smoothness_.lift, lift)});
+    return weight == measured_.end() ? 0 : smoothness_.errors.value * weight->second;
 }
 
 double Spline::of(const Functional& functional) const {

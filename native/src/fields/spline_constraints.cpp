@@ -95,13 +95,13 @@ std::vector<std::size_t> ActiveInequalities::suspected(const Spline& spline,
     const double most =
         *std::max_element(misfits.begin() + static_cast<std::ptrdiff_t>(sampled), misfits.end());
     const double least = std::max(kSuspect * *usual, kAsMuch * most);
-    std::vector<std::pair<double, std::size_t>> found;
+    std::vector<std::pair<double, std::size_t>> suspects;
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-        if (misfits[sampled + k] > least) found.emplace_back(-misfits[sampled + k], numbers[k]);
+        if (misfits[sampled + k] > least) suspects.emplace_back(-misfits[sampled + k], numbers[k]);
     }
-    std::sort(found.begin(), found.end());
+    std::sort(suspects.begin(), suspects.end());
     std::vector<std::size_t> out;
-    for (const auto& suspect : found) {
+    for (const auto& suspect : suspects) {
         const std::size_t n = suspect.second;
         const auto is_near = [&](std::size_t other) {
             return length(minus(all_[n].at, all_[other].at)) < kApart;
@@ -181,9 +181,9 @@ std::vector<Vec3> EvenSteepness::directions(const Spline& spline) const {
     std::vector<Vec3> out;
     for (const SteepnessSample& place : places_) {
         const Vec3 rise = spline.gradient(place.at, place.lift);
-        const double own = length(rise);
-        const double given = steepness_at(spline.value(place.at, place.lift), levels, steep);
-        out.push_back(own > kFlat * given ? times(1 / (given * own), rise) : Vec3{});
+        const double slope = length(rise);
+        const double expected = steepness_at(spline.value(place.at, place.lift), levels, steep);
+        out.push_back(slope > kFlat * expected ? times(1 / (expected * slope), rise) : Vec3{});
     }
     return out;
 }

@@ -61,18 +61,18 @@ Eigen::VectorXd solved(const Weights& a, const Eigen::VectorXd& missed, double l
 
 }  // namespace
 
-ValuesThrough values_through(std::span<const double> given, const LevelsAtContacts& at, int rounds,
-                             const Execution& execution) {
+ValuesThrough values_through(std::span<const double> initial, const LevelsAtContacts& at,
+                             int rounds, const Execution& execution) {
     std::vector<std::int64_t> used;
     for (const auto& corners : at.corners)
         used.insert(used.end(), corners.begin(), corners.end());
     sort_unique(used);
-    if (!used.empty() && (used.front() < 0 || used.back() >= std::ssize(given)))
+    if (!used.empty() && (used.front() < 0 || used.back() >= std::ssize(initial)))
         throw InputError("option", "a corner is no value");
     const Weights weights = weights_of(at, used);
     Eigen::VectorXd values(std::ssize(used));
     for (std::size_t n = 0; n < used.size(); ++n)
-        values[static_cast<Eigen::Index>(n)] = given[index(used[n])];
+        values[static_cast<Eigen::Index>(n)] = initial[index(used[n])];
     const Eigen::Map<const Eigen::VectorXd> levels(at.levels.data(), std::ssize(at.levels));
     Eigen::VectorXd missed = levels - weights * values;
     const double least = kReached * kReached * missed.squaredNorm();
@@ -80,10 +80,10 @@ ValuesThrough values_through(std::span<const double> given, const LevelsAtContac
         values += weights.transpose() * solved(weights, missed, least, execution);
         missed = levels - weights * values;
     }
-    ValuesThrough found{{given.begin(), given.end()}, {missed.begin(), missed.end()}};
+    ValuesThrough fitted{{initial.begin(), initial.end()}, {missed.begin(), missed.end()}};
     for (std::size_t n = 0; n < used.size(); ++n)
-        found.values[index(used[n])] = values[static_cast<Eigen::Index>(n)];
-    return found;
+        fitted.values[index(used[n])] = values[static_cast<Eigen::Index>(n)];
+    return fitted;
 }
 
 }  // namespace realmodel::fields

@@ -43,10 +43,10 @@ void require_usable(std::span<const double> numbers, const char* what, std::size
         {static_cast<std::int64_t>(i)});
 }
 
-std::vector<double> DataPoints::for_given(std::span<const double> found) const {
+std::vector<double> DataPoints::for_given(std::span<const double> point_values) const {
     std::vector<double> out(number_of.size());
     for (std::size_t i = 0; i < out.size(); ++i)
-        out[i] = found[number_of[i]];
+        out[i] = point_values[number_of[i]];
     return out;
 }
 

@@ -25,7 +25,7 @@ struct DataPoints {
         return {position[0] - origin[0], position[1] - origin[1]};
     }
     /// What was found for each of these points, for each point that was given.
-    std::vector<double> for_given(std::span<const double> found) const;
+    std::vector<double> for_given(std::span<const double> point_values) const;
 };
 
 /// Merges points that repeat another.

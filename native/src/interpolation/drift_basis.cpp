@@ -90,32 +90,32 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
     const Eigen::Index rows = plain.rows(), terms = plain.cols();
     basis_.resize(rows, terms);
     plain_basis_.resize(rows, terms);
-    kept_ = 0;
+    size_ = 0;
     const double least = kLeastPart * std::sqrt(static_cast<double>(rows));
     Eigen::VectorXd v;
     for (Eigen::Index term = 0; term < terms; ++term) {
         v = plain.col(term);
-        make_orthogonal(plain_basis_, kept_, v, [](Eigen::Index, double) {});
+        make_orthogonal(plain_basis_, size_, v, [](Eigen::Index, double) {});
         const double left = v.norm();
         if (!(left > least)) continue;
-        plain_basis_.col(kept_) = v / left;
+        plain_basis_.col(size_) = v / left;
 
         v = whitened.col(term);
-        upper_.col(kept_).setZero();
-        make_orthogonal(basis_, kept_, v,
-                        [&](Eigen::Index k, double part) { upper_(k, kept_) += part; });
+        upper_.col(size_).setZero();
+        make_orthogonal(basis_, size_, v,
+                        [&](Eigen::Index k, double part) { upper_(k, size_) += part; });
         const double length = v.norm();
         if (!(length > 1e-12 * whitened.col(term).norm())) continue;
-        basis_.col(kept_) = v / length;
-        upper_(kept_, kept_) = length;
-        term_[kept_] = term;
-        ++kept_;
+        basis_.col(size_) = v / length;
+        upper_(size_, size_) = length;
+        term_[size_] = term;
+        ++size_;
     }
 }
 
 DriftBasis::Coefficients DriftBasis::solve(const DriftFrame::Terms& terms) const {
-    Coefficients out(kept_);
-    for (Eigen::Index k = 0; k < kept_; ++k) {
+    Coefficients out(size_);
+    for (Eigen::Index k = 0; k < size_; ++k) {
         double sum = terms(term_[k]);
         for (Eigen::Index j = 0; j < k; ++j)
             sum -= upper_(j, k) * out(j);

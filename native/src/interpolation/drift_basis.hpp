@@ -50,26 +50,26 @@ public:
     void make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
               const Eigen::Ref<const Eigen::MatrixXd>& whitened);
 
-    Eigen::Index size() const { return kept_; }
+    Eigen::Index size() const { return size_; }
 
     /// Q^T v.
     Coefficients project(const Eigen::Ref<const Eigen::VectorXd>& v) const {
-        return basis_.leftCols(kept_).transpose() * v;
+        return basis_.leftCols(size_).transpose() * v;
     }
 
     double orthonormal(Eigen::Index row, Eigen::Index term) const { return basis_(row, term); }
 
     /// Q a.
-    Eigen::VectorXd expand(const Coefficients& a) const { return basis_.leftCols(kept_) * a; }
+    Eigen::VectorXd expand(const Coefficients& a) const { return basis_.leftCols(size_) * a; }
 
     /// R^-T f, for the terms f at a position.
     Coefficients solve(const DriftFrame::Terms& terms) const;
 
 private:
-    Eigen::MatrixXd basis_;  // Q, its first kept_ columns
+    Eigen::MatrixXd basis_;  // Q, its first size_ columns
     std::array<Eigen::Index, kMostDriftTerms> term_{};
     Eigen::Matrix<double, kMostDriftTerms, kMostDriftTerms> upper_;  // R, of the kept terms
-    Eigen::Index kept_ = 0;
+    Eigen::Index size_ = 0;
     Eigen::MatrixXd plain_basis_;
 };
 

@@ -22,8 +22,8 @@ struct NodeLoop {
     const char* text = nullptr;  ///< what is being done; null keeps the text that was there
     double begin = 0, end = 1;   ///< the fractions of the progress; equal: it is not moved
 
-    /// Calls work(own, begin, end) for chunks of nodes; `own` is the thread's object, as make()
-    /// gives it: which thread does a chunk must not matter to the result. Long work asks
+    /// Calls work(scratch, begin, end) for chunks of nodes; `scratch` is the thread's object, as
+    /// make() gives it: which thread does a chunk must not matter to the result. Long work asks
     /// cancelled() and returns then.
     /// @throws Cancelled, and what work or make throws for the lowest chunk
     template <class Make, class Work>
@@ -31,19 +31,19 @@ struct NodeLoop {
         assert(chunk > 0);
         if (begin < end) begin_phase(execution.progress, begin, end, text);
         const auto worker = [&] {
-            return [&, own = make()](std::size_t number) mutable {
-                work(own, number * chunk, std::min(count, (number + 1) * chunk));
+            return [&, scratch = make()](std::size_t number) mutable {
+                work(scratch, number * chunk, std::min(count, (number + 1) * chunk));
             };
         };
         parallel_workers((count + chunk - 1) / chunk, execution, worker, begin < end ? 1.0 : 0.0);
     }
 
-    /// Calls work(own, node) for each node, until the caller cancels.
+    /// Calls work(scratch, node) for each node, until the caller cancels.
     template <class Make, class Work>
     void over_nodes(const Make& make, const Work& work) const {
-        over_chunks(make, [&](auto& own, std::size_t from, std::size_t to) {
+        over_chunks(make, [&](auto& scratch, std::size_t from, std::size_t to) {
             for (std::size_t node = from; node < to && !cancelled(execution.progress); ++node)
-                work(own, node);
+                work(scratch, node);
         });
     }
 };

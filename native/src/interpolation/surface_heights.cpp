@@ -26,10 +26,10 @@ PlacesOnSurface places_on_surface(std::span<const std::array<double, 3>> vertice
     const NodeLoop loop{nodes.size(), 1024, execution};
     loop.over_nodes([] { return 0; },
                     [&](int, std::size_t i) {
-                        const auto found = locator.find(nodes[i]);
-                        if (!found) return;
-                        places.triangle[i] = found->triangle;
-                        places.weights[i] = {found->weights[1], found->weights[2]};
+                        const auto position = locator.find(nodes[i]);
+                        if (!position) return;
+                        places.triangle[i] = position->triangle;
+                        places.weights[i] = {position->weights[1], position->weights[2]};
                     });
     return places;
 }

@@ -60,8 +60,8 @@ std::optional<Triangles> by_ears(std::span<const Ring> rings, Progress* progress
     if (!arrangement::cut_ears(loops, {0, 0}, {}, arrangement::EarChoice::kRound, triangles,
                                progress))
         return std::nullopt;
-    for (auto& own : triangles)
-        for (std::int32_t& c : own)
+    for (auto& triangle : triangles)
+        for (std::int32_t& c : triangle)
             c = numbers[c];
     FlatMesh mesh({std::move(corners), std::move(triangles)});
     const Check check = stopped_by(progress);

@@ -91,13 +91,13 @@ void EdgeCutting::add_points(std::span<const PlanPoint> points) {
 }
 
 HalfEdge EdgeCutting::between(std::int32_t a, std::int32_t b) const {
-    HalfEdge found = HalfEdge::none();
+    HalfEdge joining_edge = HalfEdge::none();
     mesh_.visit_star(at_[a], [&](HalfEdge edge) {
-        if (!found.is_none()) return;
-        if (mesh_.to(edge) == b) found = edge;
-        if (mesh_.apex(edge) == b) found = edge.prev();
+        if (!joining_edge.is_none()) return;
+        if (mesh_.to(edge) == b) joining_edge = edge;
+        if (mesh_.apex(edge) == b) joining_edge = edge.prev();
     });
-    return found;
+    return joining_edge;
 }
 
 bool EdgeCutting::insert(HalfEdge edge, std::int32_t point) {
@@ -231,11 +231,11 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
         double here = wanted(begin);
         while (sums.back()[0] < end) {
             const double t = std::min(end, sums.back()[0] + 0.3 * here / length);
-            const double there = wanted(t);
+            const double length_ahead = wanted(t);
             const double step = (t - sums.back()[0]) * length;
-            sums.push_back({t, sums.back()[1] + step * 0.5 * (1 / here + 1 / there)});
+            sums.push_back({t, sums.back()[1] + step * 0.5 * (1 / here + 1 / length_ahead)});
             if (t == sums[sums.size() - 2][0]) break;
-            here = there;
+            here = length_ahead;
         }
         const double all = sums.back()[1];
         const std::size_t count = piece_count(all);
@@ -387,11 +387,11 @@ BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origi
         }
         std::sort(crossings.begin(), crossings.end());
         const double apart = closest * side / length_of(graph, edge);
-        std::vector<double> kept;
+        std::vector<double> cuts;
         for (const double t : crossings) {
-            if (t >= (kept.empty() ? 0 : kept.back()) + apart && t <= 1 - apart) kept.push_back(t);
+            if (t >= (cuts.empty() ? 0 : cuts.back()) + apart && t <= 1 - apart) cuts.push_back(t);
         }
-        return kept;
+        return cuts;
     });
 }
 

@@ -181,10 +181,10 @@ void FlatMesh::divide(HalfEdge edge, std::int32_t vertex) {
 
 std::array<HalfEdge, 2> FlatMesh::collapse(HalfEdge edge) {
     const HalfEdge other = twin(edge);
-    const std::int32_t kept = to(edge);
+    const std::int32_t target = to(edge);
     HalfEdge around = edge;
     do {
-        corners[around.triangle()][around.index()] = kept;
+        corners[around.triangle()][around.index()] = target;
         around = rotate_ccw(around);
     } while (around != edge);
     const auto close = [&](HalfEdge beyond_edge, HalfEdge inner) {
@@ -203,10 +203,10 @@ std::array<HalfEdge, 2> FlatMesh::collapse(HalfEdge edge) {
 }
 
 HalfEdge FlatMesh::remove_from_border(HalfEdge edge) {
-    const HalfEdge kept = edge.prev(), gone = twin(kept), beyond = gone.next();
+    const HalfEdge before = edge.prev(), gone = twin(before), beyond = gone.next();
     assert(is_border(edge) && is_border(gone.prev()));
     corners[edge.triangle()][edge.index()] = to(beyond);
-    attach(kept, outer(beyond));
+    attach(before, outer(beyond));
     kill(gone.triangle());
     return edge;
 }
@@ -218,9 +218,9 @@ void FlatMesh::compact() {
         ++first;
     if (first == count) return;
     std::vector<std::int32_t> number(count - first, -1);
-    std::int32_t kept = first;
+    std::int32_t live_count = first;
     for (std::int32_t t = first; t < count; ++t)
-        if (!is_dead(t)) number[t - first] = kept++;
+        if (!is_dead(t)) number[t - first] = live_count++;
     for (std::int32_t t = 0; t < count; ++t) {
         if (is_dead(t)) continue;
         for (HalfEdge& edge : twins[t]) {
@@ -234,9 +234,9 @@ void FlatMesh::compact() {
         twins[to] = twins[t];
         marks[to] = marks[t];
     }
-    corners.resize(kept);
-    twins.resize(kept);
-    marks.resize(kept);
+    corners.resize(live_count);
+    twins.resize(live_count);
+    marks.resize(live_count);
 }
 
 }  // namespace realmodel::meshing

@@ -98,12 +98,12 @@ PlanarMesh collected(FlatMesh&& flat, const Check& check) {
     }
     if (std::find(used.begin(), used.end(), false) == used.end()) return mesh;
     std::vector<std::int32_t> number(used.size());
-    std::int32_t kept = 0;
+    std::int32_t used_count = 0;
     for (std::size_t i = 0; i < used.size(); ++i) {
-        number[i] = kept;
-        if (used[i]) mesh.vertices[kept++] = mesh.vertices[i];
+        number[i] = used_count;
+        if (used[i]) mesh.vertices[used_count++] = mesh.vertices[i];
     }
-    mesh.vertices.resize(kept);
+    mesh.vertices.resize(used_count);
     for (auto& t : mesh.triangles) {
         tick(0.5);
         for (std::int32_t& v : t)
@@ -162,13 +162,13 @@ double length_at(const FlatMesh& mesh, HalfEdge edge, const std::vector<bool>& i
 
 /// No source finer than `finest`, and of those one in each square of that edge.
 void thin_out(std::vector<SizeSource>& sources, double finest) {
-    std::vector<SizeSource> kept;
+    std::vector<SizeSource> thinned;
     std::ranges::stable_sort(sources, std::greater<>(), &SizeSource::least);
     using Square = std::pair<std::array<double, 2>, std::size_t>;
     std::vector<Square> squares;
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (sources[i].least >= finest) {
-            kept.push_back(sources[i]);
+            thinned.push_back(sources[i]);
             continue;
         }
         const PlanPoint m = middle(sources[i].a, sources[i].b);
@@ -178,9 +178,9 @@ void thin_out(std::vector<SizeSource>& sources, double finest) {
     for (const auto group : groups_of(squares, &Square::first)) {
         SizeSource source = sources[group[0].second];
         source.start = source.least = finest;
-        kept.push_back(source);
+        thinned.push_back(source);
     }
-    sources = std::move(kept);
+    sources = std::move(thinned);
 }
 
 /// Where border, inner lines and points are too close to one another for edges as long as `size`

@@ -37,11 +37,11 @@ template <class Value, class Cross>
 std::vector<Value> spread_inward(const ConstrainedTriangulation& mesh, Value outside,
                                  const Cross& cross) {
     constexpr Value kUnknown = -2;
-    std::vector<Value> found(mesh.triangles.size(), kUnknown);
+    std::vector<Value> values(mesh.triangles.size(), kUnknown);
     std::vector<std::int32_t> open;
     const auto reach = [&](std::int32_t to, std::int32_t from, int side, Value value) {
-        if (found[to] != kUnknown) return;
-        found[to] = cross(from, side, value);
+        if (values[to] != kUnknown) return;
+        values[to] = cross(from, side, value);
         open.push_back(to);
     };
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -54,11 +54,11 @@ std::vector<Value> spread_inward(const ConstrainedTriangulation& mesh, Value out
             open.pop_back();
             for (int i = 0; i < 3; ++i) {
                 const std::int32_t to = mesh.neighbors[from][i];
-                if (to >= 0) reach(to, from, i, found[from]);
+                if (to >= 0) reach(to, from, i, values[from]);
             }
         }
     }
-    return found;
+    return values;
 }
 
 /// Which triangles lie inside an odd number of rings: going from one to the next changes that

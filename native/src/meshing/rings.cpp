@@ -295,13 +295,13 @@ private:
 void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nesting) {
     for (std::size_t r = 0; r < rings.size(); ++r) {
         if (!rings[r].hole) continue;
-        bool found = false;
+        bool inside = false;
         std::size_t steps = 0;
         for (std::int32_t around = nesting.parents[r]; around != kNone && steps <= rings.size();
              around = nesting.parents[around], ++steps) {
-            found = found || (rings[around].polygon == rings[r].polygon && !rings[around].hole);
+            inside = inside || (rings[around].polygon == rings[r].polygon && !rings[around].hole);
         }
-        if (found) continue;
+        if (inside) continue;
         const PlanPoint& place = rings[r].corners.front();
         throw InputError("hole_outside",
                          "outline " + std::to_string(r) +
@@ -349,11 +349,11 @@ std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangul
 }  // namespace
 
 std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* progress) {
-    std::vector<Ring> given;
-    given.reserve(rings.size());
+    std::vector<Ring> loops;
+    loops.reserve(rings.size());
     for (const RegionRing& ring : rings)
-        given.push_back(ring.corners);
-    const ConstrainedRings all = constrained_rings(given, progress);
+        loops.push_back(ring.corners);
+    const ConstrainedRings all = constrained_rings(loops, progress);
     const ConstrainedTriangulation& mesh = all.triangulation;
     const RingsOfEdges edges(all.graph, rings, all.edges);
     edges.require_apart();
@@ -366,7 +366,7 @@ std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* pr
     if (std::none_of(inside.begin(), inside.end(), [](bool in) { return in; })) {
         throw InputError("no_area", "the polygons cover each other: nothing is left of the region");
     }
-    if (!edges.shared()) return given;
+    if (!edges.shared()) return loops;
     return border_rings(all.graph, mesh, inside);
 }
 

@@ -110,7 +110,7 @@ void SizeField::open(std::int32_t node, const QuadtreeCell& cell) {
         const std::int32_t s = candidates_[begin + i];
         if (std::max(sources_[s].least, middle[i] - reach) < highest) candidates_.push_back(s);
     }
-    const auto kept = static_cast<std::int32_t>(candidates_.size()) - first_kept;
+    const auto candidate_count = static_cast<std::int32_t>(candidates_.size()) - first_kept;
     if (cell.width <= kLeafPerLength * lowest || cell.depth == kDeepest) {
         const auto lengths = corner_lengths(cell, std::span(candidates_).subspan(first_kept));
         candidates_.resize(first_kept);
@@ -118,7 +118,7 @@ void SizeField::open(std::int32_t node, const QuadtreeCell& cell) {
         return;
     }
     nodes_[node] = {static_cast<std::int32_t>(nodes_.size()), kInner};
-    nodes_.insert(nodes_.end(), 4, QuadtreeNode{first_kept, kept});
+    nodes_.insert(nodes_.end(), 4, QuadtreeNode{first_kept, candidate_count});
 }
 
 double SizeField::look_up(const PlanPoint& p) {
@@ -224,11 +224,11 @@ std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRe
     const double longest = longest_by_density(graph, request);
     const std::size_t neighbors = std::min(kCountedNeighbors, points.size() - 1);
     const spatial::NearestPoints nearest(points);
-    std::vector<spatial::Neighbor> found;
+    std::vector<spatial::Neighbor> neighborhood;
     for (const PlanPoint& p : points) {
-        nearest.find(p, neighbors + 1, found);  // the first is the point itself
+        nearest.find(p, neighbors + 1, neighborhood);  // the first is the point itself
         // So many points lie in a circle of that radius.
-        const double spacing = std::sqrt(found.back().squared_distance * std::numbers::pi /
+        const double spacing = std::sqrt(neighborhood.back().squared_distance * std::numbers::pi /
                                          static_cast<double>(neighbors));
         const double wanted =
             scale * std::clamp(spacing / kEdgesPerSpacing, kShortestShare * longest, longest);

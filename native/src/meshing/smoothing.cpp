@@ -16,13 +16,13 @@ class Smoothing {
 public:
     Smoothing(FlatMesh& mesh, SizeField& size, std::int32_t first,
               std::span<const std::int32_t> also, std::int32_t corners,
-              std::span<const std::int32_t> kept)
+              std::span<const std::int32_t> fixed)
         : mesh_(mesh),
           size_(size),
           valences_(mesh, size),
           moves_(valences_),
           flips_(valences_, moves_) {
-        for (const std::int32_t v : kept)
+        for (const std::int32_t v : fixed)
             valences_.keep(v);
         // Of one length pieces stay even: regions edge by edge meet in them.
         if (!size_.is_uniform()) find_sliding(corners);
@@ -198,8 +198,8 @@ private:
 }  // namespace
 
 void smooth(FlatMesh& mesh, SizeField& size, std::int32_t first, std::span<const std::int32_t> also,
-            std::int32_t corners, std::span<const std::int32_t> kept, const Check& check) {
-    Smoothing(mesh, size, first, also, corners, kept).run(check);
+            std::int32_t corners, std::span<const std::int32_t> fixed, const Check& check) {
+    Smoothing(mesh, size, first, also, corners, fixed).run(check);
 }
 
 }  // namespace realmodel::meshing

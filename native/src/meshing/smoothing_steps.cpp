@@ -317,23 +317,23 @@ bool JudgedFlips::seek(std::span<const std::int32_t> changed, int gained, int fl
     }
     sort_candidates(begin);
     const std::size_t end = candidates_.size();
-    bool found = false;
-    for (std::size_t i = begin; i < end && !found; ++i) {
+    bool improves = false;
+    for (std::size_t i = begin; i < end && !improves; ++i) {
         const int all = gained + candidates_[i].gain;
         if (all <= 0 && flips_left == 1) break;  // they are sorted
         if (--looks_left_ < 0) break;
         if (!try_flip(candidates_[i].ends)) continue;
         if (all > 0) {
-            found = is_worth_it(kPrice * all, kPriceBesideLines * all);
+            improves = is_worth_it(kPrice * all, kPriceBesideLines * all);
         } else {
             const auto [before, after] = way_.back();
             const std::array touched{before[0], before[1], after[0], after[1]};
-            found = seek(touched, all, flips_left - 1);
+            improves = seek(touched, all, flips_left - 1);
         }
-        if (!found) undo();
+        if (!improves) undo();
     }
     candidates_.resize(begin);
-    return found;
+    return improves;
 }
 
 bool JudgedFlips::mend(std::int32_t vertex) {
@@ -448,15 +448,15 @@ double JudgedFlips::badness() {
 /// Looks around both ends: where outlines touch in a vertex, only one of its fans is known.
 HalfEdge JudgedFlips::edge_between(const Ends& ends) const {
     const FlatMesh& mesh = valences_.mesh();
-    HalfEdge found = HalfEdge::none();
+    HalfEdge joining_edge = HalfEdge::none();
     valences_.around(ends[0], [&](HalfEdge edge) {
-        if (mesh.to(edge) == ends[1]) found = edge;
+        if (mesh.to(edge) == ends[1]) joining_edge = edge;
     });
-    if (!found.is_none()) return found;
+    if (!joining_edge.is_none()) return joining_edge;
     valences_.around(ends[1], [&](HalfEdge edge) {
-        if (mesh.to(edge) == ends[0]) found = mesh.twin(edge);
+        if (mesh.to(edge) == ends[0]) joining_edge = mesh.twin(edge);
     });
-    return found;
+    return joining_edge;
 }
 
 }  // namespace realmodel::meshing

@@ -65,25 +65,25 @@ PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
                 put(index(lower), PolygonEdgeUse{upper, static_cast<std::int32_t>(corner)});
             });
     });
-    PolygonEdges found;
-    found.edges.reserve(corners.size() / 2 + 1);
-    found.of_corner.resize(corners.size());
+    PolygonEdges incidence;
+    incidence.edges.reserve(corners.size() / 2 + 1);
+    incidence.of_corner.resize(corners.size());
     for (std::size_t v = 0; v < vertices; ++v) {
         const std::span<PolygonEdgeUse> some = uses[v];
         const bool sorted = some.size() > kFewUses;
         if (sorted) std::ranges::stable_sort(some, {}, &PolygonEdgeUse::upper);
-        const std::size_t first = found.edges.size();
+        const std::size_t first = incidence.edges.size();
         for (const PolygonEdgeUse& use : some) {
             std::size_t edge =
-                sorted && found.edges.size() > first ? found.edges.size() - 1 : first;
-            while (edge < found.edges.size() && found.edges[edge][1] != use.upper)
+                sorted && incidence.edges.size() > first ? incidence.edges.size() - 1 : first;
+            while (edge < incidence.edges.size() && incidence.edges[edge][1] != use.upper)
                 ++edge;
-            if (edge == found.edges.size())
-                found.edges.push_back({static_cast<std::int32_t>(v), use.upper});
-            found.of_corner[index(use.corner)] = static_cast<std::int32_t>(edge);
+            if (edge == incidence.edges.size())
+                incidence.edges.push_back({static_cast<std::int32_t>(v), use.upper});
+            incidence.of_corner[index(use.corner)] = static_cast<std::int32_t>(edge);
         }
     }
-    return found;
+    return incidence;
 }
 
 }  // namespace realmodel::shells

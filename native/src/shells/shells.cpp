@@ -56,7 +56,7 @@ void require_in_range(const ComplexView& complex, Progress* progress) {
 /// @param between_blocks  leave out faces that have one block on both sides
 std::vector<std::vector<FaceSide>> sides_by_block(const ComplexView& complex, bool between_blocks,
                                                   Progress* progress) {
-    std::vector<std::vector<FaceSide>> found(complex.blocks);
+    std::vector<std::vector<FaceSide>> sides(complex.blocks);
     for (std::size_t f = 0; f < complex.face_count(); ++f) {
         poll(progress, f);
         if (between_blocks &&
@@ -65,11 +65,11 @@ std::vector<std::vector<FaceSide>> sides_by_block(const ComplexView& complex, bo
         for (const bool reversed : {false, true}) {
             const std::int32_t cell = complex.cell(f, reversed ? 1 : 0);
             if (cell < 0) continue;
-            found[index(complex.block(cell))].push_back(
+            sides[index(complex.block(cell))].push_back(
                 {static_cast<std::int32_t>(f), cell, reversed});
         }
     }
-    return found;
+    return sides;
 }
 
 /// The numbers of the vertices that some polygons use, in rising order.

@@ -79,16 +79,16 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
     };
     std::vector<FaceEdgeUse> uses;
     std::vector<Point> normals;
-    for (const KeptFace& kept : faces) {
-        const auto loop = model.face(kept.face);
+    for (const KeptFace& face : faces) {
+        const auto loop = model.face(face.face);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const std::int32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-            uses.push_back({unordered(a, b), static_cast<std::int32_t>(&kept - faces.data())});
+            uses.push_back({unordered(a, b), static_cast<std::int32_t>(&face - faces.data())});
         }
         // turned the same way all over a patch
         const auto at = [&](std::size_t i) { return model.vertex(loop[i]); };
         normals.push_back(
-            times(kept.behind > kept.in_front ? -1 : 1, unit(polygon_normal(loop.size(), at))));
+            times(face.behind > face.in_front ? -1 : 1, unit(polygon_normal(loop.size(), at))));
     }
     std::ranges::sort(uses, {},
                       [](const FaceEdgeUse& use) { return std::pair(use.edge, use.face); });
@@ -105,7 +105,7 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
 }  // namespace
 
 BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int32_t> cell_region,
-                             std::span<const std::uint8_t> kept, const Execution& execution) {
+                             std::span<const std::uint8_t> embedded, const Execution& execution) {
     if (cell_region.size() != model.cell_count())
         throw InputError("bad_index", "there must be one region for each cell");
     const auto region = [&](std::int32_t cell) {
@@ -116,13 +116,13 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
     const auto triangles = cutting::triangulate_faces(model.vertices, model.face_offsets,
                                                       model.face_vertices, execution);
     std::vector<KeptFace> faces;
-    BoundaryFaces found;
+    BoundaryFaces boundary;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(execution.progress, f);
         const std::int32_t behind = region(model.cell(f, 0)), in_front = region(model.cell(f, 1));
         const std::int32_t surface = model.face_surface[f];
-        const bool matters =
-            surface >= 0 && std::cmp_less(surface, kept.size()) && kept[index(surface)] != 0;
+        const bool matters = surface >= 0 && std::cmp_less(surface, embedded.size()) &&
+                             embedded[index(surface)] != 0;
         if (behind == in_front && !matters) continue;
         faces.push_back({f, behind, in_front, surface});
         for (auto t = triangles.offsets[f]; t < triangles.offsets[f + 1]; ++t) {
@@ -130,11 +130,11 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
             const Point normal = triangle_normal(model.vertex(corners[0]), model.vertex(corners[1]),
                                                  model.vertex(corners[2]));
             if (dot(normal, normal) > 0)
-                found.triangles.push_back({corners, behind, in_front, surface});
+                boundary.triangles.push_back({corners, behind, in_front, surface});
         }
     }
-    found.sharp_edges = sharp_edges(model, faces);
-    return found;
+    boundary.sharp_edges = sharp_edges(model, faces);
+    return boundary;
 }
 
 namespace {
@@ -155,10 +155,10 @@ std::vector<LinePiece> pieces_of(const ComplexView& model, const std::vector<std
         const double step = length(way);
         for (double at = 0; at < step;) {
             const Point here = moved(from, at / step, way);
-            const double own = length_at(lengths, here);
-            const double next = lengths.is_uniform() ? step : std::min(step, at + own / 2);
+            const double edge = length_at(lengths, here);
+            const double next = lengths.is_uniform() ? step : std::min(step, at + edge / 2);
             pieces.push_back({here, moved(Point{}, (next - at) / step, way),
-                              (next - at) * (lengths.largest() / own)});
+                              (next - at) * (lengths.largest() / edge)});
             at = next;
         }
     }
@@ -173,15 +173,15 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
     for (const LinePiece& piece : pieces)
         size += piece.size;
     const double parts = std::max(1.0, std::round(size / (kPartOfALine * lengths.largest())));
-    std::vector<Point> found;
+    std::vector<Point> points;
     double at = 0, number = line.front() == line.back() ? 0 : 1;
     for (const LinePiece& piece : pieces) {
         for (; number < parts && at + piece.size >= number * size / parts; ++number)
-            found.push_back(moved(
+            points.push_back(moved(
                 piece.from, std::max(0.0, number * size / parts - at) / piece.size, piece.way));
         at += piece.size;
     }
-    return found;
+    return points;
 }
 
 }  // namespace
@@ -189,9 +189,9 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
 std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edge> sharp_edges,
                                    meshing::SizeField& lengths) {
     SpacedPoints spaced;
-    std::vector<Point> found;
+    std::vector<Point> points;
     const auto add = [&](const Point& p) {
-        if (spaced.add(p, kNearest * length_at(lengths, p))) found.push_back(p);
+        if (spaced.add(p, kNearest * length_at(lengths, p))) points.push_back(p);
     };
     std::vector<std::int32_t> vertices;
     for (const Edge& edge : sharp_edges)
@@ -207,20 +207,20 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
     std::array<std::vector<std::int32_t>, 2> corners;
     std::vector<std::uint8_t> is_corner;
     for (std::size_t p = 0; p < vertices.size(); ++p) {
-        const auto own = graph.at[p];
+        const auto edges = graph.at[p];
         const auto way = [&](std::size_t i) {
-            const auto end = index(graph.other(own[i], static_cast<std::int32_t>(p)));
+            const auto end = index(graph.other(edges[i], static_cast<std::int32_t>(p)));
             return minus(model.vertex(vertices[end]), model.vertex(vertices[p]));
         };
         bool goes_on = false;
-        for (std::size_t i = 0; i < own.size(); ++i) {
+        for (std::size_t i = 0; i < edges.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
                 const Point u = way(i), w = way(j);
                 goes_on = goes_on || dot(u, w) < kStraight * length(u) * length(w);
             }
         }
-        is_corner.push_back(own.size() != 2 || !goes_on);
-        if (is_corner[p] != 0) corners[goes_on || own.size() < 2 ? 1 : 0].push_back(vertices[p]);
+        is_corner.push_back(edges.size() != 2 || !goes_on);
+        if (is_corner[p] != 0) corners[goes_on || edges.size() < 2 ? 1 : 0].push_back(vertices[p]);
     }
     for (const auto& some : corners)
         for (const std::int32_t v : some)
@@ -236,7 +236,7 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
     for (const auto& [size, line] : lines)
         for (const Point& p : parts_of(model, line, lengths))
             add(p);
-    return found;
+    return points;
 }
 
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
@@ -247,14 +247,14 @@ std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
     const auto add = [&](const Point& p) { return spaced.add(p, share * length_at(lengths, p)); };
     for (const Point& p : others)
         add(p);
-    std::vector<SurfaceSeed> found;
+    std::vector<SurfaceSeed> seeds;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (const std::int32_t v : triangles[t].corners) {
             const Point p = model.vertex(v);
-            if (add(p)) found.push_back({p, static_cast<std::int32_t>(t)});
+            if (add(p)) seeds.push_back({p, static_cast<std::int32_t>(t)});
         }
     }
-    return found;
+    return seeds;
 }
 
 namespace {

@@ -33,7 +33,7 @@ struct BoundaryFaces {
 /// @param cell_region  of each cell, from 0; in the result they count from 1
 /// @throws InputError kind bad_index; Cancelled
 BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int32_t> cell_region,
-                             std::span<const std::uint8_t> kept, const Execution& execution);
+                             std::span<const std::uint8_t> embedded, const Execution& execution);
 
 /// Points on sharp edges, no two nearer than a part of the edge length there, corners first.
 std::vector<std::array<double, 3>> points_on_edges(

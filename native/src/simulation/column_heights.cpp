@@ -87,7 +87,7 @@ Buckets<Hit> hits_of(const ComplexView& model, std::span<const PlanPoint> points
                      const Execution& execution) {
     const spatial::PointBins bins(std::vector<PlanPoint>(points.begin(), points.end()));
     const std::size_t chunks = (model.face_count() + kFacesOfChunk - 1) / kFacesOfChunk;
-    std::vector<std::vector<Hit>> found(chunks);
+    std::vector<std::vector<Hit>> hits(chunks);
     parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         const std::size_t end = std::min(model.face_count(), (chunk + 1) * kFacesOfChunk);
         for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
@@ -101,13 +101,13 @@ Buckets<Hit> hits_of(const ComplexView& model, std::span<const PlanPoint> points
             if (shape.area < 0) std::swap(below, above);
             bins.within(shape.box, [&](std::size_t i, const PlanPoint& p) {
                 if (contains(model, loop, p))
-                    found[chunk].push_back({static_cast<std::int32_t>(i), below, above,
-                                            model.face_surface[f], height(model, loop, p)});
+                    hits[chunk].push_back({static_cast<std::int32_t>(i), below, above,
+                                           model.face_surface[f], height(model, loop, p)});
             });
         }
     });
     return bucketize<Hit>(points.size(), [&](const auto& put) {
-        for (const auto& part : found) {
+        for (const auto& part : hits) {
             for (const Hit& hit : part)
                 put(index(hit.point), hit);
         }
@@ -129,9 +129,9 @@ public:
                 if (block < 0) continue;
                 const auto at = static_cast<std::size_t>(block - first);
                 if (block < first || at >= count) return false;
-                const Hit*& kept = (is_top ? top_ : bottom_)[at];
-                if (kept != nullptr) return false;
-                kept = &hit;
+                const Hit*& boundary = (is_top ? top_ : bottom_)[at];
+                if (boundary != nullptr) return false;
+                boundary = &hit;
             }
         }
         return true;
@@ -271,10 +271,10 @@ public:
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::size_t p = plan.pillar(t, i);
                 if (free_[p] >= 1) continue;
-                const double own =
+                const double free_share =
                     is_beside_[p] != 0 ? free_way(lines, step_tree, middle, node(p)) : 1;
-                if (own <= free_[p]) continue;
-                free_[p] = own;
+                if (free_share <= free_[p]) continue;
+                free_[p] = free_share;
                 center_[p] = middle;
             }
         }
@@ -372,9 +372,9 @@ ColumnHeights pillar_columns(const ComplexView& model, const RockBlocks& blocks,
         asked.clear();
         for (const std::size_t p : open)
             asked.push_back(positions.farther(p, share));
-        const ColumnHeights found(model, blocks, asked, execution);
+        const ColumnHeights farther_columns(model, blocks, asked, execution);
         for (std::size_t i = 0; i < open.size(); ++i) {
-            if (found.rock(i) == rock[open[i]]) columns.copy(open[i], found, i);
+            if (farther_columns.rock(i) == rock[open[i]]) columns.copy(open[i], farther_columns, i);
         }
     }
     copy_from_neighbors(plan, is_settled, columns);

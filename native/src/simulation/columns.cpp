@@ -44,16 +44,16 @@ bool is_upright(const ComplexView& model, std::size_t face) {
 
 PlanPoint farthest_from(const ComplexView& model, std::span<const std::int32_t> loop,
                         const PlanPoint& from) {
-    PlanPoint found = from;
+    PlanPoint farthest = from;
     double most = 0;
     for (const std::int32_t v : loop) {
         const PlanPoint p = plan_of(model, v);
-        const double own = distance(from, p);
-        if (own <= most) continue;
-        most = own;
-        found = p;
+        const double far = distance(from, p);
+        if (far <= most) continue;
+        most = far;
+        farthest = p;
     }
-    return found;
+    return farthest;
 }
 
 }  // namespace
@@ -63,15 +63,15 @@ VerticalFaults::VerticalFaults(const ComplexView& model,
     : model_(model),
       steps_(steps),
       faces_([&] {
-          std::vector<VerticalFace> found;
+          std::vector<VerticalFace> faces;
           for (std::size_t f = 0; f < model.face_count(); ++f) {
               if (model.face_surface[f] < 0 || !is_upright(model, f)) continue;
               const auto loop = model.face(f);
               const PlanPoint end = farthest_from(model, loop, plan_of(model, loop[0]));
               const std::array<PlanPoint, 2> line{end, farthest_from(model, loop, end)};
-              found.push_back({static_cast<std::int32_t>(f), line});
+              faces.push_back({static_cast<std::int32_t>(f), line});
           }
-          return found;
+          return faces;
       }()),
       face_tree_(
           transformed(faces_, [](const VerticalFace& f) { return spatial::bounding_box(f.line); })),
@@ -93,15 +93,15 @@ std::int32_t VerticalFaults::fault_at(const PlanPoint& from, const PlanPoint& to
         is_other = is_other || nearest_on(steps_[index(n)], middle).distance < least - kSame * edge;
     });
     if (is_other) return kWall;
-    std::int32_t found = kWall;
+    std::int32_t fault = kWall;
     face_tree_.find(box, [&](std::int32_t n) {
         const VerticalFace& face = faces_[index(n)];
         const NearestOnLine near = nearest_on(face.line, middle);
         if (near.distance <= least + kSame * edge &&
             reaches(face, near.share, height, kSame * edge))
-            found = std::max(found, model_.face_surface[index(face.number)]);
+            fault = std::max(fault, model_.face_surface[index(face.number)]);
     });
-    return found;
+    return fault;
 }
 
 /// Whether a face has this height, at a share of its way in plan.
@@ -155,8 +155,8 @@ public:
         check_total(levels.height_count(), INT32_MAX);
         made_.mesh.volumes.assign(blocks_.rock.size(), 0);
         for (std::size_t r = 0; r < blocks_.count(); ++r) {
-            const auto own = levels.layer_blocks(static_cast<std::int32_t>(r)).size();
-            made_.mesh.layers = std::max(made_.mesh.layers, static_cast<std::int32_t>(own));
+            const auto layers = levels.layer_blocks(static_cast<std::int32_t>(r)).size();
+            made_.mesh.layers = std::max(made_.mesh.layers, static_cast<std::int32_t>(layers));
         }
     }
 
@@ -178,7 +178,7 @@ private:
         node_ = plan_.corners(t);
         for (std::size_t i = 0; i < 3; ++i) {
             pillar_[i] = plan_.pillar(t, i);
-            own_[i] = levels_.levels(pillar_[i]);
+            level_[i] = levels_.levels(pillar_[i]);
             if (columns_.rock(pillar_[i]) != rock_ || rock_ < 0) return false;
             first_[i] = static_cast<std::int32_t>(levels_.node_offset(index(node_[i])));
         }
@@ -219,19 +219,19 @@ private:
                 !load(t))
                 continue;
             for (std::size_t i = 0; i < 3; ++i) {
-                for (std::size_t l = 0; l + 1 < own_[i].size(); ++l) {
-                    if (own_[i][l + 1] > own_[i][l] + 1)
+                for (std::size_t l = 0; l + 1 < level_[i].size(); ++l) {
+                    if (level_[i][l + 1] > level_[i][l] + 1)
                         is_parted_[levels_.level_offset(pillar_[i]) + l] = 1;
                 }
             }
             if (!has_step_) continue;
             const auto [u, v] = step_;
-            for (std::size_t l = 0; l + 1 < own_[u].size(); ++l) {
+            for (std::size_t l = 0; l + 1 < level_[u].size(); ++l) {
                 const std::size_t at_u = levels_.level_offset(pillar_[u]) + l,
                                   at_v = levels_.level_offset(pillar_[v]) + l;
                 pairs.push_back({at_u, at_v});
-                const std::array<std::int32_t, 2> low{own_[u][l], own_[v][l]},
-                    high{own_[u][l + 1], own_[v][l + 1]};
+                const std::array<std::int32_t, 2> low{level_[u][l], level_[v][l]},
+                    high{level_[u][l + 1], level_[v][l + 1]};
                 const bool parted =
                     std::any_of(lines_.begin(), lines_.end(), [&](const auto& line) {
                         return line[0] >= low[0] && line[1] >= low[1] && line[0] <= high[0] &&
@@ -254,13 +254,13 @@ private:
         if (!load(t)) return;
         const auto layer_blocks = levels_.layer_blocks(rock_);
         for (std::size_t i = 0; i < 3; ++i)
-            front_[i] = own_[i][0];
+            front_[i] = level_[i][0];
         last_block_ = -1;
         made_.fronts.fronts.push_back(front_);
         for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
             block_ = layer_blocks[l];
             layer_ = static_cast<std::int32_t>(l);
-            const Front top{own_[0][l + 1], own_[1][l + 1], own_[2][l + 1]};
+            const Front top{level_[0][l + 1], level_[1][l + 1], level_[2][l + 1]};
             if (top == front_) continue;
             Front parted = front_;
             for (std::size_t i = 0; i < 3; ++i) {
@@ -368,10 +368,10 @@ private:
     }
 
     Front points(const Front& front) const {
-        Front found;
+        Front corners;
         for (std::size_t i = 0; i < 3; ++i)
-            found[i] = first_[i] + front[i];
-        return found;
+            corners[i] = first_[i] + front[i];
+        return corners;
     }
 
     template <std::size_t N>
@@ -405,13 +405,13 @@ private:
                 return !present_only || level == 0 || z[level] > z[level - 1];
             };
             for (std::size_t i = 0; i < 3; ++i) {
-                const std::int32_t own = surface(i);
+                const std::int32_t candidate = surface(i);
                 std::int32_t votes = 0;
                 for (std::size_t j = 0; j < 3; ++j)
-                    votes += counts(j) && surface(j) == own ? 1 : 0;
-                if (std::tie(votes, own) > std::tie(most, best)) {
+                    votes += counts(j) && surface(j) == candidate ? 1 : 0;
+                if (std::tie(votes, candidate) > std::tie(most, best)) {
                     most = votes;
-                    best = own;
+                    best = candidate;
                 }
             }
             if (most > 0) break;
@@ -440,7 +440,7 @@ private:
     std::array<std::int32_t, 3> node_{}, first_{};  ///< first_: number of the first height of each
     std::array<std::size_t, 3> order_{};            ///< its corners by their nodes
     double area_ = 0;
-    std::array<std::span<const std::int32_t>, 3> own_;  ///< the levels of its pillars
+    std::array<std::span<const std::int32_t>, 3> level_;  ///< the levels of its pillars
     Front front_{};
     bool has_step_ = false, has_open_edge_ = false;   ///< on an inner step, at the border
     std::array<std::size_t, 2> step_{};               ///< the corners of its edge on a step
@@ -458,16 +458,16 @@ void add_step_faces(FilledColumns& columns, const VerticalFaults& faults) {
     using Face = FilledColumns::StepFace;
     std::vector<Face>& faces = columns.step_faces;
     std::ranges::sort(faces, {}, [](const Face& face) { return std::pair(face.key, face.number); });
-    std::vector<const Face*> kept;
+    std::vector<const Face*> remaining_faces;
     for (const auto equal : groups_of(faces, &Face::key)) {
         assert(equal.size() <= 2);
         Face& face = equal[0];
         if (!faults.empty())
             face.surface = faults.fault_at(face.edge[0], face.edge[1], face.height);
-        if (equal.size() == 1 || face.surface != kWall) kept.push_back(&face);
+        if (equal.size() == 1 || face.surface != kWall) remaining_faces.push_back(&face);
     }
-    std::ranges::sort(kept, {}, &Face::number);
-    for (const Face* face : kept)
+    std::ranges::sort(remaining_faces, {}, &Face::number);
+    for (const Face* face : remaining_faces)
         add_face(columns.mesh, face->corners, face->surface);
 }
 

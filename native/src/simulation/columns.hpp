@@ -30,8 +30,8 @@ struct ColumnFronts {
     /// How many elements stand on a triangle. Element e has the number offset[t] + e, and so has
     /// the front below it.
     std::size_t elements(std::size_t t) const {
-        const std::size_t own = offset[t + 1] - offset[t];
-        return own == 0 ? 0 : own - 1;
+        const std::size_t front_count = offset[t + 1] - offset[t];
+        return front_count == 0 ? 0 : front_count - 1;
     }
 };
 

@@ -32,26 +32,26 @@ double skewness(const ElementFace& face, const Vec3& way, const Vec3& line, doub
 
 }  // namespace
 
-double inner_skewness(const ElementFace& face, const Vec3& own, const Vec3& other) {
-    return skewness(face, minus(face.center, own), minus(other, own), 0.2);
+double inner_skewness(const ElementFace& face, const Vec3& center, const Vec3& other) {
+    return skewness(face, minus(face.center, center), minus(other, center), 0.2);
 }
 
-double outer_skewness(const ElementFace& face, const Vec3& own) {
-    const Vec3 way = minus(face.center, own);
+double outer_skewness(const ElementFace& face, const Vec3& center) {
+    const Vec3 way = minus(face.center, center);
     const double share = dot(way, face.area) / dot(face.area, face.area);
     return skewness(face, way, times(share, face.area), 0.4);
 }
 
-bool is_bad(const ElementFace& face, const ElementBody& own, const ElementBody& other) {
-    const Vec3 line = minus(other.center, own.center), way = minus(face.center, own.center);
+bool is_bad(const ElementFace& face, const ElementBody& body, const ElementBody& other) {
+    const Vec3 line = minus(other.center, body.center), way = minus(face.center, body.center);
     const double along = dot(line, face.area), size = length(face.area);
     if (along < kMostLean * size * length(line)) return true;
     const double before = std::abs(dot(way, face.area)),
                  behind = std::abs(dot(minus(other.center, face.center), face.area));
     if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
-    if (std::min(own.volume, other.volume) < kLeastShare * std::max(own.volume, other.volume))
+    if (std::min(body.volume, other.volume) < kLeastShare * std::max(body.volume, other.volume))
         return true;
-    return inner_skewness(face, own.center, other.center) > kMostSkewness;
+    return inner_skewness(face, body.center, other.center) > kMostSkewness;
 }
 
 ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>& low,
@@ -155,16 +155,16 @@ void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& vis
     const auto is_empty = [](const Side& s) { return s[0] == s[2] && s[1] == s[3]; };
     const std::size_t first = columns_.offset[t];
     for (std::size_t e = first; e < first + columns_.elements(t); ++e) {
-        const Side own = side(e, i, j);
-        if (is_empty(own)) continue;
-        while (at < end && (is_empty(side(at, u, v)) || side(at, u, v) < own))
+        const Side heights = side(e, i, j);
+        if (is_empty(heights)) continue;
+        while (at < end && (is_empty(side(at, u, v)) || side(at, u, v) < heights))
             ++at;
-        visit(e, at < end && side(at, u, v) == own, at);
+        visit(e, at < end && side(at, u, v) == heights, at);
     }
 }
 
 ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_narrow) const {
-    Removals found;
+    Removals removals;
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         // sides of walls that nothing stands behind are left to failing(), which gives up less
@@ -205,20 +205,21 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
                 // one that leans is better than a neighbor without any above it
                 const bool is_last_but_one = levels.back() - levels.front() == 2;
                 if (is_first && is_last ? is_narrow[t] != 0 : is_weak || !is_last_but_one)
-                    found.push_back(removal);
+                    removals.push_back(removal);
             }
         }
     }
-    return found;
+    return removals;
 }
 
 /// Gives up an element: its upper heights, or its lower ones.
 void ElementQuality::give_up(std::size_t t, std::size_t element, bool upper,
-                             Removals& found) const {
+                             Removals& removals) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     for (std::size_t i = 0; i < 3; ++i) {
         if (low[i] == high[i]) continue;
-        found.push_back({plan_.corners(t)[i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
+        removals.push_back(
+            {plan_.corners(t)[i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
     }
 }
 
@@ -274,7 +275,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
 
 ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
     const std::vector<ElementBody> bodies = this->bodies();
-    Removals found;
+    Removals removals;
     const auto give_up = [&](const ElementRef& place, bool upper) {
         const auto [t, e] = place;
         const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
@@ -286,7 +287,7 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
                 rise = std::max(rise, at.z(i, high[i]) - at.z(i, low[i]));
             if (is_narrow[t] == 0 || rise >= kThickEnd * minimum_thickness_) return;
         }
-        this->give_up(t, e, upper, found);
+        this->give_up(t, e, upper, removals);
     };
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
@@ -297,31 +298,31 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
                 give_up({t, e}, e == first && e + 1 < end);  // its neighbor within takes the volume
         }
     }
-    for_faces([&](const Face& face, const ElementRef& own, const ElementRef& other) {
+    for_faces([&](const Face& face, const ElementRef& owner, const ElementRef& other) {
         if (other.element == kNone) return;
-        const ElementBody &a = bodies[own.element], &b = bodies[other.element];
+        const ElementBody &a = bodies[owner.element], &b = bodies[other.element];
         if (!is_bad(face, a, b)) return;
         // the face goes, and the smaller element with it
         const bool is_own = a.volume < b.volume;
-        const auto [t, e] = is_own ? own : other;
-        give_up({t, e}, own.triangle == other.triangle
+        const auto [t, e] = is_own ? owner : other;
+        give_up({t, e}, owner.triangle == other.triangle
                             ? is_own
                             : e == columns_.offset[t] && columns_.elements(t) > 1);
     });
-    return found;
+    return removals;
 }
 
 ElementQuality::SkewedFaces ElementQuality::skewed(bool divided) const {
-    SkewedFaces found;
+    SkewedFaces skewed;
     if (!divided) {
-        find_skewed(*this, {}, found);
+        find_skewed(*this, {}, skewed);
     } else {
         std::vector<std::size_t> whole;
         const ColumnFronts parts = tetrahedra(whole);
-        find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, found);
+        find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, skewed);
     }
-    sort_unique(found.tall);
-    return found;
+    sort_unique(skewed.tall);
+    return skewed;
 }
 
 /// The elements divided by the diagonals at the lower ends of their sides with the lesser node (as
@@ -358,33 +359,33 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
 /// @param parts  the faces of these elements are looked at; of which `whole` each is a part, if it
 /// is not one itself
 void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
-                                 SkewedFaces& found) const {
+                                 SkewedFaces& skewed) const {
     const std::vector<ElementBody> of_parts = parts.bodies();
     const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
-    parts.for_faces([&](const Face& face, const ElementRef& own, const ElementRef& other) {
+    parts.for_faces([&](const Face& face, const ElementRef& owner, const ElementRef& other) {
         const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
-        const Vec3& center = of_parts[own.element].center;
+        const Vec3& center = of_parts[owner.element].center;
         const double skewness = is_outer
                                     ? outer_skewness(face, center)
                                     : inner_skewness(face, center, of_parts[other.element].center);
         if (!(skewness > kMostSkewness)) return;
-        const std::size_t e = whole_of(own.element);
+        const std::size_t e = whole_of(owner.element);
         if (skewness > kSkewnessLimit) {
-            ++found.faces;
-            if (is_outer && !is_side) found.tall.push_back(columns_.blocks[e]);
+            ++skewed.faces;
+            if (is_outer && !is_side) skewed.tall.push_back(columns_.blocks[e]);
         }
-        if (skewness > found.most) {
-            found.most = skewness;
-            found.place = face.center;
+        if (skewness > skewed.most) {
+            skewed.most = skewness;
+            skewed.place = face.center;
         }
         if (is_outer && !is_side) return;  // too tall rather than too thin
         const std::size_t next = is_outer ? e : whole_of(other.element);
-        const bool is_own = e == next || body(corners(own.triangle), e).volume <
+        const bool is_own = e == next || body(corners(owner.triangle), e).volume <
                                              body(corners(other.triangle), next).volume;
-        const std::size_t t = is_own ? own.triangle : other.triangle, smaller = is_own ? e : next;
+        const std::size_t t = is_own ? owner.triangle : other.triangle, smaller = is_own ? e : next;
         if (columns_.elements(t) == 1) return;
         const bool upper = is_side || e == next ? joins_upward(t, smaller) : is_own;
-        give_up(t, smaller, upper, found.removals);
+        give_up(t, smaller, upper, skewed.removals);
     });
 }
 
@@ -427,9 +428,9 @@ std::vector<PillarLevels::Move> ElementQuality::steep(
 /// Whether an element is higher than its triangle is wide: it would only get worse if it became one
 /// with the next.
 bool ElementQuality::is_tall(const ColumnCorners& at, std::size_t element) const {
-    const ElementBody own = body(at, element);
+    const ElementBody solid = body(at, element);
     const double area = at.flat_area(columns_.fronts[element])[2];
-    return own.volume > area * std::sqrt(2 * area);
+    return solid.volume > area * std::sqrt(2 * area);
 }
 
 /// Whether a height is not just one between layers of one block: without it a block would lose

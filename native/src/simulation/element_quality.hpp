@@ -40,12 +40,12 @@ ElementFace side_face(const Vec2& a, const Vec2& b, const std::array<double, 2>&
 
 /// How far from its center a face is crossed by the line between the centers of its elements: 1 is
 /// the edge of the face. 0 where it is clearly less than kMostSkewness.
-double inner_skewness(const ElementFace& face, const Vec3& own, const Vec3& other);
+double inner_skewness(const ElementFace& face, const Vec3& center, const Vec3& other);
 /// The same at the outside, where the line is upright on the face.
-double outer_skewness(const ElementFace& face, const Vec3& own);
+double outer_skewness(const ElementFace& face, const Vec3& center);
 /// Whether checkMesh fails a face between two elements: for the angle of the line between their
 /// centers, where this crosses the face, or their sizes.
-bool is_bad(const ElementFace& face, const ElementBody& own, const ElementBody& other);
+bool is_bad(const ElementFace& face, const ElementBody& body, const ElementBody& other);
 
 /// The determinant of the sum of n n^T over the inner faces of an element, by eight (n: the normal,
 /// as long as the area over the mean area). It is 0 where these face in two directions only.
@@ -122,13 +122,13 @@ private:
     }
     std::vector<ElementBody> bodies() const;
     bool joins_upward(std::size_t t, std::size_t e) const;
-    void give_up(std::size_t t, std::size_t element, bool upper, Removals& found) const;
-    /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
+    void give_up(std::size_t t, std::size_t element, bool upper, Removals& removals) const;
+    /// Calls visit(face, owner, other) for each face; the other may be outside, the owner may not.
     template <class Visit>
     void for_faces(const Visit& visit) const;
     ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
     void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
-                     SkewedFaces& found) const;
+                     SkewedFaces& skewed) const;
     bool leans_at(const ColumnCorners& at, std::size_t below, double cosine, bool steeper) const;
     double determinant(const ColumnCorners& at, std::size_t element, bool is_first, bool is_last,
                        unsigned open_sides) const;

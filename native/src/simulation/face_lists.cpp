@@ -49,11 +49,11 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         for (std::size_t c = from; c < to; ++c) {
             if (begin[c] > begin[c + 1] || begin[c + 1] > sides.size())
                 refuse(static_cast<std::int64_t>(c), "the cell has sides that do not exist");
-            std::size_t own = 1;
+            std::size_t length = 1;
             for (const std::uint32_t side : sides_of(c))
-                own += 1 + loop_of(faces, side >> 1).size();
-            made.lengths[c] = static_cast<std::int64_t>(own);
-            total += own;
+                length += 1 + loop_of(faces, side >> 1).size();
+            made.lengths[c] = static_cast<std::int64_t>(length);
+            total += length;
         }
         first_number[from / kCells] = total;
     });
@@ -64,10 +64,10 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         auto& corners = vertices[from / kCells];
         std::vector<std::int32_t> distinct;
         for (std::size_t c = from; c < to; ++c) {
-            const auto own = sides_of(c);
+            const auto cell_sides = sides_of(c);
             distinct.clear();
-            *number++ = static_cast<std::int64_t>(own.size());
-            for (const std::uint32_t side : own) {
+            *number++ = static_cast<std::int64_t>(cell_sides.size());
+            for (const std::uint32_t side : cell_sides) {
                 const auto loop = loop_of(faces, side >> 1);
                 *number++ = static_cast<std::int64_t>(loop.size());
                 number = (side & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
@@ -80,8 +80,8 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         }
     });
     std::vector<std::size_t> first_corner;
-    for (const auto& own : vertices)
-        first_corner.push_back(own.size());
+    for (const auto& chunk : vertices)
+        first_corner.push_back(chunk.size());
     made.vertices.resize(exclusive_scan(first_corner));
     parallel_chunks(vertices.size(), {0, nullptr}, [&](std::size_t chunk) {
         std::copy(vertices[chunk].begin(), vertices[chunk].end(),
@@ -142,12 +142,12 @@ OrderedFaces ordered_faces(const FaceLoops& faces,
     parallel_ranges(count, kFaces, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const auto loop = loop_of(faces, order[i]);
-            std::int32_t* const own = made.vertices.data() + made.offsets[i];
-            own[0] = loop[0];
+            std::int32_t* const corners = made.vertices.data() + made.offsets[i];
+            corners[0] = loop[0];
             if (made.turned[i] == 0)
-                std::copy(loop.begin() + 1, loop.end(), own + 1);
+                std::copy(loop.begin() + 1, loop.end(), corners + 1);
             else
-                std::reverse_copy(loop.begin() + 1, loop.end(), own + 1);
+                std::reverse_copy(loop.begin() + 1, loop.end(), corners + 1);
         }
     });
     return made;

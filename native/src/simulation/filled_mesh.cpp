@@ -363,7 +363,7 @@ struct Criteria {
 
 /// The regions of the complex as arrays.
 FilledMesh arrays_of(const Complex& complex, const Domain& domain,
-                     std::span<const std::uint8_t> kept) {
+                     std::span<const std::uint8_t> embedded) {
     const Triangulation& triangulation = complex.triangulation();
     FilledMesh mesh;
     std::unordered_map<Triangulation::Cell_handle, std::int32_t> numbers;
@@ -385,20 +385,20 @@ FilledMesh arrays_of(const Complex& complex, const Domain& domain,
     }
     for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end();
          ++cell) {
-        const std::int32_t own = numbers.at(cell);
+        const std::int32_t number = numbers.at(cell);
         for (int i = 0; i < 4; ++i) {
             const auto other = numbers.find(cell->neighbor(i));
             const bool is_outside = other == numbers.end();
-            if (!is_outside && other->second < own) continue;
+            if (!is_outside && other->second < number) continue;
             const int patch = complex.surface_patch_index(cell, i);
             std::int32_t surface = patch - kFirstSurface;
-            if (!is_outside && mesh.region[index(other->second)] == mesh.region[index(own)]) {
+            if (!is_outside && mesh.region[index(other->second)] == mesh.region[index(number)]) {
                 const bool matters = patch != 0 && surface >= 0 &&
-                                     std::cmp_less(surface, kept.size()) &&
-                                     kept[index(surface)] != 0;
+                                     std::cmp_less(surface, embedded.size()) &&
+                                     embedded[index(surface)] != 0;
                 if (!matters) continue;
             }
-            const auto& corners = mesh.tetrahedra[index(own)];
+            const auto& corners = mesh.tetrahedra[index(number)];
             std::array<std::int32_t, 3> face{};
             for (int j = 0; j < 3; ++j)
                 face[static_cast<std::size_t>(j)] =
@@ -474,10 +474,10 @@ void refine(Complex& complex, const Domain& domain, const Criteria& criteria, st
 }  // namespace
 
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
-                       std::span<const std::uint8_t> kept, double edge_length, double tolerance,
+                       std::span<const std::uint8_t> embedded, double edge_length, double tolerance,
                        std::span<const meshing::LocalLength> sizes, const Execution& execution) {
     begin_phase(execution.progress, 0.0, 0.2, "finding boundaries");
-    const BoundaryFaces faces = boundary_faces(model, cell_region, kept, execution);
+    const BoundaryFaces faces = boundary_faces(model, cell_region, embedded, execution);
     Domain domain(model, faces.triangles, execution.progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
     auto lengths = edge_lengths(model, faces, edge_length, tolerance, sizes);
@@ -501,7 +501,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     } catch (const CGAL::Failure_exception&) {
         refuse_division();
     }
-    FilledMesh mesh = arrays_of(complex, domain, kept);
+    FilledMesh mesh = arrays_of(complex, domain, embedded);
     require_volume(mesh);
     divide_corner_tetrahedra(mesh, execution.progress);
     sort_outside_faces(mesh, model, faces.triangles, kReach * lengths.largest(),

@@ -104,7 +104,7 @@ public:
         made.skewed = {skewed.faces, skewed.most, skewed.place, std::move(skewed.tall)};
         for (std::size_t b = 0; b < is_whole_.size(); ++b) {
             if (was_whole[b] != 0 || is_whole_[b] != 0)
-                made.kept.push_back(static_cast<std::int32_t>(b));
+                made.unrepaired_blocks.push_back(static_cast<std::int32_t>(b));
         }
     }
 

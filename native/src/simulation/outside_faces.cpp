@@ -64,15 +64,15 @@ public:
         : reach_(reach) {
         for (const BoundaryTriangle& t : triangles) {
             if (t.behind != 0 && t.in_front != 0) continue;
-            OutsideTriangle own{{}, {}, t.surface};
+            OutsideTriangle face{{}, {}, t.surface};
             for (std::size_t i = 0; i < 3; ++i) {
-                own.at[i] = model.vertex(t.corners[i]);
-                for (const double x : own.at[i])
+                face.at[i] = model.vertex(t.corners[i]);
+                for (const double x : face.at[i])
                     rounding_ = std::max(rounding_, kOnPatch * std::abs(x));
             }
-            own.normal = times(t.behind == 0 ? -1 : 1,
-                               unit(triangle_normal(own.at[0], own.at[1], own.at[2])));
-            triangles_.push_back(own);
+            face.normal = times(t.behind == 0 ? -1 : 1,
+                                unit(triangle_normal(face.at[0], face.at[1], face.at[2])));
+            triangles_.push_back(face);
             corners_.push_back(t.corners);
         }
         find_patches();
@@ -91,40 +91,40 @@ public:
 
     /// The patches within reach of a point, by number.
     std::vector<NearPatch> patches_near(const Vec3& p) const {
-        std::vector<NearPatch> found;
+        std::vector<NearPatch> patches;
         tree_.find(around(p), [&](std::int32_t t) {
             const double far = length(minus(nearest_on_triangle(triangles_[index(t)].at, p), p));
-            if (far <= reach_) found.push_back({patch_[index(t)], far});
+            if (far <= reach_) patches.push_back({patch_[index(t)], far});
         });
-        std::ranges::sort(found, {},
+        std::ranges::sort(patches, {},
                           [](const NearPatch& n) { return std::pair(n.patch, n.distance); });
         const auto is_same = [](const NearPatch& a, const NearPatch& b) {
             return a.patch == b.patch;
         };
-        found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
-        return found;
+        patches.erase(std::unique(patches.begin(), patches.end(), is_same), patches.end());
+        return patches;
     }
 
     /// Places on a patch within reach of a point: the nearest of each triangle and edge, in the
     /// order of their distances.
     std::vector<Vec3> places_on(std::int32_t patch, const Vec3& p) const {
-        std::vector<std::pair<double, Vec3>> found;
+        std::vector<std::pair<double, Vec3>> candidates;
         tree_.find(around(p), [&](std::int32_t t) {
             if (patch_[index(t)] != patch) return;
             const Vec3 place = nearest_on_triangle(triangles_[index(t)].at, p);
             const double far = length(minus(place, p));
-            if (far <= reach_) found.emplace_back(far, place);
+            if (far <= reach_) candidates.emplace_back(far, place);
         });
         crease_tree_.find(around(p), [&](std::int32_t c) {
             const auto& [ends, patches] = creases_[index(c)];
             if (patches[0] != patch && patches[1] != patch) return;
             for (const Vec3& place : {nearest_on_segment(ends[0], ends[1], p), ends[0], ends[1]}) {
                 const double far = length(minus(place, p));
-                if (far <= reach_) found.emplace_back(far, place);
+                if (far <= reach_) candidates.emplace_back(far, place);
             }
         });
-        std::ranges::sort(found);
-        std::vector<Vec3> places = transformed(found, &std::pair<double, Vec3>::second);
+        std::ranges::sort(candidates);
+        std::vector<Vec3> places = transformed(candidates, &std::pair<double, Vec3>::second);
         places.erase(std::unique(places.begin(), places.end()), places.end());
         if (places.size() > kMostPlaces) places.resize(kMostPlaces);
         return places;
@@ -242,12 +242,12 @@ public:
             const auto patch = patch_of(corners);
             if (!patch) continue;
             for (const std::int32_t v : corners) {
-                const auto& own = near_[index(v)];
-                if (is_on(own, *patch)) continue;
-                const auto other = std::ranges::find_if(own, [&](const NearPatch& near) {
+                const auto& patches = near_[index(v)];
+                if (is_on(patches, *patch)) continue;
+                const auto other = std::ranges::find_if(patches, [&](const NearPatch& near) {
                     return near.distance <= outside_.rounding();
                 });
-                if (other == own.end()) {
+                if (other == patches.end()) {
                     any |= cover(covers, v, *patch);
                     continue;
                 }
@@ -308,8 +308,8 @@ private:
         const double before = least_roundness(mesh_, around_[index(v)]);
         for (const Vec3& place : outside_.places_on(patch, from)) {
             const auto patches = outside_.patches_near(place);
-            const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const NearPatch& own) {
-                return own.distance > outside_.rounding() || is_on(patches, own.patch);
+            const bool stays_on = std::ranges::all_of(near_[index(v)], [&](const NearPatch& near) {
+                return near.distance > outside_.rounding() || is_on(patches, near.patch);
             });
             if (!stays_on) continue;
             at = place;

@@ -35,9 +35,9 @@ public:
             std::size_t thinnest = groups_.size();
             double least = thickness;
             for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-                const double own = groups_[g + 1].height - groups_[g].height;
-                if (own < least) {
-                    least = own;
+                const double gap = groups_[g + 1].height - groups_[g].height;
+                if (gap < least) {
+                    least = gap;
                     thinnest = g;
                 }
             }
@@ -97,15 +97,15 @@ std::vector<double> thick_levels(const ColumnInput& input, double thickness) {
     for (std::size_t p = 0; p < plan.pillar_count(); ++p) {
         const std::int32_t rock = columns.rock(p);
         if (rock < 0) continue;
-        const auto own = columns.levels(p).first(index(blocks.blocks_of(rock)) + 1);
-        LevelColumn column(own);
+        const auto levels = columns.levels(p).first(index(blocks.blocks_of(rock)) + 1);
+        LevelColumn column(levels);
         for (const std::int32_t block : ending[index(plan.pillar_node(p))]) {
             const auto at = static_cast<std::size_t>(block - blocks.first[index(rock)]);
-            if (blocks.rock[index(block)] == rock && own[at + 1] - own[at] < 2 * thickness)
+            if (blocks.rock[index(block)] == rock && levels[at + 1] - levels[at] < 2 * thickness)
                 column.join_at(at);
         }
         column.join_thin(thickness);
-        column.write({&heights[p * columns.stride()], own.size()});
+        column.write({&heights[p * columns.stride()], levels.size()});
     }
     return heights;
 }
@@ -137,12 +137,12 @@ public:
     void run(const Layering& layering) {
         const auto joined = thick_levels(input_, thickness_);
         const auto layers = number_layers(layering, thickest_of(input_, joined));
-        const OwnHeights own = divide_blocks(joined, layers);
+        const OwnHeights pillar_heights = divide_blocks(joined, layers);
         find_divided();
         for (DividedNode& node : divided_)
-            share_heights(node, own);
+            share_heights(node, pillar_heights);
         if (!divided_.empty()) join_crossing();
-        gather_heights(own);
+        gather_heights(pillar_heights);
     }
 
 private:
@@ -199,8 +199,8 @@ private:
             layers[b] = std::max(1, static_cast<std::int32_t>(wanted));
             if (layering.layer_thickness > 0 && layering.layers[b] > 0)
                 layers[b] = std::min(layers[b], layering.layers[b]);
-            auto& own = made_.layer_block_[index(blocks.rock[b])];
-            own.insert(own.end(), index(layers[b]), static_cast<std::int32_t>(b));
+            auto& layer_blocks = made_.layer_block_[index(blocks.rock[b])];
+            layer_blocks.insert(layer_blocks.end(), index(layers[b]), static_cast<std::int32_t>(b));
         }
         return layers;
     }
@@ -210,14 +210,14 @@ private:
     OwnHeights divide_blocks(std::span<const double> joined, std::span<const std::int32_t> layers) {
         const auto& [lines, blocks, plan, columns] = input_;
         made_.offset_.assign(1, 0);
-        OwnHeights own;
+        OwnHeights pillars;
         for (std::size_t p = 0; p < columns.size(); ++p) {
             const std::int32_t rock = columns.rock(p);
             if (rock >= 0) {
                 const double* const z = &joined[p * columns.stride()];
                 const auto first = index(blocks.first[index(rock)]);
                 std::int32_t at = 0;
-                own.heights.push_back(z[0]);
+                pillars.heights.push_back(z[0]);
                 made_.level_.push_back(at);
                 for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
                     const double thick = z[b + 1] - z[b];
@@ -228,20 +228,20 @@ private:
                         parts = std::max(1, static_cast<std::int32_t>(wanted));
                     }
                     for (std::int32_t k = 1; k <= parts; ++k)
-                        own.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
+                        pillars.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
                     for (std::int32_t k = 1; k <= layers[first + b]; ++k)
                         made_.level_.push_back(at + std::min(k, parts));
                     at += parts;
                 }
             }
             made_.offset_.push_back(made_.level_.size());
-            own.begin.push_back(own.heights.size());
+            pillars.begin.push_back(pillars.heights.size());
         }
-        return own;
+        return pillars;
     }
 
     /// Heights of the pillars of one node that are nearer than the thickness become one.
-    void share_heights(DividedNode& node, const OwnHeights& own) {
+    void share_heights(DividedNode& node, const OwnHeights& pillar_heights) {
         struct PillarHeight {
             double height;
             std::size_t pillar;  ///< of the node's
@@ -249,7 +249,7 @@ private:
         };
         std::vector<PillarHeight> all;
         for (std::size_t k = 0; k < node.pillars.size(); ++k) {
-            for (const double height : own.of(index(node.pillars[k])))
+            for (const double height : pillar_heights.of(index(node.pillars[k])))
                 all.push_back({height, k});
         }
         std::sort(all.begin(), all.end());
@@ -303,8 +303,8 @@ private:
                 const std::int32_t at0 = left[0][i] - right[0][j], at1 = left[1][i] - right[1][j];
                 if ((at0 > 0) == (at1 > 0) || at0 == 0 || at1 == 0) continue;
                 const auto gap = [&](std::size_t end) {
-                    const auto& own = node(end).heights;
-                    return std::abs(own[index(left[end][i])] - own[index(right[end][j])]);
+                    const auto& heights = node(end).heights;
+                    return std::abs(heights[index(left[end][i])] - heights[index(right[end][j])]);
                 };
                 const std::size_t end = gap(0) <= gap(1) ? 0 : 1;
                 const auto [from, to] = unordered(left[end][i], right[end][j]);
@@ -330,7 +330,7 @@ private:
     }
 
     /// The heights of all nodes.
-    void gather_heights(const OwnHeights& own) {
+    void gather_heights(const OwnHeights& pillar_heights) {
         const auto& [lines, blocks, plan, columns] = input_;
         std::vector<std::int32_t> pillar_of(plan.nodes(), -1);
         for (std::size_t p = 0; p < plan.pillar_count(); ++p) {
@@ -343,7 +343,7 @@ private:
             if (divided_of_[n] >= 0) {
                 heights = divided_[index(divided_of_[n])].heights;
             } else if (pillar_of[n] >= 0) {
-                heights = own.of(index(pillar_of[n]));
+                heights = pillar_heights.of(index(pillar_of[n]));
             }
             made_.height_.insert(made_.height_.end(), heights.begin(), heights.end());
             made_.node_offset_.push_back(made_.height_.size());
@@ -367,14 +367,14 @@ PillarLevels::PillarLevels(const ColumnInput& input, const Layering& layering) {
 /// which are numbers of these.
 [[maybe_unused]] bool PillarLevels::is_valid(const PlanTopology& plan) const {
     for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
-        const auto own = heights(static_cast<std::int32_t>(n));
-        if (!std::is_sorted(own.begin(), own.end())) return false;
+        const auto node_heights = heights(static_cast<std::int32_t>(n));
+        if (!std::is_sorted(node_heights.begin(), node_heights.end())) return false;
     }
     for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
-        const auto own = levels(p);
-        if (own.empty()) continue;
-        if (own.front() < 0 || !std::is_sorted(own.begin(), own.end()) ||
-            index(own.back()) >= heights(plan.pillar_node(p)).size())
+        const auto numbers = levels(p);
+        if (numbers.empty()) continue;
+        if (numbers.front() < 0 || !std::is_sorted(numbers.begin(), numbers.end()) ||
+            index(numbers.back()) >= heights(plan.pillar_node(p)).size())
             return false;
     }
     return true;
@@ -382,13 +382,13 @@ PillarLevels::PillarLevels(const ColumnInput& input, const Layering& layering) {
 
 std::array<std::int32_t, 2> PillarLevels::blocks_at(std::size_t pillar, std::int32_t rock,
                                                     std::int32_t height) const {
-    const auto own = levels(pillar);
+    const auto numbers = levels(pillar);
     const auto blocks = layer_blocks(rock);
     std::int32_t below = -1, above = -1;
-    for (std::size_t l = 0; l + 1 < own.size(); ++l) {
-        if (own[l] == own[l + 1]) continue;
-        if (own[l + 1] == height) below = blocks[l];
-        if (own[l] == height) above = blocks[l];
+    for (std::size_t l = 0; l + 1 < numbers.size(); ++l) {
+        if (numbers[l] == numbers[l + 1]) continue;
+        if (numbers[l + 1] == height) below = blocks[l];
+        if (numbers[l] == height) above = blocks[l];
     }
     return {below, above};
 }
@@ -405,9 +405,9 @@ std::size_t PillarLevels::remove(const PlanTopology& plan, std::vector<Removal>&
         if (!several && removal.node == last) continue;
         assert(std::abs(removal.height - removal.into) == 1);
         const std::size_t first = node_offset_[index(removal.node)],
-                          gone = first + index(removal.height), kept = first + index(removal.into);
-        if (is_used[gone] != 0 || is_used[kept] != 0) continue;
-        is_used[gone] = is_used[kept] = 1;
+                          gone = first + index(removal.height), next = first + index(removal.into);
+        if (is_used[gone] != 0 || is_used[next] != 0) continue;
+        is_used[gone] = is_used[next] = 1;
         into[gone] = removal.into;
         last = removal.node;
         ++count;
@@ -458,12 +458,12 @@ bool PillarLevels::relax_heights(const std::vector<Move>& moves, double most, do
         for (std::size_t at = has_flat_base[n] != 0 ? first + 1 : first; at < end; ++at) {
             const auto [by, count] = asked[at];
             if (count == 0) continue;
-            const double own = height_[at];
+            const double height = height_[at];
             double to =
-                std::clamp(own + by / count, first_height_[at] - most, first_height_[at] + most);
-            if (at > first) to = std::max(to, std::min(own, height_[at - 1] + gap));
-            if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - gap));
-            if (std::abs(to - own) < kLeast * gap) continue;
+                std::clamp(height + by / count, first_height_[at] - most, first_height_[at] + most);
+            if (at > first) to = std::max(to, std::min(height, height_[at - 1] + gap));
+            if (at + 1 < end) to = std::min(to, std::max(height, height_[at + 1] - gap));
+            if (std::abs(to - height) < kLeast * gap) continue;
             height_[at] = to;
             is_moved[n] = 1;
             any = true;

@@ -120,8 +120,8 @@ private:
             }
             Triangle middle{-1, -1, -1};
             for (std::size_t i = 0; i < 3; ++i) {
-                const auto found = middles.find(unordered(corner[i], corner[(i + 1) % 3]));
-                if (found != middles.end()) middle[i] = found->second;
+                const auto divider = middles.find(unordered(corner[i], corner[(i + 1) % 3]));
+                if (divider != middles.end()) middle[i] = divider->second;
             }
             divide_at(corner, middle, made);
         }
@@ -270,9 +270,9 @@ private:
         double most = 0;
         for (int i = 0; i < 3; ++i) {
             const HalfEdge edge(triangle, i);
-            const double own = distance(mesh_.origin_point(edge), mesh_.target_point(edge));
-            if (own > most) longest = edge;
-            most = std::max(most, own);
+            const double length = distance(mesh_.origin_point(edge), mesh_.target_point(edge));
+            if (length > most) longest = edge;
+            most = std::max(most, length);
         }
         assert(!longest.is_none());
         return longest;

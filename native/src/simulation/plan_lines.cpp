@@ -39,10 +39,10 @@ double distance_to_line(const PlanPoint& p, std::span<const PlanPoint> line) {
 
 double local_length(const PlanPoint& p, double edge_length, std::span<const LineLength> lengths) {
     double least = edge_length;
-    for (const LineLength& own : lengths) {
+    for (const LineLength& size : lengths) {
         const double beyond =
-            own.line.empty() ? 0 : std::max(0.0, distance_to_line(p, own.line) - own.distance);
-        least = std::min(least, own.length + meshing::kGradation * beyond);
+            size.line.empty() ? 0 : std::max(0.0, distance_to_line(p, size.line) - size.distance);
+        least = std::min(least, size.length + meshing::kGradation * beyond);
     }
     return least;
 }
@@ -66,17 +66,17 @@ std::vector<LinkUse> linked_anchors(const Traces& traces, std::span<const PlanPo
             neighbors[index(t[i])].push_back(t[(i + 2) % 3]);
         }
     }
-    for (auto& own : neighbors) {
-        sort_unique(own);
+    for (auto& adjacent : neighbors) {
+        sort_unique(adjacent);
     }
     const auto nearest = [&](std::int32_t from, const PlanPoint& p) {
         double best = squared_distance(anchors[index(from)], p);
         for (bool moved = true; moved;) {
             moved = false;
             for (const std::int32_t n : neighbors[index(from)]) {
-                const double own = squared_distance(anchors[index(n)], p);
-                if (own < best || (own == best && n < from)) {
-                    best = own;
+                const double squared = squared_distance(anchors[index(n)], p);
+                if (squared < best || (squared == best && n < from)) {
+                    best = squared;
                     from = n;
                     moved = true;
                     break;
@@ -162,10 +162,10 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
         const auto face = index(faces.find(static_cast<std::int32_t>(t)));
         area[face].resize(blocks.count() + 1);
         const auto [a, b, c] = triangles[t];
-        const double own = twice_area(anchors[index(a)], anchors[index(b)], anchors[index(c)]);
+        const double weight = twice_area(anchors[index(a)], anchors[index(b)], anchors[index(c)]);
         for (std::size_t s = 0; s < kShares.size(); ++s) {
             const std::int32_t rock = columns.rock(t * kShares.size() + s);
-            area[face][rock < 0 ? blocks.count() : index(rock)] += own;
+            area[face][rock < 0 ? blocks.count() : index(rock)] += weight;
         }
     }
     std::vector<std::uint8_t> is_open(triangles.size(), 0);  // it lies outside
@@ -174,9 +174,9 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     std::vector<std::int32_t> rocks(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const auto face = index(faces.find(static_cast<std::int32_t>(t)));
-        const auto& own = area[face];
+        const auto& areas = area[face];
         const auto most =
-            static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
+            static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
         rocks[t] =
             is_open[face] != 0 || most == blocks.count() ? -1 : static_cast<std::int32_t>(most);
     }
@@ -249,8 +249,8 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = delaunay.triangles[t][i], b = delaunay.triangles[t][(i + 1) % 3];
-            auto& own = sides.try_emplace(unordered(a, b), Link{-1, -1}).first->second;
-            own[a < b ? 0 : 1] = rocks[t];
+            auto& beside = sides.try_emplace(unordered(a, b), Link{-1, -1}).first->second;
+            beside[a < b ? 0 : 1] = rocks[t];
         }
     }
     lines.ending_offsets.push_back(0);

@@ -25,8 +25,8 @@ LineEdges::LineEdges(const PlanLines& lines, const meshing::FlatMesh& mesh)
     for (const PlanPoint& p : lines.points)
         node_at.emplace(p, -1);
     for (std::size_t n = mesh.points.size(); n-- > 0;) {
-        const auto found = node_at.find(mesh.points[n]);
-        if (found != node_at.end()) found->second = static_cast<std::int32_t>(n);
+        const auto anchor = node_at.find(mesh.points[n]);
+        if (anchor != node_at.end()) anchor->second = static_cast<std::int32_t>(n);
     }
     const auto neighbors = bucketize<std::int32_t>(mesh.points.size(), [&](const auto& put) {
         mesh.for_each_edge([&](meshing::HalfEdge edge) {
@@ -68,11 +68,11 @@ LineEdges::LineEdges(const PlanLines& lines, const meshing::FlatMesh& mesh)
 
 void LineEdges::divide(std::int32_t a, std::int32_t b, std::int32_t middle) {
     assert(a != middle && b != middle && segment(a, middle) < 0 && segment(middle, b) < 0);
-    const std::int32_t own = segment(a, b);
-    if (own < 0) return;
+    const std::int32_t line = segment(a, b);
+    if (line < 0) return;
     is_on_line_.resize(std::max(is_on_line_.size(), index(middle) + 1));
     segments_.erase(unordered(a, b));
-    segments_[unordered(a, middle)] = segments_[unordered(middle, b)] = own;
+    segments_[unordered(a, middle)] = segments_[unordered(middle, b)] = line;
     is_on_line_[index(middle)] = true;
 }
 

@@ -25,13 +25,13 @@ public:
     /// The segment that the edge between two nodes lies on, or -1.
     std::int32_t segment(std::int32_t a, std::int32_t b) const {
         if (!is_on_line(a) || !is_on_line(b)) return -1;
-        const auto found = segments_.find(unordered(a, b));
-        return found == segments_.end() ? -1 : found->second;
+        const auto segment = segments_.find(unordered(a, b));
+        return segment == segments_.end() ? -1 : segment->second;
     }
     /// Whether an edge lies between triangles whose heights may differ there.
     bool is_step(std::int32_t a, std::int32_t b) const {
-        const std::int32_t own = segment(a, b);
-        return own >= 0 && lines_->segments[index(own)].is_step;
+        const std::int32_t line = segment(a, b);
+        return line >= 0 && lines_->segments[index(line)].is_step;
     }
     /// A node was added, which divides an edge.
     void divide(std::int32_t a, std::int32_t b, std::int32_t middle);
@@ -103,10 +103,10 @@ public:
     /// The pillars at both ends of an edge, as the triangle beyond has them.
     std::array<std::size_t, 2> pillars_beyond(std::size_t t, std::size_t edge) const {
         const meshing::HalfEdge other = twin(t, edge);
-        const auto own = [&](meshing::HalfEdge from) {
+        const auto pillar_at = [&](meshing::HalfEdge from) {
             return pillar(index(from.triangle()), index(from.index()));
         };
-        return {own(other.next()), own(other)};
+        return {pillar_at(other.next()), pillar_at(other)};
     }
     std::size_t pillar_count() const { return pillars_.node.size(); }
     std::int32_t pillar_node(std::size_t pillar) const { return pillars_.node[pillar]; }

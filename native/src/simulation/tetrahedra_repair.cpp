@@ -81,12 +81,12 @@ void drop_single(FilledMesh& mesh) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (is_gone[i] != 0) continue;
             for (std::int32_t& v : rows[i]) {
-                std::int32_t& own = number[index(v)];
-                if (own < 0) {
-                    own = static_cast<std::int32_t>(points.size());
+                std::int32_t& point = number[index(v)];
+                if (point < 0) {
+                    point = static_cast<std::int32_t>(points.size());
                     points.push_back(mesh.points[index(v)]);
                 }
-                v = own;
+                v = point;
             }
             rows[count] = rows[i];
             labels[count++] = labels[i];
@@ -185,10 +185,10 @@ bool TetrahedraRound::cover(std::span<const std::int32_t> corners, const Vec3& a
     };
     std::vector<SharedEdge> hinges;
     for (const OuterTriangle& face : outer) {
-        const auto& own = triangles_[index(face.row)];
+        const auto& triangle = triangles_[index(face.row)];
         for (std::size_t i = 0; i < 3; ++i) {
-            if (std::ranges::find(corners, own[i]) != corners.end()) continue;
-            const auto edge = unordered(own[(i + 1) % 3], own[(i + 2) % 3]);
+            if (std::ranges::find(corners, triangle[i]) != corners.end()) continue;
+            const auto edge = unordered(triangle[(i + 1) % 3], triangle[(i + 2) % 3]);
             auto hinge = std::ranges::find(hinges, edge, &SharedEdge::edge);
             if (hinge == hinges.end()) hinge = hinges.insert(hinge, {edge, {}, {}});
             hinge->regions.push_back(face.region);
@@ -276,9 +276,9 @@ public:
             const bool is_outside =
                 elements_beside(mesh.tetrahedra, around_[index(corners[0])], corners)[1] < 0;
             for (const std::int32_t v : corners) {
-                std::int32_t& own = surface[index(v)];
-                const bool is_edge = own != INT32_MIN && own != mesh.surface[f];
-                own = mesh.surface[f];
+                std::int32_t& last_surface = surface[index(v)];
+                const bool is_edge = last_surface != INT32_MIN && last_surface != mesh.surface[f];
+                last_surface = mesh.surface[f];
                 freedom_[index(v)] =
                     std::max(freedom_[index(v)], is_outside || is_edge ? kFixed : kOnSurface);
             }
@@ -318,9 +318,9 @@ private:
             if (freedom_[index(v)] == kOnSurface && far > most_)
                 place = moved(start, 0.999 * most_ / far, minus(place, start));
             at = place;
-            const double own = least_roundness(mesh_, around_[index(v)]);
-            if (own <= largest) return;
-            largest = own;
+            const double roundness = least_roundness(mesh_, around_[index(v)]);
+            if (roundness <= largest) return;
+            largest = roundness;
             best = place;
         };
         for (std::size_t k = 0; k < 4; ++k) {

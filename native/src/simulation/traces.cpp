@@ -61,15 +61,15 @@ struct VertexTrace {
 std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress) {
     const auto edges = border_edges(model, progress);
     const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
-    std::vector<VertexTrace> found;
-    std::vector<BoundaryEdge> own;
+    std::vector<VertexTrace> traces;
+    std::vector<BoundaryEdge> vertex_edges;
     const auto to_and_key = [](const BoundaryEdge& e) { return std::pair(e.to, e.key); };
     for (std::size_t v = 0; v < edges.size(); ++v) {
         poll(progress, v);
-        own.assign(edges[v].begin(), edges[v].end());
-        std::ranges::sort(own, {}, to_and_key);
+        vertex_edges.assign(edges[v].begin(), edges[v].end());
+        std::ranges::sort(vertex_edges, {}, to_and_key);
         BoundaryEdge open{-1, -1, 0};  // the last
-        for (const auto equal : groups_of(own, to_and_key)) {
+        for (const auto equal : groups_of(vertex_edges, to_and_key)) {
             std::int32_t sum = 0;
             for (const BoundaryEdge& edge : equal)
                 sum += edge.direction;
@@ -79,21 +79,21 @@ std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress
             if (key == top_of_all) trace.block = Traces::kOfTop;
             if (key % 2 == 1 && open.key == key - 1 && open.to == to) {
                 trace.block = key / 2;
-                found.pop_back();  // the step that the top alone would be
+                traces.pop_back();  // the step that the top alone would be
             }
-            found.push_back(trace);
+            traces.push_back(trace);
             open = equal[0];
         }
     }
-    return found;
+    return traces;
 }
 
 }  // namespace
 
 Traces traces_of(const ComplexView& model, Progress* progress) {
-    const std::vector<VertexTrace> found = open_edges(model, progress);
+    const std::vector<VertexTrace> vertex_traces = open_edges(model, progress);
     Traces traces;
-    for (const VertexTrace& trace : found) {
+    for (const VertexTrace& trace : vertex_traces) {
         traces.points.push_back(plan_of(model, trace.from));
         traces.points.push_back(plan_of(model, trace.to));
     }
@@ -104,7 +104,7 @@ Traces traces_of(const ComplexView& model, Progress* progress) {
         assert(at != traces.points.end() && *at == plan_of(model, v));
         return static_cast<std::int32_t>(at - traces.points.begin());
     };
-    for (const VertexTrace& trace : found) {
+    for (const VertexTrace& trace : vertex_traces) {
         const auto ends = unordered(number(trace.from), number(trace.to));
         if (ends[0] != ends[1]) traces.segments.push_back({ends, trace.block});
     }
@@ -265,12 +265,12 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                 for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
                     const PlanPoint &p = traces.points[index(chain[i])],
                                     &q = traces.points[index(chain[i + 1])];
-                    const double own = distance(p, q);
-                    for (; next < before + own; next += step) {
-                        const double part = (next - before) / own;
+                    const double segment_length = distance(p, q);
+                    for (; next < before + segment_length; next += step) {
+                        const double part = (next - before) / segment_length;
                         add(moved(p, part, minus(q, p)), number, share);
                     }
-                    before += own;
+                    before += segment_length;
                 }
             }
         }

@@ -113,20 +113,20 @@ public:
         constexpr std::size_t kLeavesOfSearch = 8;  // leaves that share a search
         std::vector<const Node*> near_all, near;
         for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
-            const Node& own = nodes_[leaves_[leaf]];
+            const Node& node = nodes_[leaves_[leaf]];
             if ((leaf - first_leaf) % kLeavesOfSearch == 0) {
                 Box all;
                 for (std::size_t i = leaf; i < std::min(end_leaf, leaf + kLeavesOfSearch); ++i)
                     all.include(nodes_[leaves_[i]].box);
                 near_all.clear();
                 each_leaf(
-                    all, [&](const Node& other) { near_all.push_back(&other); }, own.begin);
+                    all, [&](const Node& other) { near_all.push_back(&other); }, node.begin);
             }
             near.clear();
             for (const Node* other : near_all) {
-                if (other->end > own.begin && other->box.meets(own.box)) near.push_back(other);
+                if (other->end > node.begin && other->box.meets(node.box)) near.push_back(other);
             }
-            for (std::size_t i = own.begin; i < own.end; ++i) {
+            for (std::size_t i = node.begin; i < node.end; ++i) {
                 for (const Node* other : near) {
                     if (!boxes_[i].meets(other->box)) continue;
                     for (std::size_t j = std::max(i + 1, other->begin); j < other->end; ++j) {

@@ -73,20 +73,20 @@ std::optional<MeshLocator::BarycentricPosition> MeshLocator::find(
             exact::orient2d(corner[2], corner[0], position) == -way) {
             continue;
         }
-        BarycentricPosition found{t, {}};
+        BarycentricPosition barycentric{t, {}};
         double sum = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const double area = twice_area(position, corner[(i + 1) % 3], corner[(i + 2) % 3]);
-            found.weights[i] = std::max(0.0, way * area);
-            sum += found.weights[i];
+            barycentric.weights[i] = std::max(0.0, way * area);
+            sum += barycentric.weights[i];
         }
         if (!(sum > 0)) {  // an area lost to rounding
-            found.weights = {1, 0, 0};
-            return found;
+            barycentric.weights = {1, 0, 0};
+            return barycentric;
         }
-        for (double& weight : found.weights)
+        for (double& weight : barycentric.weights)
             weight /= sum;
-        return found;
+        return barycentric;
     }
     return std::nullopt;
 }

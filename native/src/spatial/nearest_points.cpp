@@ -30,59 +30,59 @@ struct PlanPoints {
 /// met first, which depends on the shape of the tree.
 class NearestSoFar {
 public:
-    NearestSoFar(std::vector<Neighbor>& found, std::size_t count) : found_(found), count_(count) {
-        found_.clear();
+    NearestSoFar(std::vector<Neighbor>& near, std::size_t count) : near_(near), count_(count) {
+        near_.clear();
     }
-    std::size_t size() const { return found_.size(); }
-    bool empty() const { return found_.empty(); }
-    bool full() const { return found_.size() == count_; }
+    std::size_t size() const { return near_.size(); }
+    bool empty() const { return near_.empty(); }
+    bool full() const { return near_.size() == count_; }
     void sort() const {}
 
     /// nanoflann drops points and branches that are not nearer than this: a little more than the
     /// last one kept, so that ties, and branches bounded with rounding, are still looked at.
     double worstDist() const {
         if (!full()) return std::numeric_limits<double>::max();
-        const double last = found_.back().squared_distance;
+        const double last = near_.back().squared_distance;
         return last + 1e-9 * last + std::numeric_limits<double>::min();
     }
 
     bool addPoint(double squared_distance, std::int32_t point) {
         const Neighbor added{squared_distance, point};
         if (full()) {
-            if (!(added < found_.back())) return true;
-            found_.pop_back();
+            if (!(added < near_.back())) return true;
+            near_.pop_back();
         }
-        found_.push_back(added);
-        for (std::size_t i = found_.size() - 1; i > 0 && found_[i] < found_[i - 1]; --i) {
-            std::swap(found_[i], found_[i - 1]);
+        near_.push_back(added);
+        for (std::size_t i = near_.size() - 1; i > 0 && near_[i] < near_[i - 1]; --i) {
+            std::swap(near_[i], near_[i - 1]);
         }
         return true;
     }
 
 private:
-    std::vector<Neighbor>& found_;
+    std::vector<Neighbor>& near_;
     std::size_t count_;
 };
 
 /// Keeps all that are near enough.
 class NearEnough {
 public:
-    NearEnough(std::vector<Neighbor>& found, double squared_distance, std::size_t most)
-        : found_(found), squared_distance_(squared_distance), most_(most) {
-        found_.clear();
+    NearEnough(std::vector<Neighbor>& near, double squared_distance, std::size_t most)
+        : near_(near), squared_distance_(squared_distance), most_(most) {
+        near_.clear();
     }
-    std::size_t size() const { return found_.size(); }
-    bool empty() const { return found_.empty(); }
+    std::size_t size() const { return near_.size(); }
+    bool empty() const { return near_.empty(); }
     bool full() const { return true; }
     void sort() const {}
     double worstDist() const { return squared_distance_; }
     bool addPoint(double squared_distance, std::int32_t point) {
-        found_.push_back({squared_distance, point});
-        return found_.size() <= most_;
+        near_.push_back({squared_distance, point});
+        return near_.size() <= most_;
     }
 
 private:
-    std::vector<Neighbor>& found_;
+    std::vector<Neighbor>& near_;
     double squared_distance_;
     std::size_t most_;
 };
@@ -121,19 +121,19 @@ const PlanPosition& NearestPoints::point(std::int32_t number) const {
 }
 
 void NearestPoints::find(const PlanPosition& position, std::size_t count,
-                         std::vector<Neighbor>& found) const {
-    NearestSoFar nearest(found, std::min(count, size()));
+                         std::vector<Neighbor>& near) const {
+    NearestSoFar nearest(near, std::min(count, size()));
     if (count == 0 || size() == 0) return;
     tree_->index.findNeighbors(nearest, position.data(), SearchParameters());
 }
 
 bool NearestPoints::within(const PlanPosition& position, double distance, std::size_t most,
-                           std::vector<Neighbor>& found) const {
+                           std::vector<Neighbor>& near) const {
     // nanoflann wants what is nearer than this, and bounds branches with rounding.
     const double squared = distance * distance;
-    NearEnough near(found, squared + 1e-9 * squared + std::numeric_limits<double>::min(), most);
-    if (size() > 0) tree_->index.findNeighbors(near, position.data(), SearchParameters());
-    return found.size() <= most;
+    NearEnough set(near, squared + 1e-9 * squared + std::numeric_limits<double>::min(), most);
+    if (size() > 0) tree_->index.findNeighbors(set, position.data(), SearchParameters());
+    return near.size() <= most;
 }
 
 namespace {
@@ -146,17 +146,17 @@ constexpr std::size_t kCandidatesOfPoint = 4;  // candidates for each point want
 bool BlockNeighbors::prepare(std::span<const PlanPosition> nodes) {
     const PlanBox box = box_around(nodes);
     const PlanPosition center{0.5 * (box.low_x + box.high_x), 0.5 * (box.low_y + box.high_y)};
-    tree_.find(center, count_, found_);
+    tree_.find(center, count_, neighbors_);
     if (nodes.size() > 1) {
-        const double wanted = std::sqrt(found_.back().squared_distance);
+        const double wanted = std::sqrt(neighbors_.back().squared_distance);
         const double radius = elementary::hypot(box.high_x - center[0], box.high_y - center[1]);
         if (radius > kWidest * wanted) return false;
         // The nearest of a node lie within wanted + radius of it.
         const double reach = (wanted + 2 * radius) * (1 + 1e-9);
-        if (!tree_.within(center, reach, kCandidatesOfPoint * count_, found_)) return false;
+        if (!tree_.within(center, reach, kCandidatesOfPoint * count_, neighbors_)) return false;
     }
     candidates_.clear();
-    for (const Neighbor& neighbor : found_)
+    for (const Neighbor& neighbor : neighbors_)
         candidates_.push_back(neighbor.point);
     std::sort(candidates_.begin(), candidates_.end());
     x_.clear();
@@ -225,8 +225,8 @@ OctantSearch::OctantSearch(std::span<const PlanPosition> points, const Wanted& w
 
 void OctantSearch::visit(std::size_t tile, const PlanPosition& position, std::int32_t left_out) {
     for (const std::int32_t point : points_at_[tile]) {
-        const PlanPosition& there = points_[index(point)];
-        const double dx = there[0] - position[0], dy = there[1] - position[1];
+        const PlanPosition& at = points_[index(point)];
+        const double dx = at[0] - position[0], dy = at[1] - position[1];
         const Neighbor here{dx * dx + dy * dy, point};
         seen_.push_back(here);
         if (here.point == left_out || here.squared_distance > wanted_.squared_radius) continue;
@@ -250,7 +250,7 @@ bool OctantSearch::complete(double squared_distance) const {
 }
 
 void OctantSearch::find(const PlanPosition& position, std::int32_t left_out,
-                        std::vector<Neighbor>& found) {
+                        std::vector<Neighbor>& nearest) {
     seen_.clear();
     for (auto& octant : taken_)
         octant.clear();
@@ -281,16 +281,16 @@ void OctantSearch::find(const PlanPosition& position, std::int32_t left_out,
         reach = std::max(0.0, reach);
         if (complete(reach * reach)) break;
     }
-    found.clear();
+    nearest.clear();
     for (const auto& octant : taken_)
-        found.insert(found.end(), octant.begin(), octant.end());
-    std::sort(found.begin(), found.end());
+        nearest.insert(nearest.end(), octant.begin(), octant.end());
+    std::sort(nearest.begin(), nearest.end());
     if (seen_.size() > wanted_.looked_at) {
         const auto last_one = seen_.begin() + static_cast<std::ptrdiff_t>(wanted_.looked_at - 1);
         std::nth_element(seen_.begin(), last_one, seen_.end());
-        found.erase(std::upper_bound(found.begin(), found.end(), *last_one), found.end());
+        nearest.erase(std::upper_bound(nearest.begin(), nearest.end(), *last_one), nearest.end());
     }
-    if (found.size() > wanted_.in_all) found.resize(wanted_.in_all);
+    if (nearest.size() > wanted_.in_all) nearest.resize(wanted_.in_all);
 }
 
 }  // namespace realmodel::spatial

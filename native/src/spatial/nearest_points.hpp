@@ -35,12 +35,12 @@ public:
     /// The `count` points nearest to a position (all, where there are fewer), nearest first; of
     /// points at one distance those with the lower number come first, also where only some of them
     /// are taken. Several threads may ask at once.
-    void find(const PlanPosition& position, std::size_t count, std::vector<Neighbor>& found) const;
+    void find(const PlanPosition& position, std::size_t count, std::vector<Neighbor>& near) const;
 
     /// The points no farther than this from a position, in any order, each once; a few a little
     /// farther may be among them. Whether these are all: with more than `most` it gives up.
     bool within(const PlanPosition& position, double distance, std::size_t most,
-                std::vector<Neighbor>& found) const;
+                std::vector<Neighbor>& near) const;
 
 private:
     struct Tree;
@@ -72,7 +72,7 @@ public:
 private:
     const NearestPoints& tree_;
     std::size_t count_;
-    std::vector<Neighbor> found_;
+    std::vector<Neighbor> neighbors_;
     std::vector<std::int32_t> candidates_, order_;
     std::vector<double> x_, y_, squared_, keys_;
 };
@@ -91,7 +91,7 @@ public:
     OctantSearch(std::span<const PlanPosition> points, const Wanted& wanted);
 
     /// The points wanted, nearest first (of equals the lower number), but for `left_out`.
-    void find(const PlanPosition& position, std::int32_t left_out, std::vector<Neighbor>& found);
+    void find(const PlanPosition& position, std::int32_t left_out, std::vector<Neighbor>& nearest);
 
 private:
     void visit(std::size_t tile, const PlanPosition& position, std::int32_t left_out);

@@ -125,19 +125,18 @@ double over_triangle(const SpaceTriangle& triangle, double away) {
 }  // namespace
 
 std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles,
-                                        std::span<const Vec2> positions,
-                                        std::span<const double> own, std::span<const double> away,
-                                        const Execution& execution) {
+                                        std::span<const Vec2> positions, std::span<const double> z,
+                                        std::span<const double> away, const Execution& execution) {
     constexpr std::size_t kPositionsOfChunk = 256;
-    if (own.size() != positions.size() || away.size() != positions.size())
+    if (z.size() != positions.size() || away.size() != positions.size())
         throw InputError("bad_index", "a height and a distance of each position are needed");
     const BoxTree tree(boxes_of(triangles), execution);
-    std::vector<double> found(positions.size(), HUGE_VAL);
+    std::vector<double> heights(positions.size(), HUGE_VAL);
     // `support`: a triangle that may ask for most, as it did at a position nearby; then the one
     // that does.
     const auto at = [&](std::size_t i, std::int32_t& support) {
-        if (!std::isfinite(own[i]) || !(away[i] > 0)) return own[i];
-        const Vec3 under{positions[i][0], positions[i][1], own[i]};
+        if (!std::isfinite(z[i]) || !(away[i] > 0)) return z[i];
+        const Vec3 under{positions[i][0], positions[i][1], z[i]};
         const auto asked = [&](std::int32_t t) {
             SpaceTriangle moved_there = triangles[index(t)];
             for (Vec3& corner : moved_there)
@@ -163,7 +162,7 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
                     higher = by_this;
                     support = t;
                 });
-            if (!(higher > above)) return own[i] + above;
+            if (!(higher > above)) return z[i] + above;
             above = higher;
         }
     };
@@ -172,9 +171,9 @@ std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles
                     [&](std::size_t begin, std::size_t end) {
                         std::int32_t support = -1;
                         for (std::size_t k = begin; k < end; ++k)
-                            found[order[k]] = at(order[k], support);
+                            heights[order[k]] = at(order[k], support);
                     });
-    return found;
+    return heights;
 }
 
 namespace {
@@ -226,31 +225,31 @@ Nearest nearest_points(std::span<const PlanPosition> points,
     require_finite(points, "point");
     require_finite(positions, "node");
     const NearestPoints tree(points);
-    Nearest found{std::vector<std::int32_t>(count * positions.size(), -1),
-                  std::vector<double>(count * positions.size(), HUGE_VAL)};
-    parallel_ranges(positions.size(), kPositionsOfChunk, execution,
-                    [&](std::size_t begin, std::size_t end) {
-                        std::vector<Neighbor> near;
-                        for (std::size_t i = begin; i < end; ++i) {
-                            tree.find(positions[i], count, near);
-                            for (std::size_t k = 0; k < near.size(); ++k) {
-                                found.number[count * i + k] = near[k].point;
-                                found.distance[count * i + k] = std::sqrt(near[k].squared_distance);
-                            }
-                        }
-                    });
-    return found;
+    Nearest nearest{std::vector<std::int32_t>(count * positions.size(), -1),
+                    std::vector<double>(count * positions.size(), HUGE_VAL)};
+    parallel_ranges(
+        positions.size(), kPositionsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
+            std::vector<Neighbor> near;
+            for (std::size_t i = begin; i < end; ++i) {
+                tree.find(positions[i], count, near);
+                for (std::size_t k = 0; k < near.size(); ++k) {
+                    nearest.number[count * i + k] = near[k].point;
+                    nearest.distance[count * i + k] = std::sqrt(near[k].squared_distance);
+                }
+            }
+        });
+    return nearest;
 }
 
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<const Vec3> positions,
                           double reach, const Execution& execution) {
     const BoxTree tree(boxes_of(triangles), execution);
     const std::vector<TrianglePlane> planes(triangles.begin(), triangles.end());
-    Nearest found{std::vector<std::int32_t>(positions.size(), -1),
-                  std::vector<double>(positions.size(), HUGE_VAL)};
+    Nearest nearest{std::vector<std::int32_t>(positions.size(), -1),
+                    std::vector<double>(positions.size(), HUGE_VAL)};
     parallel_each(positions.size(), execution, [&](std::size_t i) {
-        std::int32_t& number = found.number[i];
-        double& least = found.distance[i];
+        std::int32_t& number = nearest.number[i];
+        double& least = nearest.distance[i];
         const auto bound = [&] { return std::min(least, reach) * kRoundedDistance; };
         tree.approach(
             positions[i], [&] { return bound() * bound(); },
@@ -262,7 +261,7 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<co
                 number = t;
             });
     });
-    return found;
+    return nearest;
 }
 
 std::vector<std::array<std::int64_t, 2>> meeting_boxes(std::span<const CornersOfBox> first,
@@ -282,9 +281,9 @@ std::vector<std::array<std::int64_t, 2>> meeting_boxes(std::span<const CornersOf
         std::ranges::sort(near, {}, [&](std::int32_t other) {
             return std::pair{second[index(other)][0][0], other};
         });
-        const auto own = static_cast<std::int64_t>(i);
+        const auto box = static_cast<std::int64_t>(i);
         for (const std::int64_t other : near)
-            pairs.push_back(is_swapped ? std::array{other, own} : std::array{own, other});
+            pairs.push_back(is_swapped ? std::array{other, box} : std::array{box, other});
     }
     return pairs;
 }
@@ -293,10 +292,10 @@ std::vector<std::int8_t> turns(std::span<const PlanPosition> a, std::span<const 
                                std::span<const PlanPosition> c) {
     if (b.size() != a.size() || c.size() != a.size())
         throw InputError("bad_index", "paths: three points of each are needed");
-    std::vector<std::int8_t> found(a.size());
+    std::vector<std::int8_t> signs(a.size());
     for (std::size_t i = 0; i < a.size(); ++i)
-        found[i] = static_cast<std::int8_t>(exact::orient2d(a[i], b[i], c[i]));
-    return found;
+        signs[i] = static_cast<std::int8_t>(exact::orient2d(a[i], b[i], c[i]));
+    return signs;
 }
 
 }  // namespace realmodel::spatial

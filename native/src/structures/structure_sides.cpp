@@ -22,7 +22,7 @@ StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& win
       of_(named_structures()),
       parts_(overlay, winding, near_, rules(), progress),
       sides_(parts_.size(), Sides(structures.size(), 0)),
-      kept_(structures.size()),
+      kept_sides_(structures.size()),
       nearest_(nearest) {
     // a fault that others end at comes before these
     std::vector<std::uint8_t> done(structures.size(), 0);
@@ -123,19 +123,19 @@ bool StructureSides::is_beyond(std::int32_t s, std::size_t part) const {
     const auto& ends_at = structures_[index(s)].ends_at;
     for (std::size_t i = 0; i < ends_at.size(); ++i) {
         const std::int8_t side = sides_[part][index(ends_at[i])];
-        if (side != 0 && side != kept_[index(s)][i]) return true;
+        if (side != 0 && side != kept_sides_[index(s)][i]) return true;
     }
     return false;
 }
 
 /// Of a fault that ends at others: on which side of each the larger part of its area lies.
 void StructureSides::find_kept_sides(std::int32_t s) {
-    if (!surface_.kept.empty()) {
-        kept_[index(s)] = surface_.kept[index(s)];
+    if (!surface_.kept_sides.empty()) {
+        kept_sides_[index(s)] = surface_.kept_sides[index(s)];
         return;
     }
     for (const std::int32_t other : structures_[index(s)].ends_at)
-        kept_[index(s)].push_back(kept_side(surface_, s, other));
+        kept_sides_[index(s)].push_back(kept_side(surface_, s, other));
 }
 
 /// Takes what is known of a part to all that can be reached from it.

@@ -79,8 +79,8 @@ private:
     std::vector<std::vector<RegionOf>> of_;
     cutting::SurfaceCells parts_;
     std::vector<Sides> sides_;
-    std::vector<std::vector<std::int8_t>> kept_;     ///< of structures: the side of each it ends at
-    std::span<const cutting::NearestSide> nearest_;  ///< of structures
+    std::vector<std::vector<std::int8_t>> kept_sides_;  ///< of structures: side of each it ends at
+    std::span<const cutting::NearestSide> nearest_;     ///< of structures
 };
 
 }  // namespace realmodel::structures

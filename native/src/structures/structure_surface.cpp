@@ -541,15 +541,15 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
 StructureSurface structure_surface(std::span<const Structure> structures,
                                    std::span<const ContinuedStructure> continued) {
     SurfaceOfTriangles all;
-    std::vector<std::vector<std::int8_t>> kept;
+    std::vector<std::vector<std::int8_t>> kept_sides;
     for (std::size_t s = 0; s < structures.size(); ++s) {
         all.begin(structures[s].is_body);
         for (std::size_t t = 0; t < continued[s].triangles.size(); ++t)
             all.add(continued[s].triangles[t], continued[s].is_continuation[t] != 0);
-        kept.push_back(continued[s].kept);
+        kept_sides.push_back(continued[s].kept_sides);
     }
     StructureSurface surface = std::move(all).surface();
-    surface.kept = std::move(kept);
+    surface.kept_sides = std::move(kept_sides);
     return surface;
 }
 
@@ -560,7 +560,8 @@ std::vector<ContinuedStructure> continued_structures(
     std::vector<ContinuedStructure> continued(structures.size());
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const std::int32_t other : structures[s].ends_at)
-            continued[s].kept.push_back(kept_side(surface, static_cast<std::int32_t>(s), other));
+            continued[s].kept_sides.push_back(
+                kept_side(surface, static_cast<std::int32_t>(s), other));
     }
     for (std::size_t t = 0; t < surface.structure.size(); ++t) {
         ContinuedStructure& structure = continued[index(surface.structure[t])];

@@ -45,7 +45,7 @@ struct StructureSurface {
     std::vector<std::uint8_t> is_continuation;   ///< of triangles
     std::vector<cutting::CutterSurface> single;  ///< each structure with its continuation
     /// Of faults, where it is given: the side of each that they end at where they are.
-    std::vector<std::vector<std::int8_t>> kept;
+    std::vector<std::vector<std::int8_t>> kept_sides;
 };
 
 /// @param rock  a box around the rock

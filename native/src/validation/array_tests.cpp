@@ -28,8 +28,8 @@ std::string number(std::int64_t value) {
 }
 
 Findings check_lengths(const ComplexView& m) {
-    Findings found;
-    const auto fail = [&](std::string text) { found.fail([&] { return Offender{.text = text}; }); };
+    Findings flaws;
+    const auto fail = [&](std::string text) { flaws.fail([&] { return Offender{.text = text}; }); };
     constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
     const std::size_t faces = m.face_count();
     if (m.vertices.size() % 3 != 0) fail("the coordinates are not in threes");
@@ -47,14 +47,14 @@ Findings check_lengths(const ComplexView& m) {
         fail("blocks without a volume or base");
     if (2 * faces > kLargest || m.vertex_count() > kLargest || m.cell_count() > kLargest)
         fail("there are more faces, vertices or cells than 32-bit numbers can name");
-    return found;
+    return flaws;
 }
 
 void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& has_face,
-                Findings& found) {
+                Findings& findings) {
     const auto face = static_cast<std::int64_t>(f);
     const auto fail = [&](const auto& text) {
-        found.fail([&] { return Offender{.text = text(), .face = face}; });
+        findings.fail([&] { return Offender{.text = text(), .face = face}; });
     };
     const std::int64_t begin = m.face_offsets[f], end = m.face_offsets[f + 1];
     const auto corners = static_cast<std::int64_t>(m.face_vertices.size());
@@ -86,27 +86,27 @@ void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& 
 }
 
 void check_cell(const ComplexView& m, std::size_t c, const std::vector<std::uint8_t>& has_face,
-                Findings& found) {
+                Findings& findings) {
     const auto cell = static_cast<std::int64_t>(c);
     const std::int32_t block = m.cell_block[c];
     if (block < 0 || static_cast<std::size_t>(block) >= m.blocks) {
-        found.fail([&] {
+        findings.fail([&] {
             return Offender{.text = "cell " + number(cell) + " names block " + number(block),
                             .cell = cell};
         });
     } else if (has_face[c] == 0) {
-        found.fail([&] {
+        findings.fail([&] {
             return Offender{.text = "cell " + number(cell) + " has no faces", .cell = cell};
         });
     }
 }
 
-void check_vertex(const ComplexView& m, std::size_t v, Findings& found) {
+void check_vertex(const ComplexView& m, std::size_t v, Findings& findings) {
     const auto position = m.vertex(static_cast<std::int32_t>(v));
     if (std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]))
         return;
     const auto vertex = static_cast<std::int64_t>(v);
-    found.fail([&] {
+    findings.fail([&] {
         return Offender{.text = "vertex " + number(vertex) + " is not finite", .vertex = vertex};
     });
 }
@@ -114,17 +114,17 @@ void check_vertex(const ComplexView& m, std::size_t v, Findings& found) {
 }  // namespace
 
 Findings check_arrays(const ComplexView& m, const Execution& execution) {
-    Findings found = check_lengths(m);
-    if (!found.passed()) return found;
+    Findings findings = check_lengths(m);
+    if (!findings.passed()) return findings;
     std::vector<std::uint8_t> has_face(m.cell_count(), 0);
-    const auto face = [&](std::size_t f, Findings& own) { check_face(m, f, has_face, own); };
-    const auto cell = [&](std::size_t c, Findings& own) { check_cell(m, c, has_face, own); };
-    const auto vertex = [&](std::size_t v, Findings& own) { check_vertex(m, v, own); };
-    found = look_at_each(m.face_count(), execution, face);
-    found.append(look_at_each(m.cell_count(), execution, cell));
-    found.append(look_at_each(m.vertex_count(), execution, vertex));
-    found.examined = static_cast<std::int64_t>(m.face_count());
-    return found;
+    const auto face = [&](std::size_t f, Findings& flaws) { check_face(m, f, has_face, flaws); };
+    const auto cell = [&](std::size_t c, Findings& flaws) { check_cell(m, c, has_face, flaws); };
+    const auto vertex = [&](std::size_t v, Findings& flaws) { check_vertex(m, v, flaws); };
+    findings = look_at_each(m.face_count(), execution, face);
+    findings.append(look_at_each(m.cell_count(), execution, cell));
+    findings.append(look_at_each(m.vertex_count(), execution, vertex));
+    findings.examined = static_cast<std::int64_t>(m.face_count());
+    return findings;
 }
 
 namespace {
@@ -179,9 +179,9 @@ bool are_distinct_in_order(const ComplexView& model, const Execution& execution)
         std::size_t low = 0, high = ascending;
         while (low < high) {
             const std::size_t middle = low + (high - low) / 2;
-            const auto there = model.vertex(static_cast<std::int32_t>(middle));
-            if (there == place) return true;
-            (there < place ? low : high) = there < place ? middle + 1 : middle;
+            const auto position = model.vertex(static_cast<std::int32_t>(middle));
+            if (position == place) return true;
+            (position < place ? low : high) = position < place ? middle + 1 : middle;
         }
         return false;
     });
@@ -235,9 +235,9 @@ Findings check_distinct(const ComplexView& model, const Execution& execution) {
                     [&](std::size_t b) { pairs[b] = equal_pairs(model, buckets[b]); });
     std::vector<EqualPair> all = concatenated(pairs);
     std::sort(all.begin(), all.end());
-    Findings found;
+    Findings findings;
     for (const EqualPair& pair : all) {
-        found.fail([&, pair] {
+        findings.fail([&, pair] {
             const auto& [v, earlier] = pair;
             return Offender{.text = "vertex " + std::to_string(v) +
                                     " has the coordinates of vertex " + std::to_string(earlier),
@@ -245,24 +245,24 @@ Findings check_distinct(const ComplexView& model, const Execution& execution) {
                             .place = model.vertex(v)};
         });
     }
-    return found;
+    return findings;
 }
 
 Findings check_used(const ComplexView& model, const Execution& execution) {
     std::vector<std::uint8_t> used(model.vertex_count(), 0);
     parallel_each(model.face_vertices.size(), execution,
                   [&](std::size_t i) { atomic_set(used[index(model.face_vertices[i])]); });
-    Findings found;
+    Findings findings;
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (used[v] != 0) continue;
         const auto vertex = static_cast<std::int32_t>(v);
-        found.fail([&] {
+        findings.fail([&] {
             return Offender{.text = "vertex " + std::to_string(v) + " belongs to no face",
                             .vertex = vertex,
                             .place = model.vertex(vertex)};
         });
     }
-    return found;
+    return findings;
 }
 
 /// A vertex that a loop names twice, or -1.
@@ -285,17 +285,17 @@ std::int32_t repeated_vertex(std::span<const std::int32_t> loop) {
 }  // namespace
 
 Findings check_vertices(const ComplexView& model, const Execution& execution) {
-    Findings found = check_distinct(model, execution);
-    found.append(check_used(model, execution));
-    found.examined = static_cast<std::int64_t>(model.vertex_count());
-    return found;
+    Findings findings = check_distinct(model, execution);
+    findings.append(check_used(model, execution));
+    findings.examined = static_cast<std::int64_t>(model.vertex_count());
+    return findings;
 }
 
 Findings check_loops(const ComplexView& model, const Execution& execution) {
-    Findings found = look_at_each(model.face_count(), execution, [&](std::size_t f, Findings& own) {
+    Findings all = look_at_each(model.face_count(), execution, [&](std::size_t f, Findings& flaws) {
         const std::int32_t v = repeated_vertex(model.face(f));
         if (v < 0) return;
-        own.fail([&] {
+        flaws.fail([&] {
             return Offender{.text = "face " + std::to_string(f) + " passes vertex " +
                                     std::to_string(v) + " more than once",
                             .cell = model.cell(f, 0),
@@ -304,8 +304,8 @@ Findings check_loops(const ComplexView& model, const Execution& execution) {
                             .place = model.vertex(v)};
         });
     });
-    found.examined = static_cast<std::int64_t>(model.face_count());
-    return found;
+    all.examined = static_cast<std::int64_t>(model.face_count());
+    return all;
 }
 
 namespace {
@@ -345,14 +345,14 @@ Findings check_outside(const ComplexView& model, const Execution& execution) {
             outer.push_back({corners_in_any_order(model.face(f)), static_cast<std::int32_t>(f)});
     }
     parallel_sort(outer, std::less<>(), execution);
-    Findings found;
-    found.examined = static_cast<std::int64_t>(outer.size());
+    Findings findings;
+    findings.examined = static_cast<std::int64_t>(outer.size());
     for (std::size_t i = 1; i < outer.size(); ++i) {
         if (outer[i].corners != outer[i - 1].corners) continue;
         const auto one = static_cast<std::size_t>(outer[i - 1].face);
         const auto other = static_cast<std::size_t>(outer[i].face);
         if (!same_corners(model.face(one), model.face(other))) continue;
-        found.fail([&] {
+        findings.fail([&] {
             return Offender{.text = "face " + std::to_string(other) + " has one cell, but face " +
                                     std::to_string(one) + " of cell " +
                                     std::to_string(model.cell(one, 0)) +
@@ -362,7 +362,7 @@ Findings check_outside(const ComplexView& model, const Execution& execution) {
                             .place = model.vertex(model.face(other)[0])};
         });
     }
-    return found;
+    return findings;
 }
 
 }  // namespace realmodel::validation

@@ -117,11 +117,11 @@ ClosedColumn closed_column(const ModelInput& input, std::span<const std::int32_t
     std::size_t first = 0;
     for (const strata::StackInput& rock : input.rocks) {
         const std::size_t count = rock.surfaces.size();
-        const auto own = triangles.subspan(first, count);
-        if (std::all_of(own.begin(), own.end(), [](std::int32_t t) { return t < 0; })) {
+        const auto of_rock = triangles.subspan(first, count);
+        if (std::all_of(of_rock.begin(), of_rock.end(), [](std::int32_t t) { return t < 0; })) {
             column.surface_height.resize(first + count);
         } else {
-            PlaneColumn planes(rock, own, place, column);
+            PlaneColumn planes(rock, of_rock, place, column);
             planes.replay(rock, input.block_of_surface.subspan(first, count), column);
             if (rock.base_elevation)
                 column.highest = std::max(column.highest, std::abs(*rock.base_elevation));

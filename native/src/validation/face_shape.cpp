@@ -249,17 +249,17 @@ bool FaceShape::chains_cross() const {
         if (std::abs(side) <= cross_allowance(way, d, flat_allowance_)) return;
         (side > 0 ? left : right) = true;
     };
-    std::size_t there = lowest, back = lowest;
-    while (there != highest || back != highest) {
-        const std::size_t a = next(there), b = before(back);
-        if (there != highest && (back == highest || flat_[a][0] < flat_[b][0])) {
+    std::size_t ahead = lowest, back = lowest;
+    while (ahead != highest || back != highest) {
+        const std::size_t a = next(ahead), b = before(back);
+        if (ahead != highest && (back == highest || flat_[a][0] < flat_[b][0])) {
             if (back != highest && a != highest) look(a, back, b);
-            there = a;
+            ahead = a;
         } else {
-            // seen from there, what is on the left of back is on its right
-            if (there != highest && b != highest) {
+            // seen from `ahead`, what is on the left of back is on its right
+            if (ahead != highest && b != highest) {
                 std::swap(left, right);
-                look(b, there, a);
+                look(b, ahead, a);
                 std::swap(left, right);
             }
             back = b;
@@ -300,7 +300,7 @@ FaceMeasures::FaceMeasures(const ComplexView& model, const SidesByCell& sides,
     const auto origin = cell_origins(model, sides, execution);
     const Position step = coordinate_steps(model);
     findings_ = in_chunks(
-        model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings& found) {
+        model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings& findings) {
             FaceShape shape(model);
             for (std::size_t f = begin; f < end; ++f) {
                 shape.load(f);
@@ -319,7 +319,7 @@ FaceMeasures::FaceMeasures(const ComplexView& model, const SidesByCell& sides,
                                    2;
                 const auto fault = shape.fault();
                 if (!fault) continue;
-                found.fail([&] {
+                findings.fail([&] {
                     return Offender{.text = "face " + std::to_string(f) + " " + *fault,
                                     .cell = model.cell(f, 0),
                                     .face = static_cast<std::int64_t>(f),

@@ -20,17 +20,17 @@ inline std::string figure(double value) {
 /// Items looked at by one thread at a time: fixed, so that findings do not depend on the threads.
 inline constexpr std::size_t kItemsOfChunk = 8192;
 
-/// Calls work(begin, end, found) for chunks of 0 .. count on several threads; what is found in all
-/// chunks, in order.
+/// Calls work(begin, end, findings) for chunks of 0 .. count on several threads; what is found in
+/// all chunks, in order.
 template <class Found = Findings, class Work>
 Found in_chunks(std::size_t count, const Execution& execution, const Work& work,
                 std::size_t size = kItemsOfChunk) {
-    std::vector<Found> found((count + size - 1) / size);
+    std::vector<Found> chunks((count + size - 1) / size);
     parallel_ranges(count, size, execution, [&](std::size_t begin, std::size_t end) {
-        work(begin, end, found[begin / size]);
+        work(begin, end, chunks[begin / size]);
     });
     Found all;
-    for (const Found& part : found)
+    for (const Found& part : chunks)
         all.append(part);
     return all;
 }
@@ -38,9 +38,9 @@ Found in_chunks(std::size_t count, const Execution& execution, const Work& work,
 /// Calls look(item, findings) for all items in chunks.
 template <class Look>
 Findings look_at_each(std::size_t count, const Execution& execution, const Look& look) {
-    return in_chunks(count, execution, [&](std::size_t begin, std::size_t end, Findings& found) {
+    return in_chunks(count, execution, [&](std::size_t begin, std::size_t end, Findings& findings) {
         for (std::size_t i = begin; i < end; ++i)
-            look(i, found);
+            look(i, findings);
     });
 }
 

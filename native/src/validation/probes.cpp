@@ -196,10 +196,10 @@ public:
                 surfaces.begin(), surfaces.end(), t,
                 [](std::size_t value, const auto& entry) { return value < entry.first; });
             const TriangleView& s = *at->second;
-            const std::size_t own = t - (at->first - s.triangles.size() / 3);
+            const std::size_t triangle = t - (at->first - s.triangles.size() / 3);
             std::array<PlanPosition, 3> p;
             for (std::size_t c = 0; c < 3; ++c) {
-                const double* row = corner(s.vertices, 3, s.triangles[3 * own + c]);
+                const double* row = corner(s.vertices, 3, s.triangles[3 * triangle + c]);
                 p[c] = {row[0], row[1]};
             }
             const double one = random.share();
@@ -441,11 +441,11 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
         places.push_back(wall.middle);
     const spatial::PointBins bins(places);
     const double beside = rounding.step + rounding.near;
-    std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
-                                             kItemsOfChunk);
+    std::vector<std::vector<Crossing>> crossings((model.face_count() + kItemsOfChunk - 1) /
+                                                 kItemsOfChunk);
     parallel_ranges(
         model.face_count(), kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
-            auto& own = found[begin / kItemsOfChunk];
+            auto& chunk = crossings[begin / kItemsOfChunk];
             FaceInPlan face(model);
             const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
                 for (std::size_t k = 0; k < face.plan.size(); ++k) {
@@ -472,14 +472,14 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
                     const int turns = winding(face.plan, places[i]);
                     if (turns == 0) return;
                     const bool up = turns > 0;
-                    own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
-                                   model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
-                                   face.height(places[i])});
+                    chunk.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
+                                     model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
+                                     face.height(places[i])});
                 });
             }
         });
     crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
-        for (const auto& part : found) {
+        for (const auto& part : crossings) {
             for (const Crossing& c : part)
                 put(index(c.probe), c);
         }

@@ -75,11 +75,11 @@ ModelColumn walk(const ComplexView& model, std::span<const Crossing> crossings) 
 }
 
 std::vector<BlockInterval> thicker_than(const std::vector<BlockInterval>& column, double least) {
-    std::vector<BlockInterval> kept;
+    std::vector<BlockInterval> thick;
     for (const BlockInterval& i : column) {
-        if (i.high - i.low > least) kept.push_back(i);
+        if (i.high - i.low > least) thick.push_back(i);
     }
-    return kept;
+    return thick;
 }
 
 bool agree(const std::vector<BlockInterval>& a, const std::vector<BlockInterval>& b,
@@ -114,7 +114,7 @@ public:
           model_columns_(model_columns),
           input_columns_(input_columns) {}
 
-    void look(std::size_t probe, SampleFindings& found) const {
+    void look(std::size_t probe, SampleFindings& findings) const {
         const PlanPosition& place = probes_.probes[probe].place;
         std::vector<std::int32_t> triangles(input_columns_.surface_count());
         for (std::size_t s = 0; s < triangles.size(); ++s)
@@ -126,10 +126,10 @@ public:
         for (const Crossing& c : crossings)
             highest = std::max(highest, std::abs(c.height));
         const double allowed = rounding_of_heights(highest) + 2 * closed.slope * rounding_.near;
-        compare(probe, column, closed, allowed, found.places);
-        on_surfaces(probe, crossings, closed, allowed, found.surfaces);
+        compare(probe, column, closed, allowed, findings.places);
+        on_surfaces(probe, crossings, closed, allowed, findings.surfaces);
         if (probes_.probes[probe].wall >= 0)
-            beside_wall(probe, column, closed, allowed, found.walls);
+            beside_wall(probe, column, closed, allowed, findings.walls);
     }
 
 private:
@@ -143,8 +143,8 @@ private:
     }
 
     void compare(std::size_t probe, const ModelColumn& column, const ClosedColumn& closed,
-                 double allowed, Findings& found) const {
-        ++found.examined;
+                 double allowed, Findings& findings) const {
+        ++findings.examined;
         // what is thinner than rounding need not be there, on either side
         const auto have = thicker_than(column.intervals, allowed);
         const auto want = thicker_than(closed.intervals, allowed);
@@ -153,10 +153,10 @@ private:
              agree(thicker_than(have, 2 * allowed), thicker_than(want, 2 * allowed), 2 * allowed)))
             return;
         if (near_edge(probe)) {
-            ++found.undecided;
+            ++findings.undecided;
             return;
         }
-        found.fail([&] {
+        findings.fail([&] {
             const PlanPosition& p = probes_.probes[probe].place;
             const double height = !have.empty()   ? (have[0].low + have[0].high) / 2
                                   : !want.empty() ? (want[0].low + want[0].high) / 2
@@ -171,18 +171,18 @@ private:
     }
 
     void on_surfaces(std::size_t probe, std::span<const Crossing> crossings,
-                     const ClosedColumn& closed, double allowed, Findings& found) const {
+                     const ClosedColumn& closed, double allowed, Findings& findings) const {
         for (const Crossing& c : crossings) {
             const std::int32_t surface = model_.face_surface[static_cast<std::size_t>(c.face)];
             if (surface < 0) continue;  // a base is level: all of them were looked at
-            ++found.examined;
+            ++findings.examined;
             const auto height = closed.surface_height[static_cast<std::size_t>(surface)];
             if (height && std::abs(*height - c.height) <= allowed) continue;
             if (near_edge(probe)) {
-                ++found.undecided;
+                ++findings.undecided;
                 continue;
             }
-            found.fail([&] {
+            findings.fail([&] {
                 const PlanPosition& p = probes_.probes[probe].place;
                 return Offender{.text = at(probe) + "face " + std::to_string(c.face) +
                                         " lies at height " + figure(c.height) + ", the surface " +
@@ -195,11 +195,11 @@ private:
     }
 
     void beside_wall(std::size_t probe, const ModelColumn& column, const ClosedColumn& closed,
-                     double allowed, Findings& found) const {
+                     double allowed, Findings& findings) const {
         const Probe& p = probes_.probes[probe];
         const auto w = static_cast<std::size_t>(p.wall);
         const WallSample& wall = probes_.walls[w];
-        ++found.examined;
+        ++findings.examined;
         // so far may the borders rise or fall on the way from the wall to here
         const double margin = std::max(allowed, rounding_of_heights(wall.highest)) +
                               closed.slope * (rounding_.step + rounding_.near);
@@ -215,10 +215,10 @@ private:
         const std::int32_t named = model_.block(cell);
         if (have == named) return;
         if (at_border || model_columns_.coincident(w) || near_edge(probe)) {
-            ++found.undecided;
+            ++findings.undecided;
             return;
         }
-        found.fail([&] {
+        findings.fail([&] {
             const auto name = [](std::int32_t block) {
                 return block < 0 ? std::string("the outside") : "block " + std::to_string(block);
             };
@@ -278,9 +278,9 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
     report(0.7, "comparing with the closed form");
     const ProbeComparison comparison(model, input, probes, rounding, model_columns, input_columns);
     constexpr std::size_t kProbesOfChunk = 64;
-    const auto look = [&](std::size_t begin, std::size_t end, SampleFindings& found) {
+    const auto look = [&](std::size_t begin, std::size_t end, SampleFindings& findings) {
         for (std::size_t i = begin; i < end; ++i)
-            comparison.look(i, found);
+            comparison.look(i, findings);
     };
     auto all = in_chunks<SampleFindings>(probes.probes.size(), execution, look, kProbesOfChunk);
     all.walls.examined += 2 * probes.narrow_walls;

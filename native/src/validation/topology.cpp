@@ -39,24 +39,24 @@ public:
 
     CellFindings run() {
         const std::size_t chunks = (model_.cell_count() + kCellsOfChunk - 1) / kCellsOfChunk;
-        std::vector<CellFindings> found(chunks);
+        std::vector<CellFindings> chunk_findings(chunks);
         std::vector<std::vector<std::size_t>> large(chunks);
         parallel_chunks(chunks, execution_, [&](std::size_t chunk) {
             EdgeTable table;
             const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
             for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {
                 const auto sides = sides_[c];
-                volume(c, found[chunk].volumes);
+                volume(c, chunk_findings[chunk].volumes);
                 if (sides.size() > kFacesOfLargeCell) {
                     large[chunk].push_back(c);
                 } else {
-                    closed(c, open_edge(model_, sides, table), found[chunk].closed);
+                    closed(c, open_edge(model_, sides, table), chunk_findings[chunk].closed);
                 }
             }
         });
         CellFindings all;
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-            all.append(found[chunk]);
+            all.append(chunk_findings[chunk]);
             for (const std::size_t c : large[chunk])
                 closed(c, open_edge_of_large_cell(model_, sides_[c], execution_), all.closed);
         }
@@ -69,9 +69,9 @@ public:
 private:
     static constexpr std::size_t kCellsOfChunk = 1024;
 
-    void closed(std::size_t c, const std::optional<EdgeCount>& open, Findings& found) const {
+    void closed(std::size_t c, const std::optional<EdgeCount>& open, Findings& findings) const {
         if (!open) return;
-        found.fail([&] {
+        findings.fail([&] {
             const auto times = [](std::int64_t n) {
                 return n == 1 ? std::string("once") : std::to_string(n) + " times";
             };
@@ -86,7 +86,7 @@ private:
         });
     }
 
-    void volume(std::size_t c, Findings& found) {
+    void volume(std::size_t c, Findings& findings) {
         double sum = 0, rounding = 0;
         for (const Side side : sides_[c]) {
             const FaceMeasure& face = faces_[face_of(side)];
@@ -96,9 +96,9 @@ private:
         volume_[c] = sum;
         if (sum > kRoundingSteps * rounding) return;
         const CellExtent extent(model_, sides_[c]);
-        ++found.undecided;
+        ++findings.undecided;
         if (!extent.is_flat() && sum >= -extent.volume_rounding()) return;
-        found.fail([&] {
+        findings.fail([&] {
             const std::string text =
                 extent.is_flat() ? " is flat" : " is inside out: its volume is " + figure(sum);
             return Offender{.text = "cell " + std::to_string(c) + text,
@@ -130,23 +130,23 @@ Findings check_block_volumes(const ComplexView& model, const SidesByCell& sides,
     std::vector<CorrectedSum> sums(model.block_volume.size());
     for (std::size_t c = 0; c < cell_volume.size(); ++c)
         sums[static_cast<std::size_t>(model.cell_block[c])].add(cell_volume[c]);
-    Findings found;
-    found.examined = static_cast<std::int64_t>(sums.size());
+    Findings findings;
+    findings.examined = static_cast<std::int64_t>(sums.size());
     for (std::size_t b = 0; b < sums.size(); ++b) {
         const double stated = model.block_volume[b], summed = sums[b].value();
         const double off = std::abs(stated - summed);
         if (off <= 1e-9 * std::abs(summed)) continue;
         if (off <= volume_rounding(model, sides, b)) {  // a block as thin as rounding
-            ++found.undecided;
+            ++findings.undecided;
             continue;
         }
-        found.fail([&] {
+        findings.fail([&] {
             return Offender{.text = "block " + std::to_string(b) + " is reported with volume " +
                                     figure(stated) + ", its cells have " + figure(summed),
                             .block = static_cast<std::int64_t>(b)};
         });
     }
-    return found;
+    return findings;
 }
 
 /// Seconds since the last question.

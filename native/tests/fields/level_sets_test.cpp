@@ -95,7 +95,7 @@ TEST(LevelSetsTest, APlaneIsClosedBeyondTheSidesOfTheLattice) {
     // what is below in the lattice, and pyramids a step high over it on five sides
     const double ends = 2.5 * (1.6 + 1.2), beside = 2 * 4 * 1.4, base = 4 * 2.5;
     EXPECT_NEAR(volume(set), 4 * 2.5 * 1.4 + (ends + 0.5 * beside + 0.7 * base) / 3, 1e-12);
-    EXPECT_LT(set.triangles.size() - set.own, 60U);  // each where the level set ends, or the box
+    EXPECT_LT(set.triangles.size() - set.on_level, 60U);  // where the level set ends, or the box
     for (std::size_t t = 0; t < set.triangles.size(); ++t) {
         double beyond = 0;  // how far all corners are beyond a side, or in it
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -104,7 +104,7 @@ TEST(LevelSetsTest, APlaneIsClosedBeyondTheSidesOfTheLattice) {
                 const Point& p = set.vertices[static_cast<std::size_t>(v)];
                 low = std::min(low, p[axis]);
                 high = std::max(high, p[axis]);
-                if (t < set.own) {
+                if (t < set.on_level) {
                     EXPECT_NEAR(p[2] + 0.1 * p[0], 2.0, 1e-12);
                 }
             }
@@ -112,7 +112,7 @@ TEST(LevelSetsTest, APlaneIsClosedBeyondTheSidesOfTheLattice) {
             const bool is_out = high <= slope.node({0, 0, 0})[axis] || low >= last[axis];
             beyond = std::max(beyond, is_out ? high - low : 0.0);
         }
-        EXPECT_EQ(beyond > 0, t >= set.own);
+        EXPECT_EQ(beyond > 0, t >= set.on_level);
     }
 }
 
@@ -121,7 +121,7 @@ TEST(LevelSetsTest, AFieldThatIsNowhereAboveALevelIsTheLatticeAndAPyramidOverEac
     all.add({-1, 2.5, 0.5}, 0.25);  // within an edge of the box
     const LevelSet set = all.at({9.0})[0];
     expect_closed(set);
-    EXPECT_EQ(set.own, 0U);
+    EXPECT_EQ(set.on_level, 0U);
     EXPECT_EQ(set.triangles.size(), 24U);
     EXPECT_NEAR(volume(set), 24 + 2 * (6 + 8 + 12) / 3.0, 1e-12);
 }

@@ -254,10 +254,10 @@ TEST(ContinuedStructures, ABranchHasTheSideOnWhichItRemains) {
     ends.ends_at = {0};
     const std::array structures{fault(main), ends};
     const auto continued = continued_structures(structures, {{{0, 0, 0}, {4, 4, 2}}});
-    EXPECT_TRUE(continued[0].kept.empty());
+    EXPECT_TRUE(continued[0].kept_sides.empty());
     const std::int8_t west =
         sides_of_points(std::span(structures).first(1), std::array{0.5, 2.0, 1.0}, {1, nullptr})[0];
-    EXPECT_EQ(continued[1].kept, (std::vector<std::int8_t>{west}));
+    EXPECT_EQ(continued[1].kept_sides, (std::vector<std::int8_t>{west}));
 }
 
 TEST(JoinModels, WhatLiesBetweenTwoCellsOnAFaultIsNotDividedFromItsMiddle) {

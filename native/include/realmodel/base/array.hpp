@@ -93,15 +93,15 @@ public:
         size_ = size;
     }
     void resize(std::size_t size, const Element& value) {
-        const Element own = value;
+        const Element copy = value;
         const std::size_t before = size_;
         resize(size);
-        if (size > before) std::fill(begin() + before, end(), own);
+        if (size > before) std::fill(begin() + before, end(), copy);
     }
     void assign(std::size_t size, const Element& value) {
-        const Element own = value;
+        const Element copy = value;
         clear();
-        resize(size, own);
+        resize(size, copy);
     }
     /// Elements stay where they are while there are no more than `capacity`.
     void reserve(std::size_t capacity) {

@@ -27,7 +27,7 @@ struct LatticeField {
 struct LevelSet {
     Array<std::array<double, 3>> vertices;
     std::vector<std::array<std::int32_t, 3>> triangles;
-    std::size_t own = 0;  ///< how many of these are the level set itself; the others close it
+    std::size_t on_level = 0;  ///< how many of these are the level set itself; the others close it
 };
 
 /// One for each level. No two of them cross in the lattice. A point whose value is a level is a

@@ -31,7 +31,7 @@ struct ValuesThrough {
 /// H. W. Engl 1987), by conjugate gradients (Hestenes and Stiefel 1952). In one thread: the sums
 /// are always the same.
 /// @throws InputError  kind option: corners that are no values; Cancelled
-ValuesThrough values_through(std::span<const double> given, const LevelsAtContacts& at, int rounds,
-                             const Execution& execution);
+ValuesThrough values_through(std::span<const double> initial, const LevelsAtContacts& at,
+                             int rounds, const Execution& execution);
 
 }  // namespace realmodel::fields

@@ -34,13 +34,13 @@ inline constexpr std::size_t kMostPointsOfSheets = 150;
 /// the variogram is the likeliest one of all sheets as one surface.
 /// @param sheets   of points and dips, of which no two lie at one position; only the number of its
 ///                 variances counts
-/// @param given    a variogram that is not to be changed
+/// @param fixed_variogram  a variogram that is not to be changed
 /// @return none where there is none, or the data are too few
 /// @throws InputError as fit_variogram; Cancelled
 std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> points,
                                        const Sheets& sheets, const Anisotropy& anisotropy,
                                        const FitOptions& options,
-                                       const std::optional<Variogram>& given = {},
+                                       const std::optional<Variogram>& fixed_variogram = {},
                                        const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

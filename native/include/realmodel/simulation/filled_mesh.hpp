@@ -30,13 +30,13 @@ struct FilledMesh {
 /// within about `tolerance` of the exact ones; where that takes edges shorter than `tolerance`
 /// (between surfaces that are as near), it is not reached.
 /// @param cell_region  of each cell; cells of one region need not be connected
-/// @param kept         of each surface: whether its faces matter inside a region, too
+/// @param embedded     of each surface: whether its faces matter inside a region, too
 /// @param sizes        where edges are shorter, in plan; those without places: near sharp edges.
 ///                     None may be below `tolerance`
 /// @throws InputError kinds bad_index, size (items: its number), too_large, nothing (no tetrahedron
 /// is left), flat (place), endless (refinement was given up); Cancelled
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
-                       std::span<const std::uint8_t> kept, double edge_length, double tolerance,
+                       std::span<const std::uint8_t> embedded, double edge_length, double tolerance,
                        std::span<const meshing::LocalLength> sizes, const Execution& execution);
 
 }  // namespace realmodel::simulation

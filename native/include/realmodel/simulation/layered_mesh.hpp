@@ -111,7 +111,7 @@ struct LayeredMesh {
         std::vector<std::int32_t> tall;  ///< blocks that are too thick at the top or base for that
     } skewed;
     /// Blocks that keep elements of bad shape: without these they would lose or gain too much.
-    std::vector<std::int32_t> kept;
+    std::vector<std::int32_t> unrepaired_blocks;
 };
 
 /// @param plan  a mesh of the region that contains the segments of `lines`

@@ -36,13 +36,13 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
 
 /// Of each position in plan the greatest height at which the nearest of triangles is `away` from
 /// it: the upper envelope of spheres, tubes and prisms around their corners, edges and insides.
-/// The triangles are those of a sheet that goes on far enough around the positions; `own` are its
+/// The triangles are those of a sheet that goes on far enough around the positions; `z` are its
 /// heights there. At it no triangle is nearer, up to rounding. NaN where the sheet has no height.
 /// @throws InputError kind "bad_index" where there are not as many of each, "too_large"
 /// @throws Cancelled
 std::vector<double> heights_at_distance(std::span<const SpaceTriangle> triangles,
                                         std::span<const std::array<double, 2>> positions,
-                                        std::span<const double> own, std::span<const double> away,
+                                        std::span<const double> z, std::span<const double> away,
                                         const Execution& execution = {});
 
 /// Two opposite corners, the lower one first.

@@ -38,11 +38,11 @@ public:
 
 private:
     struct Found;
-    explicit Joins(std::shared_ptr<const Found> found) : found_(std::move(found)) {}
+    explicit Joins(std::shared_ptr<const Found> joining) : joining_(std::move(joining)) {}
     friend std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
                                            const Execution& execution);
 
-    std::shared_ptr<const Found> found_;
+    std::shared_ptr<const Found> joining_;
 };
 
 /// What build_rock_masses joins before it builds; nothing where that is nothing. Takes the memory

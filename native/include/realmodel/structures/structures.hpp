@@ -46,7 +46,7 @@ std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
 struct ContinuedStructure {
     std::vector<std::array<std::array<double, 3>, 3>> triangles;
     std::vector<std::uint8_t> is_continuation;  ///< of triangles
-    std::vector<std::int8_t> kept;  ///< of a fault: the side of each that it ends at where it is
+    std::vector<std::int8_t> kept_sides;  ///< of a fault: the side of each it ends at where it is
 };
 
 /// All structures as join_models continues them for rock in a box (two corners).

@@ -54,19 +54,19 @@ void drop_hollow(RoundedParts& parts) {
         if (!has_both) continue;
         assert(std::ranges::is_permutation(pieces.polygons[both[0]], pieces.polygons[both[1]]));
         any = true;
-        std::array<std::size_t, 2> own{};
+        std::array<std::size_t, 2> which{};
         std::array<std::int32_t, 2> beyond{};  // the parts of this half there, or none
         for (std::size_t k = 0; k < 2; ++k) {
-            own[k] = pieces[both[k]].parts[0] == number ? 0 : 1;
+            which[k] = pieces[both[k]].parts[0] == number ? 0 : 1;
             const auto& sides = pieces[both[k]].sides;
-            beyond[k] = sides[0] == sides[1] ? pieces[both[k]].parts[1 - own[k]] : -1;
+            beyond[k] = sides[0] == sides[1] ? pieces[both[k]].parts[1 - which[k]] : -1;
         }
         const std::size_t stays = beyond[0] < 0 ? 0 : 1, goes = 1 - stays;
         const std::int32_t next = beyond[goes] == beyond[stays] ? -1 : beyond[goes];
-        pieces[both[stays]].parts[own[stays]] = next;
-        pieces[both[goes]].parts[own[goes]] = -1;
+        pieces[both[stays]].parts[which[stays]] = next;
+        pieces[both[goes]].parts[which[goes]] = -1;
         if (next >= 0) {
-            pieces[both[stays]].cells[own[stays]] = parts.half_cells[index(next)].cell;
+            pieces[both[stays]].cells[which[stays]] = parts.half_cells[index(next)].cell;
             pieces[both[goes]].parts = {-1, -1};
         } else if (beyond[stays] >= 0) {
             pieces[both[stays]].parts = pieces[both[goes]].parts = {-1, -1};
@@ -100,15 +100,15 @@ std::vector<NodeId> contract(const RoundedParts& parts, std::vector<NodeId>& bec
     const std::size_t vertices = parts.vertices.size();
     for (std::size_t i = 0; i < positions.size(); ++i) {
         box.include(positions[i]);
-        const auto found = first.find_or_add(Positions::hash(positions[i]),
+        const auto entry = first.find_or_add(Positions::hash(positions[i]),
                                              static_cast<std::int32_t>(i), is_at(positions[i]));
-        becomes[vertices + i] = static_cast<NodeId>(vertices) + found.number;
+        becomes[vertices + i] = static_cast<NodeId>(vertices) + entry.number;
     }
     for (std::size_t v = 0; v < vertices; ++v) {
         const Position& p = parts.vertices[v];
         if (!box.contains(p)) continue;
-        const std::int32_t found = first.find(Positions::hash(p), is_at(p));
-        if (found >= 0) becomes[vertices + index(found)] = static_cast<NodeId>(v);
+        const std::int32_t new_node = first.find(Positions::hash(p), is_at(p));
+        if (new_node >= 0) becomes[vertices + index(new_node)] = static_cast<NodeId>(v);
     }
     std::vector<NodeId> contracted;
     for (std::size_t node = vertices; node < becomes.size(); ++node) {
@@ -136,9 +136,9 @@ void keep_sound(const RoundedParts& parts, Contraction& contraction,
         }
     }
     const auto stays_sound = [&](std::int32_t part, Contraction::ShapeScratch& scratch) {
-        const auto found = contraction.shape(part, scratch);
-        return found && contraction.is_sound(*found, part) &&
-               (found->touches == 0 || parts.model.cell_kind == CellKind::kBlocks ||
+        const auto shape = contraction.shape(part, scratch);
+        return shape && contraction.is_sound(*shape, part) &&
+               (shape->touches == 0 || parts.model.cell_kind == CellKind::kBlocks ||
                 touches[parts.half_cells[index(part)].side == kAbove ? 1 : 0]);
     };
     // what all of them are like at first is found on all threads
@@ -309,11 +309,11 @@ bool glue(RoundedParts& parts, std::span<const std::size_t> equal, std::int8_t h
             if (pieces[p].parts[k] < 0 || sides[k] != half) continue;
             if (pieces[p].parts[1 - k] >= 0 && sides[1 - k] == half) continue;
             const int winding = winding_of(pieces.polygons[p]);
-            const OuterPiece own{p, k, k == 0 ? winding : -winding};
-            const auto against = std::ranges::find(outers, -own.winding, &OuterPiece::winding);
+            const OuterPiece outer{p, k, k == 0 ? winding : -winding};
+            const auto against = std::ranges::find(outers, -outer.winding, &OuterPiece::winding);
             if (against == outers.end()) {
                 if (!outers.empty()) is_doubled[p] = 1;
-                outers.push_back(own);
+                outers.push_back(outer);
                 continue;
             }
             any = true;
@@ -465,8 +465,8 @@ bool middle_sees_all(const arrangement::Loop& loop, const PlanePosition& roundin
 /// A piece in polygons whose middles see all of their edges: itself, or convex parts. Between two
 /// parts there is a node of their own, as about a middle.
 std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::size_t piece) {
-    const auto given = parts.pieces.polygons[piece];
-    const std::vector<NodeId> nodes(given.begin(), given.end());
+    const auto outline = parts.pieces.polygons[piece];
+    const std::vector<NodeId> nodes(outline.begin(), outline.end());
     const auto corners = transformed(nodes, [&](NodeId node) { return parts.at(node); });
     const View seen(polygon_normal(corners));
     const PlanePosition rounding = seen.rounding(corners);
@@ -482,20 +482,20 @@ std::vector<std::vector<NodeId>> parts_with_middles(RoundedParts& parts, std::si
     arrangement::divide_convex({&loop, 1}, rounding, {}, convex);
     std::sort(sides.begin(), sides.end());
     std::map<std::array<NodeId, 2>, NodeId> between;
-    std::vector<std::vector<NodeId>> found(convex.size());
+    std::vector<std::vector<NodeId>> polygons(convex.size());
     for (std::size_t k = 0; k < convex.size(); ++k) {
         const auto polygon = convex[k];
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
-            found[k].push_back(ends[0]);
+            polygons[k].push_back(ends[0]);
             const auto edge = unordered(ends[0], ends[1]);
             if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
             const auto [at, is_new] = between.try_emplace(edge, NodeId{});
             if (is_new) at->second = add_middle(parts, piece, ends);
-            found[k].push_back(at->second);
+            polygons[k].push_back(at->second);
         }
     }
-    return found;
+    return polygons;
 }
 
 }  // namespace
@@ -547,20 +547,20 @@ void triangulate_nonplanar(RoundedParts& parts, std::span<const std::uint8_t> is
 void drop_empty(RoundedParts& parts) {
     std::vector<std::int32_t> number(parts.half_cells.size(), -1);
     for (const CutPiece& piece : parts.pieces.origins) {
-        for (const std::int32_t own : piece.parts) {
-            if (own >= 0) number[index(own)] = 0;
+        for (const std::int32_t part : piece.parts) {
+            if (part >= 0) number[index(part)] = 0;
         }
     }
-    std::vector<HalfCell> kept;
+    std::vector<HalfCell> remaining;
     for (std::size_t part = 0; part < number.size(); ++part) {
         if (number[part] < 0) continue;
-        number[part] = static_cast<std::int32_t>(kept.size());
-        kept.push_back(parts.half_cells[part]);
+        number[part] = static_cast<std::int32_t>(remaining.size());
+        remaining.push_back(parts.half_cells[part]);
     }
-    parts.half_cells = std::move(kept);
+    parts.half_cells = std::move(remaining);
     for (CutPiece& piece : parts.pieces.origins) {
-        for (std::int32_t& own : piece.parts) {
-            if (own >= 0) own = number[index(own)];
+        for (std::int32_t& part : piece.parts) {
+            if (part >= 0) part = number[index(part)];
         }
     }
 }

@@ -116,8 +116,8 @@ bool RoundedParts::are_closed() const {
 bool RoundedParts::are_apart() const {
     std::vector<NodeId> nodes = pieces.polygons.nodes;
     sort_unique(nodes);
-    Positions found;
-    return std::ranges::all_of(nodes, [&](NodeId node) { return found.insert(at(node)); });
+    Positions positions;
+    return std::ranges::all_of(nodes, [&](NodeId node) { return positions.insert(at(node)); });
 }
 
 void RoundedParts::update() {
@@ -178,8 +178,8 @@ std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
             }
         },
         0.05);
-    for (const std::size_t own : slot) {
-        if (own != kFar) count[own] = static_cast<std::uint8_t>(std::min(count[own] + 1, 2));
+    for (const std::size_t hash : slot) {
+        if (hash != kFar) count[hash] = static_cast<std::uint8_t>(std::min(count[hash] + 1, 2));
     }
     std::vector<std::pair<std::vector<NodeId>, std::size_t>> order;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
@@ -256,9 +256,9 @@ std::optional<Contraction::PartShape> Contraction::shape(std::span<const std::in
     nodes.clear();
     sorted.clear();
     uses.clear();
-    for (const std::int32_t own : pieces) {
+    for (const std::int32_t piece : pieces) {
         const std::size_t begin = nodes.size();
-        add_contracted(index(own), nodes);
+        add_contracted(index(piece), nodes);
         const std::size_t size = nodes.size() - begin;
         if (size == 0) continue;
         const std::span loop(nodes.data() + begin, size);
@@ -266,26 +266,26 @@ std::optional<Contraction::PartShape> Contraction::shape(std::span<const std::in
         const auto first = sorted.begin() + static_cast<std::ptrdiff_t>(begin);
         std::sort(first, sorted.end());
         if (std::adjacent_find(first, sorted.end()) != sorted.end()) return std::nullopt;
-        const int facing = parts_.pieces[index(own)].parts[0] == part ? 1 : -1;
+        const int facing = parts_.pieces[index(piece)].parts[0] == part ? 1 : -1;
         faces.push_back({arrangement::loop_hash(std::span<const NodeId>(loop)), begin, size,
                          facing * winding_of(loop)});
     }
     if (!cancel_folded(scratch, may_fold_)) return std::nullopt;
-    PartShape found;
+    PartShape shape;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         if (is_repeated[i] != 0 || faces[i].winding == 0) continue;
-        ++found.count;
+        ++shape.count;
         const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
         for (std::size_t k = 0; k < loop.size(); ++k) {
             const auto [a, b] = unordered(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0]);
             uses.push_back(packed_pair(a, b));
-            found.box.include(parts_.at(loop[k]));
+            shape.box.include(parts_.at(loop[k]));
         }
     }
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 2; i < uses.size(); ++i)
-        found.touches += uses[i] == uses[i - 2];
-    return found;
+        shape.touches += uses[i] == uses[i - 2];
+    return shape;
 }
 
 std::optional<Contraction::PartShape> Contraction::shape(std::int32_t part,
@@ -303,7 +303,7 @@ bool Contraction::is_sound(const PartShape& shape, std::int32_t part) const {
 }
 
 void Contraction::apply() {
-    CutPieces kept;
+    CutPieces contracted;
     std::vector<NodeId> loop;
     // what a node became stays: no chains
     assert(std::ranges::all_of(becomes, [this](NodeId n) { return becomes[index(n)] == n; }));
@@ -316,13 +316,13 @@ void Contraction::apply() {
         const std::size_t first = p;
         while (p < pieces.size() && stays(p))
             ++p;
-        kept.add(pieces, first, p);
+        contracted.add(pieces, first, p);
         if (p == pieces.size()) break;
         loop.clear();
         add_contracted(p, loop);
-        if (!loop.empty()) kept.add(loop, pieces[p]);
+        if (!loop.empty()) contracted.add(loop, pieces[p]);
     }
-    parts_.replace_pieces(std::move(kept));
+    parts_.replace_pieces(std::move(contracted));
 }
 
 }  // namespace realmodel::cutting

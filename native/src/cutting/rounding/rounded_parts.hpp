@@ -50,8 +50,8 @@ struct RoundedParts {
 
     /// Whether a part is less than the model's cell, which was sound.
     bool is_changed(std::int32_t part) const {
-        const HalfCell& own = half_cells[index(part)];
-        return own.is_changed || parts_of_[index(own.cell)] > 1;
+        const HalfCell& half_cell = half_cells[index(part)];
+        return half_cell.is_changed || parts_of_[index(half_cell.cell)] > 1;
     }
     /// The model's surface that a piece is of, `none` if it is no part of a face.
     std::int32_t surface_of(std::size_t piece, std::int32_t none) const {

@@ -148,21 +148,21 @@ private:
                     const spatial::MeshLocator& locator, std::span<const Triangle> triangles) {
         const bool weighted = weight_ > 0;
         for (const auto& [x, y, height] : points) {
-            const auto found = locator.find({x, y});
-            if (!found) {
+            const auto position = locator.find({x, y});
+            if (!position) {
                 ++outside_;
                 continue;
             }
-            add_height(*found, triangles, weighted ? Relation::kWeighted : Relation::kEqual,
+            add_height(*position, triangles, weighted ? Relation::kWeighted : Relation::kEqual,
                        height);
         }
     }
 
-    Constraint& add_height(const spatial::MeshLocator::BarycentricPosition& found,
+    Constraint& add_height(const spatial::MeshLocator::BarycentricPosition& position,
                            std::span<const Triangle> triangles, Relation kind, double height) {
-        Constraint c{{}, found.weights, 0, kind, height};
+        Constraint c{{}, position.weights, 0, kind, height};
         for (std::size_t k = 0; k < 3; ++k)
-            c.nodes[k] = mesh_.new_number[triangles[found.triangle][k]];
+            c.nodes[k] = mesh_.new_number[triangles[position.triangle][k]];
         const auto most = std::max_element(c.weights.begin(), c.weights.end());
         if (*most > 1 - 1e-12) {
             c.nodes.fill(c.nodes[most - c.weights.begin()]);
@@ -178,9 +178,9 @@ private:
     void add_bounds(std::span<const std::array<double, 3>> bounds, Relation kind,
                     const spatial::MeshLocator& locator, std::span<const Triangle> triangles) {
         for (const auto& [x, y, height] : bounds) {
-            const auto found = locator.find({x, y});
-            if (!found) continue;
-            Constraint& c = add_height(*found, triangles, kind, height);
+            const auto position = locator.find({x, y});
+            if (!position) continue;
+            Constraint& c = add_height(*position, triangles, kind, height);
             c.height -= plane_at(c.position(mesh_.nodes));
             range_ = std::max(range_, std::abs(c.height));
         }
@@ -199,12 +199,12 @@ private:
     void add_dips(const Dips& dips, const spatial::MeshLocator& locator,
                   std::span<const Triangle> triangles, std::span<const Position> nodes) {
         for (std::size_t i = 0; i < dips.positions.size(); ++i) {
-            const auto found = locator.find(dips.positions[i]);
-            if (!found) {
+            const auto position = locator.find(dips.positions[i]);
+            if (!position) {
                 ++dips_outside_;
                 continue;
             }
-            const Triangle& triangle = triangles[found->triangle];
+            const Triangle& triangle = triangles[position->triangle];
             Triangle ordered{};
             for (std::size_t k = 0; k < 3; ++k)
                 ordered[k] = mesh_.new_number[triangle[k]];

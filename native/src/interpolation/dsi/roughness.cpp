@@ -106,13 +106,13 @@ void SparseRows::find_row(std::size_t row, std::span<const Hinge> hinges, const 
             ++mine;
         for (int other = 0; other < 4; ++other) {
             const double value = h.g[mine] * h.g[other];
-            const auto found =
+            const auto entry =
                 std::find_if(entries.begin(), entries.end(),
                              [&](const MatrixEntry& e) { return e.column == h.nodes[other]; });
-            if (found == entries.end()) {
+            if (entry == entries.end()) {
                 entries.push_back({h.nodes[other], value});
             } else {
-                found->value += value;
+                entry->value += value;
             }
         }
     }

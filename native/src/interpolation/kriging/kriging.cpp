@@ -129,16 +129,16 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
           },
           kRedundantVariance, task.execution, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
-    Eigen::MatrixXd plain(count_, terms), given(count_, terms + 1);
+    Eigen::MatrixXd plain(count_, terms), right_sides(count_, terms + 1);
     for (Eigen::Index p = 0; p < count_; ++p) {
         plain.row(p) = task.data.terms(number(p), frame_);
-        given.row(p).head(terms) = plain.row(p);
-        given(p, terms) = task.data.value(number(p), base_);
+        right_sides.row(p).head(terms) = plain.row(p);
+        right_sides(p, terms) = task.data.value(number(p), base_);
         if (factor_.left_out(p)) plain.row(p).setZero();
     }
-    factor_.solve(given, task.execution.progress);
-    basis_.make(plain, given.leftCols(terms));
-    t_ = given.col(terms);
+    factor_.solve(right_sides, task.execution.progress);
+    basis_.make(plain, right_sides.leftCols(terms));
+    t_ = right_sides.col(terms);
     qt_ = basis_.project(t_);
 }
 
@@ -291,7 +291,7 @@ void krige_in_lanes(const KrigingTask& task) {
                 }
                 scratch.lanes.krige(
                     scratch.nodes,
-                    [&](std::uint32_t i, const Estimate& found) { task.set(first + i, found); },
+                    [&](std::uint32_t i, const Estimate& kriged) { task.set(first + i, kriged); },
                     [&](std::uint32_t i) {
                         scratch.search.find(positions[i], scratch.near, task.left_out(first + i));
                         task.set(first + i, scratch.single.at(positions[i], scratch.near, 0,
@@ -377,8 +377,8 @@ Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Vario
     check_options(variogram, options);
     check_sheets(options.sheets, points.size(), options.dips.positions.size());
     const DataPoints data = prepare_points(points, options.sheets.of_points);
-    const Kriged found = krige_nodes(data, {}, true, variogram, options, execution);
-    return {data.for_given(found.z), data.for_given(found.variance), found.alone};
+    const Kriged kriged = krige_nodes(data, {}, true, variogram, options, execution);
+    return {data.for_given(kriged.z), data.for_given(kriged.variance), kriged.alone};
 }
 
 }  // namespace realmodel::interpolation

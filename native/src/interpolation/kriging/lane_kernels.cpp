@@ -66,8 +66,8 @@ void add_covariances(CovariancePart part, bool is_first, const double* dx, const
     const auto square_root = [](Vector v) { return root(v); };
     part.model = model;
     for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
-        const Vector found = covariance_of<Bits>(part, load(dx + i), load(dy + i), square_root);
-        store(out + i, is_first ? found : load(out + i) + found);
+        const Vector addend = covariance_of<Bits>(part, load(dx + i), load(dy + i), square_root);
+        store(out + i, is_first ? addend : load(out + i) + addend);
     }
 }
 
@@ -99,8 +99,8 @@ void covariances(const CovariancePart* parts, std::size_t part_count, const doub
 void add_scaled(double share, const double* structure, bool is_first, double* sum,
                 std::size_t count) {
     for (std::size_t i = 0; i < count; i += LANES_WIDTH) {
-        const Vector own = share * load(structure + i);
-        store(sum + i, is_first ? own : load(sum + i) + own);
+        const Vector scaled = share * load(structure + i);
+        store(sum + i, is_first ? scaled : load(sum + i) + scaled);
     }
 }
 
@@ -304,13 +304,13 @@ extern const LaneKernels kernels;
 
 std::span<const LaneKernels> lane_kernels() {
     static const std::vector<LaneKernels> usable = [] {
-        std::vector<LaneKernels> found;
+        std::vector<LaneKernels> supported;
 #ifdef REALMODEL_WIDE_LANES
-        if (__builtin_cpu_supports("avx512f")) found.push_back(avx512f::kernels);
-        if (__builtin_cpu_supports("avx2")) found.push_back(avx2::kernels);
+        if (__builtin_cpu_supports("avx512f")) supported.push_back(avx512f::kernels);
+        if (__builtin_cpu_supports("avx2")) supported.push_back(avx2::kernels);
 #endif
-        found.push_back(baseline::kernels);
-        return found;
+        supported.push_back(baseline::kernels);
+        return supported;
     }();
     return usable;
 }

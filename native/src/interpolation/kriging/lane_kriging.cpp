@@ -90,16 +90,16 @@ void LaneKriging::prepare_covariances() {
         const double* const of_from = of_to + to;
         const Difference& d = data_.difference(candidates_[i]);
         for (std::size_t j = 0; j < i; ++j) {
-            double found = 0;
+            double entry = 0;
             if (j < point_candidates_) {
-                found = d.of(of_to[j], of_from[j]);
+                entry = d.of(of_to[j], of_from[j]);
             } else {
                 const Difference& other = data_.difference(candidates_[j]);
                 const std::size_t k = 2 * j - point_candidates_;
-                found =
+                entry =
                     d.of(other.of(of_to[k], of_to[k + 1]), other.of(of_from[k], of_from[k + 1]));
             }
-            table_[i * count + j] = table_[j * count + i] = found;
+            table_[i * count + j] = table_[j * count + i] = entry;
         }
         table_[i * count + i] = 1;
     }
@@ -170,9 +170,9 @@ void LaneKriging::set_drift(double* terms) {
         const double u = x[i] * farthest[i % kLanes], v = y[i] * farthest[i % kLanes];
         return AtEnd{u, v, u * u, u * v, v * v};
     };
-    const auto set = [&](std::size_t i, const AtEnd& found) {
+    const auto set = [&](std::size_t i, const AtEnd& monomials) {
         for (std::size_t term = 0; term + 1 < terms_; ++term)
-            terms[term * count + i] = found[term];
+            terms[term * count + i] = monomials[term];
     };
     for (std::size_t i = 0; i < points_ * kLanes; ++i)
         set(i, at_end(i));

@@ -24,15 +24,15 @@ std::vector<spatial::Neighbor> nearest_of_some(const DistinctPoints& positions,
         const spatial::NearestPoints tree(part);
         const NodeLoop loop{asked.size(), 64, {execution.threads, nullptr}};
         loop.over_nodes([] { return std::vector<spatial::Neighbor>(); },
-                        [&](std::vector<spatial::Neighbor>& found, std::size_t k) {
+                        [&](std::vector<spatial::Neighbor>& near, std::size_t k) {
                             tree.find(positions.at(static_cast<std::size_t>(asked[k])), count,
-                                      found);
-                            for (spatial::Neighbor& neighbor : found)
+                                      near);
+                            for (spatial::Neighbor& neighbor : near)
                                 neighbor.point += static_cast<std::int32_t>(first);
                             const auto before = nearest.begin() + k * count;
-                            const auto middle = found.insert(found.end(), before, before + count);
-                            std::inplace_merge(found.begin(), middle, found.end());
-                            std::copy_n(found.begin(), count, before);
+                            const auto middle = near.insert(near.end(), before, before + count);
+                            std::inplace_merge(near.begin(), middle, near.end());
+                            std::copy_n(near.begin(), count, before);
                         });
     }
     return nearest;

@@ -60,42 +60,42 @@ NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoi
     }
 }
 
-bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbor>& found,
+bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
                           std::int32_t left_out) {
     if (plain_ && left_out == kNobody) {
-        tree_.find(position, limit_, found);
+        tree_.find(position, limit_, neighbors);
         return true;
     }
     if (rings_) {
-        rings_->find(position, left_out, found);
+        rings_->find(position, left_out, neighbors);
     } else {
         tree_.find(position, limit_ + 1, candidates_);  // the one left out is one too many
-        found.clear();
+        neighbors.clear();
         for (const spatial::Neighbor& candidate : candidates_) {
-            if (candidate.squared_distance > squared_radius_ || found.size() == limit_) break;
-            if (candidate.point != left_out) found.push_back(candidate);
+            if (candidate.squared_distance > squared_radius_ || neighbors.size() == limit_) break;
+            if (candidate.point != left_out) neighbors.push_back(candidate);
         }
     }
-    if (!found.empty()) return true;
+    if (!neighbors.empty()) return true;
     tree_.find(position, 2, candidates_);
     for (const spatial::Neighbor& candidate : candidates_) {
         if (candidate.point == left_out) continue;
-        found.push_back(candidate);
+        neighbors.push_back(candidate);
         break;
     }
     return false;
 }
 
-bool DataSearch::find(const Position& position, std::vector<spatial::Neighbor>& found,
+bool DataSearch::find(const Position& position, std::vector<spatial::Neighbor>& neighbors,
                       std::int32_t left_out) {
-    const bool near = points_.find(position, found, left_out);
-    if (data_.dip_count() == 0 || found.empty()) return near;
+    const bool near = points_.find(position, neighbors, left_out);
+    if (data_.dip_count() == 0 || neighbors.empty()) return near;
     data_.dip_tree().find(position, data_.dips_at_node(), dips_);
     for (const spatial::Neighbor& dip : dips_) {
         if (dip.squared_distance > squared_radius_) break;
         const std::int32_t first = data_.first_of_dip(dip.point);
-        found.push_back({dip.squared_distance, first});
-        found.push_back({dip.squared_distance, first + 1});
+        neighbors.push_back({dip.squared_distance, first});
+        neighbors.push_back({dip.squared_distance, first + 1});
     }
     return near;
 }

@@ -59,8 +59,8 @@ public:
             squares += share[k] * share[k];
         }
         if (squares <= kOnEdge) return false;
-        const double found = of(asked);
-        const double step = (std::clamp(found, asked.low, asked.high) - found) / squares;
+        const double current = of(asked);
+        const double step = (std::clamp(current, asked.low, asked.high) - current) / squares;
         bool any = false;
         for (std::size_t k = 0; k < 3; ++k) {
             double& thickness = at_[asked.corners[k]];
@@ -81,10 +81,10 @@ std::vector<AskedThickness> asked_of(const RaisedSheet& sheet, const TieData& da
     const spatial::MeshLocator locator(sheet.nodes, sheet.triangles);
     std::vector<AskedThickness> out;
     for (std::size_t n = 0; n < data.places.size(); ++n) {
-        const auto found = locator.find(data.places[n]);
-        if (!found) continue;
-        AskedThickness asked{sheet.triangles[static_cast<std::size_t>(found->triangle)],
-                             found->weights, 0, 0};
+        const auto location = locator.find(data.places[n]);
+        if (!location) continue;
+        AskedThickness asked{sheet.triangles[static_cast<std::size_t>(location->triangle)],
+                             location->weights, 0, 0};
         double base = 0;
         for (std::size_t k = 0; k < 3; ++k)
             base += asked.weights[k] * sheet.least[asked.corners[k]];
@@ -105,8 +105,8 @@ Thickness met(const RaisedSheet& sheet, std::span<const AskedThickness> every, d
         if (execution.progress != nullptr) execution.progress->check();
         any = false;
         for (const AskedThickness& asked : every) {
-            const double found = thickness.of(asked);
-            if (found >= asked.low - tolerance && found <= asked.high + tolerance) continue;
+            const double current = thickness.of(asked);
+            if (current >= asked.low - tolerance && current <= asked.high + tolerance) continue;
             if (asked.high <= tolerance) any = thickness.make_zero(asked) || any;
             any = thickness.project(asked) || any;
         }
@@ -135,7 +135,7 @@ bool leave_out_far(const RaisedSheet& sheet, const Thickness& thickness, double 
     const auto is_tight = [&](const AskedThickness& asked) {
         return thickness.of(asked) <= asked.low + tolerance;
     };
-    if (std::erase_if(every, [&](const auto& each) { return lifts_far(each) && is_tight(each); }))
+    if (std::erase_if(every, [&](const auto& goal) { return lifts_far(goal) && is_tight(goal); }))
         return true;
     return std::erase_if(every, lifts_far) > 0;
 }

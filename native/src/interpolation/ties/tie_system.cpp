@@ -57,9 +57,9 @@ std::vector<double> tied_heights(std::span<const double> heights, std::span<cons
     const std::size_t faults = terms.sided.size() / count;
     std::vector<KernelSum> sums;
     for (std::size_t level = 0; level < terms.radii.size(); ++level) {
-        const auto own = std::span(terms.coefficients).subspan(level * count, count);
-        if (std::all_of(own.begin(), own.end(), [](double c) { return c == 0; })) continue;
-        sums.emplace_back(terms.positions, terms.sided, faults, own, terms.radii[level]);
+        const auto weights = std::span(terms.coefficients).subspan(level * count, count);
+        if (std::all_of(weights.begin(), weights.end(), [](double c) { return c == 0; })) continue;
+        sums.emplace_back(terms.positions, terms.sided, faults, weights, terms.radii[level]);
     }
     const NodeLoop loop{nodes.size(), kNodesInChunk, execution};
     loop.over_nodes([] { return 0; },
@@ -93,13 +93,13 @@ TieRows::TieRows(const TiedSheets& sheets, const TieData& data)
     std::vector<std::array<std::int64_t, 3>> keys(rows.size());
     std::vector<std::int64_t> every;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto found = locator.find(data.places[i]);
-        if (!found) continue;
-        const auto& corners = sheets.triangles[static_cast<std::size_t>(found->triangle)];
+        const auto location = locator.find(data.places[i]);
+        if (!location) continue;
+        const auto& corners = sheets.triangles[static_cast<std::size_t>(location->triangle)];
         const auto first =
             static_cast<std::int64_t>(data.sheets[i]) * static_cast<std::int64_t>(count);
         TieRow& row = rows[i];
-        row = {{}, found->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
+        row = {{}, location->weights, data.lower[i], data.upper[i], HUGE_VAL, true};
         for (std::size_t k = 0; k < 3; ++k) {
             const Position& p = sheets.nodes[corners[k]];
             keys[i][k] = first + corners[k];
@@ -144,15 +144,15 @@ std::vector<std::int32_t> nodes_around(std::span<const Position> nodes,
                                        std::span<const std::array<std::int32_t, 3>> triangles,
                                        std::span<const Position> places) {
     const spatial::MeshLocator locator(nodes, triangles);
-    std::vector<std::int32_t> found;
+    std::vector<std::int32_t> near_nodes;
     for (const Position& place : places) {
         if (const auto at = locator.find(place)) {
             const auto& corners = triangles[static_cast<std::size_t>(at->triangle)];
-            found.insert(found.end(), corners.begin(), corners.end());
+            near_nodes.insert(near_nodes.end(), corners.begin(), corners.end());
         }
     }
-    sort_unique(found);
-    return found;
+    sort_unique(near_nodes);
+    return near_nodes;
 }
 
 namespace {
@@ -195,14 +195,14 @@ TieSystem::TieSystem(const TieRows& rows, std::span<const std::int32_t> members,
 
 std::vector<std::int32_t> TieSystem::dependent(double share, double least) const {
     const auto& place = factor_.permutationP().indices();
-    std::vector<std::int32_t> found;
+    std::vector<std::int32_t> columns;
     for (Eigen::Index i = 0; i < matrix_.cols(); ++i) {
         // What those that are eliminated before leave.
         const double left = factor_.vectorD()[place[i]];
         if (!(left > share * matrix_.coeff(i, i) + least))
-            found.push_back(static_cast<std::int32_t>(i));
+            columns.push_back(static_cast<std::int32_t>(i));
     }
-    return found;
+    return columns;
 }
 
 double TieSystem::likeness(std::int32_t a, std::int32_t b) const {
@@ -211,12 +211,12 @@ double TieSystem::likeness(std::int32_t a, std::int32_t b) const {
 }
 
 std::vector<std::int32_t> TieSystem::related(std::int32_t at) const {
-    std::vector<std::int32_t> found;
+    std::vector<std::int32_t> columns;
     for (std::int32_t column = 0; column < at; ++column)
-        if (matrix_.coeff(at, column) != 0) found.push_back(column);
+        if (matrix_.coeff(at, column) != 0) columns.push_back(column);
     for (Matrix::InnerIterator entry(matrix_, at); entry; ++entry)
-        if (entry.row() != at) found.push_back(static_cast<std::int32_t>(entry.row()));
-    return found;
+        if (entry.row() != at) columns.push_back(static_cast<std::int32_t>(entry.row()));
+    return columns;
 }
 
 std::vector<std::int32_t> crowded_members(const TieRows& rows,

@@ -44,12 +44,12 @@ public:
         : rows_(rows), distance_(distance), taken_at_(2 * distance) {}
 
     bool take(std::int32_t row) {
-        const SheetNode own = center(row);
-        if (taken_at_.any(own.position, distance_, [&](std::size_t i) {
-                return tie_kernel(own, center(taken_[i]), distance_) > 0;
+        const SheetNode node = center(row);
+        if (taken_at_.any(node.position, distance_, [&](std::size_t i) {
+                return tie_kernel(node, center(taken_[i]), distance_) > 0;
             }))
             return false;
-        taken_at_.add(own.position);
+        taken_at_.add(node.position);
         taken_.push_back(row);
         return true;
     }
@@ -97,15 +97,15 @@ public:
         const double range = range_of_data();
         const Members little = given_up_by(kLittle * range);
         if (little.empty()) return {};
-        Tying found = *this;
+        Tying tying = *this;
         for (const std::int32_t row : little)
-            found.state_[row] = TieState::kIdle;
-        if (!found.activate_some(found.beyond())) return {};
-        found.settle(kMostCrowdedByLittle);
+            tying.state_[row] = TieState::kIdle;
+        if (!tying.activate_some(tying.beyond())) return {};
+        tying.settle(kMostCrowdedByLittle);
         for (std::size_t i = 0; i < z_.size(); ++i) {
-            if (!(std::abs(found.z_[i] - z_[i]) <= kMostMoved * range)) return {};
+            if (!(std::abs(tying.z_[i] - z_[i]) <= kMostMoved * range)) return {};
         }
-        return found;
+        return tying;
     }
 
     /// By how much the sheet lies below what a row asks for; above it negative.
@@ -117,11 +117,11 @@ public:
     }
 
     TieTerms terms() && {
-        TieTerms found{std::move(radii_), rows_.positions, rows_.sided, {}};
+        TieTerms terms{std::move(radii_), rows_.positions, rows_.sided, {}};
         for (const auto& of_level : coefficients_)
-            found.coefficients.insert(found.coefficients.end(), of_level.begin(), of_level.end());
-        if (found.radii.empty()) return {};
-        return found;
+            terms.coefficients.insert(terms.coefficients.end(), of_level.begin(), of_level.end());
+        if (terms.radii.empty()) return {};
+        return terms;
     }
 
 private:
@@ -139,14 +139,14 @@ private:
 
     /// The rows that do not hold and could, the worst first.
     Members beyond() const {
-        std::vector<std::pair<double, std::int32_t>> found;
+        std::vector<std::pair<double, std::int32_t>> violations;
         for (std::size_t i = 0; i < rows_.rows.size(); ++i) {
             if (!rows_.rows[i].is_known || state_[i] != TieState::kIdle) continue;
             const double by = std::abs(missing(i));
-            if (by > tolerance_) found.emplace_back(-by, static_cast<std::int32_t>(i));
+            if (by > tolerance_) violations.emplace_back(-by, static_cast<std::int32_t>(i));
         }
-        std::sort(found.begin(), found.end());
-        return transformed(found, &std::pair<double, std::int32_t>::second);
+        std::sort(violations.begin(), violations.end());
+        return transformed(violations, &std::pair<double, std::int32_t>::second);
     }
 
     double range_of_data() const {
@@ -161,13 +161,13 @@ private:
 
     /// The inequalities that were given up, and that do not hold by so much at most.
     Members given_up_by(double most) const {
-        Members found;
+        Members given_up;
         for (std::size_t i = 0; i < state_.size(); ++i) {
             const bool is_given_up = state_[i] == TieState::kGivenUp && !rows_.rows[i].is_contact();
             if (is_given_up && std::abs(missing(i)) <= most)
-                found.push_back(static_cast<std::int32_t>(i));
+                given_up.push_back(static_cast<std::int32_t>(i));
         }
-        return found;
+        return given_up;
     }
 
     /// Makes contacts of inequalities that do not hold, of near ones only the first. Whether there
@@ -187,8 +187,8 @@ private:
     double residual(std::int32_t row) const { return target(row) - rows_.rows[row].value(z_); }
 
     double target(std::int32_t row) const {
-        const auto found = target_.find(row);
-        return found == target_.end() ? rows_.rows[row].lower : found->second;
+        const auto activated = target_.find(row);
+        return activated == target_.end() ? rows_.rows[row].lower : activated->second;
     }
 
     /// Releases inequalities that hold the sheet back from what the others ask for: in the smallest
@@ -269,18 +269,18 @@ private:
     /// Active rows that are apart: those that are so already, and more.
     Members thinned(const Members& before, double distance) const {
         Thinning apart(rows_, distance);
-        Members found;
+        Members taken;
         for (const Members* rows : {&before, &active_})
             for (const std::int32_t row : *rows)
-                if (apart.take(row)) found.push_back(row);
-        return found;
+                if (apart.take(row)) taken.push_back(row);
+        return taken;
     }
 
     Eigen::VectorXd residuals(const Members& members) const {
-        Eigen::VectorXd found(static_cast<Eigen::Index>(members.size()));
+        Eigen::VectorXd right(static_cast<Eigen::Index>(members.size()));
         for (std::size_t i = 0; i < members.size(); ++i)
-            found[static_cast<Eigen::Index>(i)] = residual(members[i]);
-        return found;
+            right[static_cast<Eigen::Index>(i)] = residual(members[i]);
+        return right;
     }
 
     /// One level of several: rows that others leave no room for wait for narrower kernels.
@@ -420,10 +420,10 @@ bool is_steep(const TieData& data, std::size_t i, std::span<const spatial::Neigh
 /// The inequalities that hold beside the data around only if the surface is steep: steeper by
 /// `kSteep` than the data are on the whole.
 std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> nodes) {
-    std::vector<bool> found(data.places.size(), false);
-    if (data.places.empty()) return found;
+    std::vector<bool> steep(data.places.size(), false);
+    if (data.places.empty()) return steep;
     DataRange range;
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < steep.size(); ++i) {
         range.add(data.lower[i]);
         range.add(data.upper[i]);
     }
@@ -431,12 +431,12 @@ std::vector<bool> steep_bounds(const TieData& data, std::span<const Position> no
     const double slope = kSteep * range.size() / std::max(box.width(), box.height());
     const spatial::NearestPoints tree(data.places);
     std::vector<spatial::Neighbor> near;
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < steep.size(); ++i) {
         if (data.lower[i] == data.upper[i]) continue;
         tree.find(data.places[i], kLookedAt, near);
-        found[i] = is_steep(data, i, near, slope);
+        steep[i] = is_steep(data, i, near, slope);
     }
-    return found;
+    return steep;
 }
 
 }  // namespace
@@ -446,10 +446,10 @@ Ties tie(const TiedSheets& sheets, const TieData& data, double tolerance,
     const TieRows rows(sheets, data);
     std::optional<Tying> tying(std::in_place, rows, tolerance, execution);
     const auto missing = [&] {
-        std::vector<double> found(rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
-        for (std::size_t i = 0; i < found.size(); ++i)
-            if (rows.rows[i].is_known) found[i] = tying->missing(i);
-        return found;
+        std::vector<double> differences(rows.rows.size(), std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t i = 0; i < differences.size(); ++i)
+            if (rows.rows[i].is_known) differences[i] = tying->missing(i);
+        return differences;
     };
     Ties ties;
     ties.before = missing();

@@ -73,7 +73,7 @@ public:
     /// A triangle at the point nearest to a position: where the search for it begins, so that what
     /// is found on ties depends on the position alone. No triangle where the points lie in one
     /// line.
-    Face near(const Position& position, std::vector<spatial::Neighbor>& found) const;
+    Face near(const Position& position, std::vector<spatial::Neighbor>& nearest) const;
 
     /// The corners of a triangle counterclockwise from the one with the least number: it does not
     /// matter then in which order points were inserted.
@@ -135,10 +135,10 @@ PointTriangulation::PointTriangulation(const DataPoints& data, Progress* progres
 }
 
 PointTriangulation::Face PointTriangulation::near(const Position& position,
-                                                  std::vector<spatial::Neighbor>& found) const {
+                                                  std::vector<spatial::Neighbor>& nearest) const {
     if (delaunay_.dimension() < 2) return {};
-    tree_.find(position, 1, found);
-    return vertices_[found[0].point]->face();
+    tree_.find(position, 1, nearest);
+    return vertices_[nearest[0].point]->face();
 }
 
 std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
@@ -246,10 +246,10 @@ PartCheck::PartCheck(const DataPoints& data, const PointsAround& around)
 
 bool PartCheck::is_hull_edge(const Position& a, const Position& b) const {
     const auto place = [&](const Position& p) {
-        const auto found = std::lower_bound(place_on_border_.begin(), place_on_border_.end(),
+        const auto entry = std::lower_bound(place_on_border_.begin(), place_on_border_.end(),
                                             std::pair(p, std::size_t{0}));
-        const bool is_there = found != place_on_border_.end() && found->first == p;
-        return is_there ? found->second : place_on_border_.size();
+        const bool is_there = entry != place_on_border_.end() && entry->first == p;
+        return is_there ? entry->second : place_on_border_.size();
     };
     const std::size_t count = place_on_border_.size(), i = place(a), j = place(b);
     if (i == count || j == count) return false;
@@ -389,7 +389,7 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
     const NodeLoop loop{nodes.size(), 256, execution, text};
     loop.over_nodes(
         [] { return std::vector<spatial::Neighbor>(); },
-        [&](std::vector<spatial::Neighbor>& found, std::size_t i) {
+        [&](std::vector<spatial::Neighbor>& nearest, std::size_t i) {
             const Position node = data.to_local(nodes[i]);
             if (check && !check->in_hull(node)) {
                 out.z[i] = check->border().nearest_value(node);
@@ -397,7 +397,7 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
             }
             Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
             int at = 0;
-            Face face = triangulation.near(node, found);
+            Face face = triangulation.near(node, nearest);
             if (face != Face()) {
                 face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
             }

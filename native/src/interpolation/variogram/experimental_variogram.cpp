@@ -121,13 +121,13 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
         while (near_classes < classes.size() && classes.limit(near_classes) <= near_limit)
             ++near_classes;
     }
-    const std::vector<std::int32_t> kept = points.kept(near);
-    const std::vector<double> values = points.some(kept).values;
-    const auto value = [&](std::int32_t i) { return values[index_among(kept, count, i)]; };
+    const std::vector<std::int32_t> numbers = points.part_with(near);
+    const std::vector<double> values = points.some(numbers).values;
+    const auto value = [&](std::int32_t i) { return values[index_among(numbers, count, i)]; };
     // Near pairs: each point with its nearest others, as far as these are surely all.
     for (std::size_t k = 0; k < near_part.size() && near_classes > 0; ++k) {
         const std::int32_t i = near_part[k];
-        const double own = value(i);
+        const double value_at_i = value(i);
         for (const spatial::Neighbor& n : std::span(near).subspan(k * row, row)) {
             // itself, or a pair seen from there
             if (n.point <= i && std::binary_search(near_part.begin(), near_part.end(), n.point))
@@ -135,7 +135,7 @@ ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Ani
             const double distance = std::sqrt(n.squared_distance);
             const std::size_t at = classes.class_of(distance);
             if (at >= near_classes) break;
-            classes.add(at, distance, own - value(n.point));
+            classes.add(at, distance, value_at_i - value(n.point));
         }
     }
     const std::vector<std::int32_t> far_part = even_part(count, kPointsForFarPairs);

@@ -34,15 +34,15 @@ LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::s
     std::vector<spatial::Neighbor> near =
         points.nearest(IsotropicSpace({}), left_out_, asked, execution);
     near = beyond(near, asked, buffer);
-    const std::vector<std::int32_t> kept = points.kept(near);
-    data_ = points.some(kept);
+    const std::vector<std::int32_t> numbers = points.part_with(near);
+    data_ = points.some(numbers);
     others_.reserve(left_out_.size() * neighbors_);
     for (std::size_t k = 0; k < near.size(); ++k) {
         if (near[k].point != left_out_[k / (neighbors_ + 1)])
-            others_.push_back(index_among(kept, points.size(), near[k].point));
+            others_.push_back(index_among(numbers, points.size(), near[k].point));
     }
     for (std::int32_t& point : left_out_)
-        point = index_among(kept, points.size(), point);
+        point = index_among(numbers, points.size(), point);
 }
 
 /// Of each point left out, and of the `asked` nearest to it: itself, and its nearest others beyond
@@ -52,12 +52,12 @@ std::vector<spatial::Neighbor> LeaveOneOut::beyond(std::span<const spatial::Neig
     std::vector<spatial::Neighbor> out;
     out.reserve(left_out_.size() * (neighbors_ + 1));
     for (std::size_t k = 0; k < left_out_.size(); ++k) {
-        const auto own = near.subspan(k * asked, asked);
+        const auto nearest = near.subspan(k * asked, asked);
         std::size_t first = 1;
-        while (first + neighbors_ < asked && own[first].squared_distance < buffer * buffer)
+        while (first + neighbors_ < asked && nearest[first].squared_distance < buffer * buffer)
             ++first;
-        out.push_back(own[0]);
-        out.insert(out.end(), own.begin() + first, own.begin() + first + neighbors_);
+        out.push_back(nearest[0]);
+        out.insert(out.end(), nearest.begin() + first, nearest.begin() + first + neighbors_);
     }
     return out;
 }
@@ -202,10 +202,10 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
             const std::int32_t point = left_out_[k];
             for (std::size_t i = 0; i < neighbors_; ++i)
                 scratch.near[i].point = others_[k * neighbors_ + i];
-            const Estimate found =
+            const Estimate estimate =
                 scratch.kriging.at(data_.local[point], scratch.near, 0, execution_.progress);
-            out.errors[k] = found.value - data_.values[point];
-            out.variances[k] = found.variance;
+            out.errors[k] = estimate.value - data_.values[point];
+            out.variances[k] = estimate.variance;
         });
     return out;
 }
@@ -262,12 +262,12 @@ bool CappedSquare::surely_less(std::span<const double> errors,
     return mean > kSurely * deviation && sum > kWorthwhile * all;
 }
 
-double honest_sill(const PredictionErrors& found) {
+double honest_sill(const PredictionErrors& predictions) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < found.errors.size(); ++i) {
+    for (std::size_t i = 0; i < predictions.errors.size(); ++i) {
         // Where neighbors nearly coincide the variance is rounding: it must not decide.
-        const double variance = std::max(found.variances[i], 1e-9);
-        ratios.push_back(found.errors[i] * found.errors[i] / variance);
+        const double variance = std::max(predictions.variances[i], 1e-9);
+        ratios.push_back(predictions.errors[i] * predictions.errors[i] / variance);
     }
     return quantile(std::move(ratios), kWithinTwo) / 4;
 }

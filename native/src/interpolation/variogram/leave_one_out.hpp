@@ -71,6 +71,6 @@ private:
 };
 
 /// The sill with which 95 % of the errors lie within two deviations.
-double honest_sill(const PredictionErrors& found);
+double honest_sill(const PredictionErrors& predictions);
 
 }  // namespace realmodel::interpolation

@@ -56,13 +56,13 @@ std::vector<std::int32_t> spread_part(std::span<const std::array<double, 3>> poi
         quota = std::max<std::size_t>(left / (sizes.size() - k), 1);
         left -= std::min(left, std::min(quota, sizes[k]));
     }
-    std::vector<std::int32_t> kept;
+    std::vector<std::int32_t> numbers;
     for (const auto of_sheet : groups_of(part, sheet)) {
         const auto first = of_sheet.first(std::min(of_sheet.size(), quota));
-        kept.insert(kept.end(), first.begin(), first.end());
+        numbers.insert(numbers.end(), first.begin(), first.end());
     }
-    std::sort(kept.begin(), kept.end());
-    return kept;
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
 }
 
 /// A part of points on sheets, as Likelihood takes them.
@@ -206,11 +206,11 @@ std::optional<Likelihood::LikelihoodTerms> Likelihood::of(const CovarianceModel&
         const double scale = data.is_point(i) ? 1 : data.difference(i).scale * baseline;
         sum += elementary::log(scale / data.unit(data.sheet(i)));
     }
-    LikelihoodTerms found{sum, values.tail(count - terms).squaredNorm(), free_, {}, 0};
-    if (!std::isfinite(found.squares)) return std::nullopt;
+    LikelihoodTerms likelihood{sum, values.tail(count - terms).squaredNorm(), free_, {}, 0};
+    if (!std::isfinite(likelihood.squares)) return std::nullopt;
     for (const std::int32_t column : column_of_)
-        found.constants.push_back(column < 0 ? 0 : coefficients(column));
-    return found;
+        likelihood.constants.push_back(column < 0 ? 0 : coefficients(column));
+    return likelihood;
 }
 
 }  // namespace realmodel::interpolation

@@ -89,7 +89,7 @@ private:
 /// 1974).
 /// @return none where there is none, or the data are too few
 std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 3>> points,
-                                             const Anisotropy& given, const FitOptions& options,
-                                             Progress* progress);
+                                             const Anisotropy& anisotropy,
+                                             const FitOptions& options, Progress* progress);
 
 }  // namespace realmodel::interpolation

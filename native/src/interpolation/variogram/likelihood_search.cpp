@@ -42,10 +42,10 @@ constexpr std::array kSmooth{VariogramModel::kGaussian, VariogramModel::kCubic,
 /// Bounds that count become data beside the points, where a Gaussian model, which is much smoother
 /// than the others, has hardly any freedom left: heights are sums of large numbers then.
 std::vector<VariogramModel> models_for(bool has_dips, bool has_bounds) {
-    std::vector<VariogramModel> found(kRisingModels.begin(), kRisingModels.end());
-    if (has_dips) found.assign(kSmooth.begin(), kSmooth.end());
-    if (has_bounds) std::erase(found, VariogramModel::kGaussian);
-    return found;
+    std::vector<VariogramModel> models(kRisingModels.begin(), kRisingModels.end());
+    if (has_dips) models.assign(kSmooth.begin(), kSmooth.end());
+    if (has_bounds) std::erase(models, VariogramModel::kGaussian);
+    return models;
 }
 
 /// By how much the logarithm has to be larger with `more` parameters than with `few` of them, as so
@@ -85,9 +85,9 @@ public:
     /// Whether a shape is more likely than the best by more than so much; then it is the best.
     bool attempt(const CovarianceModel& shape, double gain = 0) {
         if (progress_ != nullptr) progress_->check();
-        const std::optional<Likelihood::LikelihoodTerms> found = together(shape);
-        if (!found || (best_ && !(found->logarithm() > best_->logarithm() + gain))) return false;
-        best_ = found;
+        const std::optional<Likelihood::LikelihoodTerms> terms = together(shape);
+        if (!terms || (best_ && !(terms->logarithm() > best_->logarithm() + gain))) return false;
+        best_ = terms;
         shape_ = shape;
         return true;
     }
@@ -213,9 +213,9 @@ public:
         });
     }
 
-    void thicknesses_of(const Variogram& given) {
-        Variogram shape = given;
-        multiply_sills(shape, 1 / given.sill);
+    void thicknesses_of(const Variogram& shared) {
+        Variogram shape = shared;
+        multiply_sills(shape, 1 / shared.sill);
         for (const double thickness : kThicknesses)
             attempt({shape, thickness});
     }
@@ -224,11 +224,11 @@ public:
 
     /// Of some of the data alone, with the shape that was found for all.
     double sill_of(const Likelihood& part) const {
-        std::optional<Likelihood::LikelihoodTerms> own =
+        std::optional<Likelihood::LikelihoodTerms> terms =
             part.free() < kFewestFree ? std::nullopt : part.of(shape_);
-        if (!own || !(own->squares > 0)) return best_->sill();
-        own->least_sill = best_->least_sill;
-        return own->sill();
+        if (!terms || !(terms->squares > 0)) return best_->sill();
+        terms->least_sill = best_->least_sill;
+        return terms->sill();
     }
 
     Variogram variogram() const {
@@ -240,14 +240,14 @@ public:
     FittedSheets sheets() const { return {variogram(), shape_.thickness, best_->constants, {}}; }
 
     /// Of sheets whose variogram is given.
-    FittedSheets sheets_of(const Variogram& given) const {
-        return {given, shape_.thickness * best_->sill() / given.sill, best_->constants, {}};
+    FittedSheets sheets_of(const Variogram& shared) const {
+        return {shared, shape_.thickness * best_->sill() / shared.sill, best_->constants, {}};
     }
 
     /// All steps, for a surface or for sheets.
-    void run(bool has_dips, const Anisotropy& given, const FitOptions& options) {
+    void run(bool has_dips, const Anisotropy& anisotropy, const FitOptions& options) {
         const std::vector<VariogramModel> models = models_for(has_dips, options.has_bounds);
-        ranges_of(models, given);
+        ranges_of(models, anisotropy);
         if (!has_found()) return;
         thicknesses();
         refine(false);
@@ -263,12 +263,12 @@ private:
     std::optional<Likelihood::LikelihoodTerms> together(const CovarianceModel& shape) const {
         std::optional<Likelihood::LikelihoodTerms> all;
         for (const Likelihood& part : parts_) {
-            std::optional<Likelihood::LikelihoodTerms> found = part.of(shape);
-            if (!found) return std::nullopt;
+            std::optional<Likelihood::LikelihoodTerms> terms = part.of(shape);
+            if (!terms) return std::nullopt;
             if (all) {
-                all->add(*found);
+                all->add(*terms);
             } else {
-                all = std::move(found);
+                all = std::move(terms);
             }
         }
         if (!(all->squares > 0)) return std::nullopt;
@@ -347,12 +347,12 @@ bool is_enough(const Likelihood& likelihood) {
 }  // namespace
 
 std::optional<Variogram> likeliest_variogram(std::span<const std::array<double, 3>> points,
-                                             const Anisotropy& given, const FitOptions& options,
-                                             Progress* progress) {
+                                             const Anisotropy& anisotropy,
+                                             const FitOptions& options, Progress* progress) {
     const Likelihood likelihood(points, options.dips, options.drift);
     if (!is_enough(likelihood)) return std::nullopt;
     LikelihoodSearch search({likelihood}, options.error, progress);
-    search.run(!options.dips.positions.empty(), given, options);
+    search.run(!options.dips.positions.empty(), anisotropy, options);
     if (!search.has_found()) return std::nullopt;
     return search.variogram();
 }
@@ -372,11 +372,11 @@ std::vector<LikelyVariogram> likely_variograms(std::span<const std::array<double
             const double range = likelihood.diagonal() * between(kShortest, kLongest, k, kRanges);
             for (const double nugget : kLikelyNuggets) {
                 const Variogram shape{model, range, 1, nugget, anisotropy, {}};
-                const std::optional<Likelihood::LikelihoodTerms> found = likelihood.of({shape});
-                if (!found || !(found->squares > 0)) continue;
-                const double free = static_cast<double>(found->free);
-                const double density = found->density - free / 2 * elementary::log(found->squares);
-                out.push_back({shape, density, found->squares, found->free});
+                const std::optional<Likelihood::LikelihoodTerms> terms = likelihood.of({shape});
+                if (!terms || !(terms->squares > 0)) continue;
+                const double free = static_cast<double>(terms->free);
+                const double density = terms->density - free / 2 * elementary::log(terms->squares);
+                out.push_back({shape, density, terms->squares, terms->free});
             }
         }
     }
@@ -399,41 +399,41 @@ std::vector<FittedVariogram> fit_alike(std::span<const SurfaceData> surfaces,
     search.run(has_dips, anisotropy, options);
     if (!search.has_found()) return {};
     const Variogram shared = search.variogram();
-    std::vector<FittedVariogram> found;
+    std::vector<FittedVariogram> fits;
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        Variogram own = shared;
-        multiply_sills(own, search.sill_of(all[k]) / shared.sill);
-        found.push_back({own, experimental_variogram(surfaces[k].points, own.anisotropy)});
+        Variogram scaled = shared;
+        multiply_sills(scaled, search.sill_of(all[k]) / shared.sill);
+        fits.push_back({scaled, experimental_variogram(surfaces[k].points, scaled.anisotropy)});
     }
-    return found;
+    return fits;
 }
 
 std::optional<FittedSheets> fit_sheets(std::span<const std::array<double, 3>> points,
                                        const Sheets& sheets, const Anisotropy& anisotropy,
                                        const FitOptions& options,
-                                       const std::optional<Variogram>& given,
+                                       const std::optional<Variogram>& fixed_variogram,
                                        const Execution& execution) {
     check_anisotropy(anisotropy);
     check_sheets(sheets, points.size(), options.dips.positions.size());
     const Likelihood likelihood(points, options.dips, options.drift, sheets);
     if (!is_enough(likelihood)) return std::nullopt;
     LikelihoodSearch search({likelihood}, options.error, execution.progress);
-    if (given) {
-        search.thicknesses_of(*given);
+    if (fixed_variogram) {
+        search.thicknesses_of(*fixed_variogram);
     } else {
         search.run(!options.dips.positions.empty(), anisotropy, options);
     }
     if (!search.has_found()) return std::nullopt;
-    FittedSheets found = given ? search.sheets_of(*given) : search.sheets();
-    const std::vector<std::array<double, 3>> leveled = one_surface(points, sheets, found.constants);
-    if (!given && found.thickness <= kThicknesses[0]) {
+    FittedSheets fit = fixed_variogram ? search.sheets_of(*fixed_variogram) : search.sheets();
+    const std::vector<std::array<double, 3>> leveled = one_surface(points, sheets, fit.constants);
+    if (!fixed_variogram && fit.thickness <= kThicknesses[0]) {
         // thicknesses that do not vary say nothing of how heights do
         const auto as_one = likeliest_variogram(leveled, anisotropy, options, execution.progress);
-        if (as_one) found.variogram = *as_one;
+        if (as_one) fit.variogram = *as_one;
     }
-    found.points = likelihood.points();
-    found.experimental = experimental_variogram(leveled, found.variogram.anisotropy);
-    return found;
+    fit.points = likelihood.points();
+    fit.experimental = experimental_variogram(leveled, fit.variogram.anisotropy);
+    return fit;
 }
 
 }  // namespace realmodel::interpolation

@@ -35,9 +35,10 @@ ManyPoints::ManyPoints(std::span<const std::array<double, 3>> points, bool are_a
     const DataPoints data = prepare_points(points);
     if (data.local.size() == points.size()) return;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (static_cast<std::size_t>(data.number_of[i]) == own_.size()) own_.push_back(points[i]);
+        if (static_cast<std::size_t>(data.number_of[i]) == distinct_.size())
+            distinct_.push_back(points[i]);
     }
-    points_ = own_;
+    points_ = distinct_;
 }
 
 double ManyPoints::value(std::size_t i) const {
@@ -84,7 +85,7 @@ double ManyPoints::largest_value() const {
     return largest;
 }
 
-std::vector<std::int32_t> ManyPoints::kept(std::span<const spatial::Neighbor> near) const {
+std::vector<std::int32_t> ManyPoints::part_with(std::span<const spatial::Neighbor> near) const {
     std::vector<std::int32_t> numbers;
     if (size() <= most_) {
         numbers.resize(size());

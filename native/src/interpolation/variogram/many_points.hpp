@@ -59,7 +59,7 @@ public:
     double largest_value() const;
 
     /// Numbers of points, ascending, each once, among them those of `near`: of few points all.
-    std::vector<std::int32_t> kept(std::span<const spatial::Neighbor> near) const;
+    std::vector<std::int32_t> part_with(std::span<const spatial::Neighbor> near) const;
     /// Some points, in the order of their numbers here.
     DataPoints some(std::span<const std::int32_t> numbers) const;
 
@@ -69,13 +69,13 @@ private:
         DriftBasis basis;
         DriftBasis::Coefficients coefficients;
     };
-    std::vector<std::array<double, 3>> own_;  // where points were repeated
+    std::vector<std::array<double, 3>> distinct_;  // where points were repeated
     std::span<const std::array<double, 3>> points_;
     std::size_t most_;
     std::optional<Trend> trend_;
 };
 
-/// Where a number is among numbers that ManyPoints::kept gave of `size` points.
+/// Where a number is among numbers that ManyPoints::part_with gave of `size` points.
 std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size,
                          std::int32_t number);
 

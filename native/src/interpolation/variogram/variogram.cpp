@@ -34,17 +34,17 @@ bool is_positive(double number) {
 }  // namespace
 
 std::string_view name_of(VariogramModel model) {
-    for (const auto& [own, name] : kNamedModels) {
-        if (own == model) return name;
+    for (const auto& [named_model, name] : kNamedModels) {
+        if (named_model == model) return name;
     }
     return {};
 }
 
 VariogramModel variogram_model(std::string_view name) {
     std::string known;
-    for (const auto& [model, own] : kNamedModels) {
-        if (own == name) return model;
-        known += (known.empty() ? "" : ", ") + std::string(own);
+    for (const auto& [model, model_name] : kNamedModels) {
+        if (model_name == name) return model;
+        known += (known.empty() ? "" : ", ") + std::string(model_name);
     }
     throw InputError("variogram", "variogram model \"" + std::string(name) +
                                       "\" is not known; there are " + known);

@@ -57,10 +57,10 @@ public:
         if (all.empty()) return;
         if (finds) {
             const CurveFit best = best_of(all).fit;
-            const Anisotropy found = find_anisotropy(few_, best, *square_of_);
-            if (found.ratio > 1 && better_with(found, best)) {
-                out.variogram.anisotropy = found;
-                out.experimental = experimental_variogram(all_, found, execution_.progress);
+            const Anisotropy anisotropy = find_anisotropy(few_, best, *square_of_);
+            if (anisotropy.ratio > 1 && better_with(anisotropy, best)) {
+                out.variogram.anisotropy = anisotropy;
+                out.experimental = experimental_variogram(all_, anisotropy, execution_.progress);
                 all = search(out, hopeful_models(all), 0.4, 0.75);
             }
         }
@@ -98,10 +98,10 @@ private:
         return all;
     }
 
-    bool better_with(const Anisotropy& found, const CurveFit& fit) const {
+    bool better_with(const Anisotropy& anisotropy, const CurveFit& fit) const {
         const PredictionErrors without = points_.errors(Covariance(variogram_of(fit, {})));
         const PredictionErrors with =
-            points_.errors(Covariance(variogram_of(stretched(fit, found), found)));
+            points_.errors(Covariance(variogram_of(stretched(fit, anisotropy), anisotropy)));
         return square_of_->surely_less(with.errors, without.errors);
     }
 

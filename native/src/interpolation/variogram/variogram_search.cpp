@@ -111,8 +111,8 @@ std::optional<CurveFit> VariogramSearch::with_sill(const VariogramCurve& curve,
 }
 
 VariogramCandidate VariogramSearch::judged(const CurveFit& fit,
-                                           const PredictionErrors& found) const {
-    return {fit, honest_sill(found), (*square_of_)(found.errors)};
+                                           const PredictionErrors& predictions) const {
+    return {fit, honest_sill(predictions), (*square_of_)(predictions.errors)};
 }
 
 std::optional<VariogramCandidate> VariogramSearch::candidate(const VariogramCurve& curve,
@@ -132,10 +132,10 @@ VariogramCandidate VariogramSearch::refined(const VariogramCandidate& start) con
         step.change(changed, up);
         const VariogramCurve& curve = changed.curve;
         if (curve.range > longest || curve.rough_share > kMostRough) return false;
-        const std::optional<VariogramCandidate> found = candidate(curve, changed.nugget);
-        if (!found || found->contradicts()) return false;
-        if (!(found->square < (1 - by_chance) * best.square)) return false;
-        best = *found;
+        const std::optional<VariogramCandidate> trial = candidate(curve, changed.nugget);
+        if (!trial || trial->contradicts()) return false;
+        if (!(trial->square < (1 - by_chance) * best.square)) return false;
+        best = *trial;
         return true;
     };
     for (const RefinementStep& step : kSteps) {
@@ -156,9 +156,10 @@ void VariogramSearch::start(std::span<const VariogramModel> models) {
         for (const bool with_nugget : {true, false}) {
             const CurveFit fit = fit_curve(e_, model, with_nugget);
             if (!usable(fit)) continue;
-            PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
-            all_.push_back({fit, honest_sill(found), 0});
-            errors.push_back(std::move(found.errors));
+            PredictionErrors predictions =
+                points_.errors(Covariance(variogram_of(fit, anisotropy_)));
+            all_.push_back({fit, honest_sill(predictions), 0});
+            errors.push_back(std::move(predictions.errors));
         }
     }
     if (errors.empty()) return;
@@ -218,17 +219,17 @@ void VariogramSearch::attempt(const VariogramCurve& curve, std::span<const doubl
     std::vector<Covariance> covariances;
     for (const double rough_share : rough_shares) {
         for (const double nugget : nuggets) {
-            VariogramCurve own = curve;
-            own.rough_share = rough_share;
-            const std::optional<CurveFit> fit = with_sill(own, nugget);
+            VariogramCurve trial_curve = curve;
+            trial_curve.rough_share = rough_share;
+            const std::optional<CurveFit> fit = with_sill(trial_curve, nugget);
             if (!fit) continue;
             fits.push_back(*fit);
             covariances.emplace_back(variogram_of(*fit, anisotropy_));
         }
     }
-    const std::vector<PredictionErrors> found = points_.errors(covariances);
+    const std::vector<PredictionErrors> predictions = points_.errors(covariances);
     for (std::size_t k = 0; k < fits.size(); ++k)
-        all_.push_back(judged(fits[k], found[k]));
+        all_.push_back(judged(fits[k], predictions[k]));
 }
 
 /// Nuggets, then ranges, then nuggets again.
@@ -318,9 +319,9 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
     Vector best{0, 0};
     double least = square(best);
     const auto attempt = [&](const Vector& v) {
-        const double found = square(v);
-        if (!(found < least)) return false;
-        least = found;
+        const double mean_square = square(v);
+        if (!(mean_square < least)) return false;
+        least = mean_square;
         best = v;
         return true;
     };

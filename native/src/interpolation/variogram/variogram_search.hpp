@@ -60,7 +60,7 @@ public:
 private:
     void start(std::span<const VariogramModel> models);
     std::optional<CurveFit> with_sill(const VariogramCurve& curve, double nugget) const;
-    VariogramCandidate judged(const CurveFit& fit, const PredictionErrors& found) const;
+    VariogramCandidate judged(const CurveFit& fit, const PredictionErrors& predictions) const;
     std::optional<VariogramCandidate> candidate(const VariogramCurve& curve, double nugget) const;
     void attempt(const VariogramCurve& curve, std::span<const double> nuggets,
                  std::span<const double> rough_shares, double longest);

@@ -176,8 +176,9 @@ bool ChangeCheck::keeps_cells(const Change& change) {
     return true;
 }
 
-/// @param own  the removed and the added faces of the cell, added ones first
-bool ChangeCheck::keeps_cell(const Change& change, std::int32_t cell, std::span<const Beside> own) {
+/// @param sides  the removed and the added faces of the cell, added ones first
+bool ChangeCheck::keeps_cell(const Change& change, std::int32_t cell,
+                             std::span<const Beside> sides) {
     const bool is_small = cell >= 0 && complex_.cell_faces(cell).size() <= kFewFaces;
     const bool is_tested = contains(change.tested, cell);
     if (is_small) {
@@ -185,20 +186,20 @@ bool ChangeCheck::keeps_cell(const Change& change, std::int32_t cell, std::span<
         before_.assign(faces.begin(), faces.end());
     } else {
         before_.clear();
-        if (is_tested) take_surroundings(change, cell, own);
+        if (is_tested) take_surroundings(change, cell, sides);
     }
     after_.clear();
     for (const std::int32_t f : before_) {
         if (!is_removed(f)) after_.push_back(f);
     }
-    for (const Beside& each : own) {
-        if (each.face < 0) after_.push_back(each.face);
+    for (const Beside& side : sides) {
+        if (side.face < 0) after_.push_back(side.face);
     }
     double volume = 0;
     if (!is_small || !after_.empty()) {
         if (is_small && after_.size() < kLeastFaces) return false;
         if (cell >= 0 && !(is_small ? keeps_shape(change, cell, volume)
-                                    : keeps_volume(change, cell, own, volume)))
+                                    : keeps_volume(change, cell, sides, volume)))
             return false;
         int doubled_before = 0, doubled = 0;
         if (is_tested && (euler_number(change, cell, before_, doubled_before) !=
@@ -213,10 +214,10 @@ bool ChangeCheck::keeps_cell(const Change& change, std::int32_t cell, std::span<
 
 /// All faces of the cell at the vertices of removed and added ones: beyond these nothing changes.
 void ChangeCheck::take_surroundings(const Change& change, std::int32_t cell,
-                                    std::span<const Beside> own) {
+                                    std::span<const Beside> sides) {
     vertices_.clear();
-    for (const Beside& each : own) {
-        const Loop loop = loop_of(change, each.face);
+    for (const Beside& side : sides) {
+        const Loop loop = loop_of(change, side.face);
         vertices_.insert(vertices_.end(), loop.begin(), loop.end());
     }
     sort_unique(vertices_);
@@ -235,22 +236,22 @@ bool ChangeCheck::keeps_shape(const Change& change, std::int32_t cell, double& v
     for (const std::int32_t f : after_)
         seen_.push_back({shape_of(change, f), cells_of(change, f)[0] == cell ? 1.0 : -1.0});
     const CellShape& old = complex_.cell(cell);
-    const CellShape found = cell_shape(seen_);
-    volume = found.volume;
+    const CellShape shape = cell_shape(seen_);
+    volume = shape.volume;
     // a cell that rounding made flat or turned over before may stay so until it vanishes
-    return (!is_flat(found) || (is_flat(old) && volume >= old.volume)) &&
-           found.turned_faces <= old.turned_faces;
+    return (!is_flat(shape) || (is_flat(old) && volume >= old.volume)) &&
+           shape.turned_faces <= old.turned_faces;
 }
 
 /// Of a cell of many faces.
-bool ChangeCheck::keeps_volume(const Change& change, std::int32_t cell, std::span<const Beside> own,
-                               double& volume) const {
+bool ChangeCheck::keeps_volume(const Change& change, std::int32_t cell,
+                               std::span<const Beside> sides, double& volume) const {
     const CellShape& old = complex_.cell(cell);
-    const Vec3 from = complex_.point(loop_of(change, own[0].face)[0]);
+    const Vec3 from = complex_.point(loop_of(change, sides[0].face)[0]);
     volume = old.volume;
-    for (const Beside& each : own) {
-        const FaceVectors& shape = shape_of(change, each.face);
-        const bool adds = (each.face < 0) == (cells_of(change, each.face)[0] == cell);
+    for (const Beside& side : sides) {
+        const FaceVectors& shape = shape_of(change, side.face);
+        const bool adds = (side.face < 0) == (cells_of(change, side.face)[0] == cell);
         volume += (adds ? 1 : -1) * dot(shape.area, minus(shape.center, from)) / 3;
     }
     return volume > kLeastVolume * old.area * std::sqrt(old.area);
@@ -287,9 +288,9 @@ int ChangeCheck::euler_number(const Change& change, std::int32_t cell,
 bool ChangeCheck::keeps_edges(const Change& change, std::int32_t vertex) {
     around_.clear();
     const auto add = [&](std::int32_t face) {
-        const auto found = beside(loop_of(change, face), vertex);
-        if (!found) return;
-        for (const std::int32_t v : *found)
+        const auto neighbors = beside(loop_of(change, face), vertex);
+        if (!neighbors) return;
+        for (const std::int32_t v : *neighbors)
             around_.push_back({v, cells_of(change, face)});
     };
     for_faces_after(change, vertex, add);
@@ -308,11 +309,11 @@ bool ChangeCheck::is_round(std::span<Around> faces) {
             return face.cells[0] == cell || face.cells[1] == cell;
         };
         const auto rest = faces.subspan(next);
-        const auto found = std::find_if(rest.begin(), rest.end(), has_cell);
-        if (found == rest.end() || std::find_if(found + 1, rest.end(), has_cell) != rest.end())
+        const auto face = std::find_if(rest.begin(), rest.end(), has_cell);
+        if (face == rest.end() || std::find_if(face + 1, rest.end(), has_cell) != rest.end())
             return false;
-        cell = found->cells[0] == cell ? found->cells[1] : found->cells[0];
-        std::swap(rest.front(), *found);
+        cell = face->cells[0] == cell ? face->cells[1] : face->cells[0];
+        std::swap(rest.front(), *face);
     }
     return cell == faces[0].cells[0];
 }

@@ -80,12 +80,12 @@ private:
 
     /// All short edges, each once.
     std::vector<ShortEdge> short_edges() const {
-        std::vector<ShortEdge> found;
+        std::vector<ShortEdge> edges;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
-            if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, found);
+            if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, edges);
         }
-        sort_unique(found);
-        return found;
+        sort_unique(edges);
+        return edges;
     }
 
     bool is_edge(std::int32_t from, std::int32_t to) const {
@@ -96,8 +96,8 @@ private:
     }
 
     static bool next_to(std::span<const std::int32_t> loop, std::int32_t u, std::int32_t v) {
-        const auto found = beside(loop, u);
-        return found && contains(*found, v);
+        const auto neighbors = beside(loop, u);
+        return neighbors && contains(*neighbors, v);
     }
 
     void join_short_edges() {
@@ -128,41 +128,41 @@ private:
                               : std::tie(a[2], a[0], a[1]) > std::tie(b[2], b[0], b[1]);
         }
         const std::int32_t gone = takes_other ? edge.to : edge.from;
-        const std::int32_t kept = takes_other ? edge.from : edge.to;
-        moved_[index(kept)] = std::max(moved_[index(kept)], moved_[index(gone)] + edge.length);
-        apply(takes_other ? other_ : change_, kept);
+        const std::int32_t target = takes_other ? edge.from : edge.to;
+        moved_[index(target)] = std::max(moved_[index(target)], moved_[index(gone)] + edge.length);
+        apply(takes_other ? other_ : change_, target);
     }
 
     /// The change that brings a vertex to another one.
-    bool moves(std::int32_t gone, std::int32_t kept, Change& change) {
-        if (moved_[index(gone)] + complex_.distance(gone, kept) > tolerance_) return false;
+    bool moves(std::int32_t gone, std::int32_t target, Change& change) {
+        if (moved_[index(gone)] + complex_.distance(gone, target) > tolerance_) return false;
         change.clear();
         beside_edge_.clear();
         for (const std::int32_t f : complex_.vertex_faces(gone)) {
             const auto loop = complex_.corners(f);
             loop_.assign(loop.begin(), loop.end());
-            if (contains(loop_, kept)) {
+            if (contains(loop_, target)) {
                 const auto& cells = complex_.cells(f);
                 std::vector<std::int32_t>& of =
-                    next_to(loop, gone, kept) ? beside_edge_ : change.tested;
+                    next_to(loop, gone, target) ? beside_edge_ : change.tested;
                 of.insert(of.end(), cells.begin(), cells.end());
             }
-            std::replace(loop_.begin(), loop_.end(), gone, kept);
+            std::replace(loop_.begin(), loop_.end(), gone, target);
             change.removed.push_back(f);
             change.add(loop_, f, complex_.cells(f), complex_.surface(f));
         }
         // cells with both vertices, but not with the edge
-        kept_cells_.clear();
-        for (const std::int32_t f : complex_.vertex_faces(kept))
-            kept_cells_.insert(kept_cells_.end(), complex_.cells(f).begin(),
-                               complex_.cells(f).end());
+        target_cells_.clear();
+        for (const std::int32_t f : complex_.vertex_faces(target))
+            target_cells_.insert(target_cells_.end(), complex_.cells(f).begin(),
+                                 complex_.cells(f).end());
         for (const std::int32_t f : change.removed) {
             for (const std::int32_t c : complex_.cells(f)) {
-                if (!contains(beside_edge_, c) && contains(kept_cells_, c))
+                if (!contains(beside_edge_, c) && contains(target_cells_, c))
                     change.tested.push_back(c);
             }
         }
-        return check_.settle(change, kept);
+        return check_.settle(change, target);
     }
 
     void apply(const Change& change, std::int32_t vertex) {
@@ -219,13 +219,13 @@ private:
         if (nearest < 0 || !(widest < tolerance_)) return;
         change_.clear();
         for (const std::int32_t f : complex_.vertex_faces(from)) {
-            const auto own = complex_.corners(f);
-            if (!next_to(own, from, to)) continue;
+            const auto corners = complex_.corners(f);
+            if (!next_to(corners, from, to)) continue;
             loop_.clear();
-            for (std::size_t i = 0; i < own.size(); ++i) {
-                loop_.push_back(own[i]);
-                const std::int32_t after = own[(i + 1) % own.size()];
-                if ((own[i] == from && after == to) || (own[i] == to && after == from))
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                loop_.push_back(corners[i]);
+                const std::int32_t after = corners[(i + 1) % corners.size()];
+                if ((corners[i] == from && after == to) || (corners[i] == to && after == from))
                     loop_.push_back(nearest);
             }
             change_.removed.push_back(f);
@@ -263,21 +263,21 @@ private:
     bool has_few_faces(std::int32_t cell) const { return complex_.cell_faces(cell).size() < 4; }
 
     std::vector<ThinCell> thin_cells() {
-        std::vector<ThinCell> found;
+        std::vector<ThinCell> cells;
         for (std::int32_t c = 0; c < complex_.cell_count(); ++c) {
             poll(progress_, index(c));
             // a cell is at least as wide as twice its volume over its area
             if (!complex_.has_cell(c)) continue;
             if (has_few_faces(c)) {
-                found.push_back({0, c});
+                cells.push_back({0, c});
                 continue;
             }
             if (!(2 * complex_.cell(c).volume < tolerance_ * complex_.cell(c).area)) continue;
-            const double own = width(c);
-            if (own < tolerance_) found.push_back({own, c});
+            const double cell_width = width(c);
+            if (cell_width < tolerance_) cells.push_back({cell_width, c});
         }
-        std::sort(found.begin(), found.end());
-        return found;
+        std::sort(cells.begin(), cells.end());
+        return cells;
     }
 
     void join_thin_cells() {
@@ -337,11 +337,11 @@ private:
             const auto [a, b] = complex_.cells(f);
             const std::int32_t other = a == cell ? b : a;
             if (other < 0) continue;
-            auto own = std::find_if(neighbors.begin(), neighbors.end(),
-                                    [&](const NeighborCell& n) { return n.cell == other; });
-            if (own == neighbors.end()) own = neighbors.insert(own, {0, other, false});
-            own->area += length(complex_.shape(f).area);
-            own->has_fault = own->has_fault || check_.is_fault(complex_.surface(f));
+            auto match = std::find_if(neighbors.begin(), neighbors.end(),
+                                      [&](const NeighborCell& n) { return n.cell == other; });
+            if (match == neighbors.end()) match = neighbors.insert(match, {0, other, false});
+            match->area += length(complex_.shape(f).area);
+            match->has_fault = match->has_fault || check_.is_fault(complex_.surface(f));
         }
         double most = 0;
         for (const NeighborCell& n : neighbors)
@@ -377,7 +377,7 @@ private:
     std::vector<ShortEdge> fresh_edges_;
     EdgeQueue queue_;  // short edges, the shortest first; some are gone since, or twice there
     Change change_, other_;
-    std::vector<std::int32_t> loop_, beside_edge_, kept_cells_;
+    std::vector<std::int32_t> loop_, beside_edge_, target_cells_;
     std::size_t changes_ = 0;
 };
 

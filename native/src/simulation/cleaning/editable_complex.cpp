@@ -56,17 +56,17 @@ std::vector<std::int32_t> copy_of(std::span<const std::int32_t> numbers) {
 /// Lists of the faces that have each of `count` things; visit(face, see) calls see(thing).
 template <class Visit>
 ListPool faces_of(std::size_t count, std::size_t faces, const Visit& visit) {
-    const auto found = bucketize<std::int32_t>(count, [&](const auto& put) {
+    const auto lists = bucketize<std::int32_t>(count, [&](const auto& put) {
         for (std::size_t f = 0; f < faces; ++f)
             visit(f, [&](std::int32_t thing) { put(index(thing), static_cast<std::int32_t>(f)); });
     });
-    return {std::span<const std::uint32_t>(found.offsets), copy_of(found.values)};
+    return {std::span<const std::uint32_t>(lists.offsets), copy_of(lists.values)};
 }
 
 }  // namespace
 
 CellShape cell_shape(std::span<const SeenFace> faces) {
-    CellShape found;
+    CellShape shape;
     Vec3 middle{};
     for (const SeenFace& face : faces)
         middle = plus(middle, face.shape.center);
@@ -75,16 +75,16 @@ CellShape cell_shape(std::span<const SeenFace> faces) {
     for (const SeenFace& face : faces) {
         const Vec3 arm = minus(face.shape.center, middle);
         const double part = face.sign * dot(face.shape.area, arm) / 3;
-        found.volume += part;
+        shape.volume += part;
         moment = moved(moment, part, times(0.75, arm));
-        found.area += length(face.shape.area);
+        shape.area += length(face.shape.area);
     }
-    const Vec3 center = found.volume > 0 ? moved(middle, 1 / found.volume, moment) : middle;
+    const Vec3 center = shape.volume > 0 ? moved(middle, 1 / shape.volume, moment) : middle;
     for (const SeenFace& face : faces) {
         if (!(face.sign * dot(face.shape.area, minus(face.shape.center, center)) > 0))
-            ++found.turned_faces;
+            ++shape.turned_faces;
     }
-    return found;
+    return shape;
 }
 
 void Change::clear() {
@@ -163,7 +163,7 @@ FaceVectors EditableComplex::shape_of(std::span<const std::int32_t> loop) const 
     for (const std::int32_t v : loop)
         middle = plus(middle, point(v));
     middle = times(1.0 / static_cast<double>(loop.size()), middle);
-    FaceVectors found;
+    FaceVectors vectors;
     Vec3 moment{};
     double weights = 0;
     Vec3 from = minus(point(loop.back()), middle);
@@ -171,13 +171,13 @@ FaceVectors EditableComplex::shape_of(std::span<const std::int32_t> loop) const 
         const Vec3 to = minus(point(v), middle);
         const Vec3 part = times(0.5, cross(from, to));
         const double weight = length(part);
-        found.area = plus(found.area, part);
+        vectors.area = plus(vectors.area, part);
         moment = moved(moment, weight, plus(from, to));
         weights += weight;
         from = to;
     }
-    found.center = weights > 0 ? moved(middle, 1 / (3 * weights), moment) : middle;
-    return found;
+    vectors.center = weights > 0 ? moved(middle, 1 / (3 * weights), moment) : middle;
+    return vectors;
 }
 
 /// Whether the faces of a cell use each of its edges as often one way as the other.
@@ -248,11 +248,11 @@ void EditableComplex::apply(const Change& change) {
 }
 
 ComplexCounts EditableComplex::counts() const {
-    ComplexCounts found;
+    ComplexCounts counts;
     for (std::int32_t f = 0; f < face_count(); ++f)
-        found.faces += has_face(f);
+        counts.faces += has_face(f);
     for (std::int32_t c = 0; c < cell_count(); ++c)
-        found.cells += has_cell(c);
+        counts.cells += has_cell(c);
     std::vector<std::int32_t> ends;
     for (std::int32_t v = 0; v < vertex_count(); ++v) {
         ends.clear();
@@ -264,17 +264,17 @@ ComplexCounts EditableComplex::counts() const {
             }
         }
         sort_unique(ends);
-        found.edges += ends.size();
+        counts.edges += ends.size();
     }
-    return found;
+    return counts;
 }
 
 std::vector<double> EditableComplex::block_volumes() const {
-    std::vector<double> found(model_.blocks, 0.0);
+    std::vector<double> volumes(model_.blocks, 0.0);
     for (std::int32_t c = 0; c < cell_count(); ++c) {
-        if (has_cell(c)) found[index(block(c))] += cell(c).volume;
+        if (has_cell(c)) volumes[index(block(c))] += cell(c).volume;
     }
-    return found;
+    return volumes;
 }
 
 CleanedCells EditableComplex::taken() const {

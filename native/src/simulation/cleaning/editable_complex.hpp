@@ -34,33 +34,33 @@ public:
     }
     std::size_t size() const { return lists_.size(); }
     std::span<const std::int32_t> operator[](std::int32_t list) const {
-        const NumberList& own = lists_[index(list)];
-        return {numbers_.data() + own.begin, own.size};
+        const NumberList& range = lists_[index(list)];
+        return {numbers_.data() + range.begin, range.size};
     }
     std::int32_t add_list() {
         lists_.push_back({numbers_.size(), 0, 0});
         return checked_number(lists_.size() - 1, "faces");
     }
     void push(std::int32_t list, std::int32_t number) {
-        NumberList& own = lists_[index(list)];
-        if (own.size == own.room) make_room(own, 2 * own.size + 2);
-        numbers_[own.begin + own.size++] = number;
+        NumberList& range = lists_[index(list)];
+        if (range.size == range.room) make_room(range, 2 * range.size + 2);
+        numbers_[range.begin + range.size++] = number;
     }
     /// Takes out a number that is there once; the order of the others stays.
     void erase(std::int32_t list, std::int32_t number) {
-        NumberList& own = lists_[index(list)];
-        const auto begin = numbers_.begin() + static_cast<std::ptrdiff_t>(own.begin);
-        const auto end = begin + own.size;
+        NumberList& range = lists_[index(list)];
+        const auto begin = numbers_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+        const auto end = begin + range.size;
         assert(std::count(begin, end, number) == 1);
-        own.size = static_cast<std::uint32_t>(std::remove(begin, end, number) - begin);
+        range.size = static_cast<std::uint32_t>(std::remove(begin, end, number) - begin);
     }
     void set(std::int32_t list, std::span<const std::int32_t> numbers) {
-        NumberList& own = lists_[index(list)];
-        own.size = 0;
-        if (numbers.size() > own.room) make_room(own, numbers.size());
+        NumberList& range = lists_[index(list)];
+        range.size = 0;
+        if (numbers.size() > range.room) make_room(range, numbers.size());
         std::copy(numbers.begin(), numbers.end(),
-                  numbers_.begin() + static_cast<std::ptrdiff_t>(own.begin));
-        own.size = static_cast<std::uint32_t>(numbers.size());
+                  numbers_.begin() + static_cast<std::ptrdiff_t>(range.begin));
+        range.size = static_cast<std::uint32_t>(numbers.size());
     }
 
 private:
@@ -254,10 +254,10 @@ private:
 
     bool keeps_faces(Change& change) const;
     bool keeps_cells(const Change& change);
-    bool keeps_cell(const Change& change, std::int32_t cell, std::span<const Beside> added);
-    void take_surroundings(const Change& change, std::int32_t cell, std::span<const Beside> own);
+    bool keeps_cell(const Change& change, std::int32_t cell, std::span<const Beside> sides);
+    void take_surroundings(const Change& change, std::int32_t cell, std::span<const Beside> sides);
     bool keeps_shape(const Change& change, std::int32_t cell, double& volume);
-    bool keeps_volume(const Change& change, std::int32_t cell, std::span<const Beside> own,
+    bool keeps_volume(const Change& change, std::int32_t cell, std::span<const Beside> sides,
                       double& volume) const;
     bool keeps_edges(const Change& change, std::int32_t vertex);
     static bool is_round(std::span<Around> faces);

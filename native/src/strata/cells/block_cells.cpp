@@ -53,10 +53,10 @@ public:
         const std::size_t plan_vertex = conformed_.plan_vertex_of(lower);
         if (line_[plan_vertex] != kSeveral) return false;
         const std::int32_t first = conformed_.vertex_offsets[plan_vertex];
-        const std::span there(std::ranges::lower_bound(ends_, first, {}, &WallEnd::lower),
-                              std::ranges::lower_bound(ends_, upper, {}, &WallEnd::lower));
+        const std::span ends(std::ranges::lower_bound(ends_, first, {}, &WallEnd::lower),
+                             std::ranges::lower_bound(ends_, upper, {}, &WallEnd::lower));
         return std::ranges::any_of(
-            there, [&](const WallEnd& end) { return end.upper > lower && end.line != line; });
+            ends, [&](const WallEnd& end) { return end.upper > lower && end.line != line; });
     }
 
 private:

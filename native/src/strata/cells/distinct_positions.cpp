@@ -139,7 +139,7 @@ public:
         return any;
     }
     /// Those found last.
-    std::vector<FlatCell> found() const {
+    std::vector<FlatCell> flat_cells() const {
         std::vector<FlatCell> flat;
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             const PlanBox& box = extents_[i];
@@ -158,9 +158,9 @@ private:
                             entry = conformed_.face_offsets[face];
         const bool passes_none = conformed_.face_offsets[face + 1] - entry == count;
         for (std::uint32_t i = 0; i < count; ++i) {
-            const std::uint32_t own =
+            const std::uint32_t corner_entry =
                 passes_none ? entry + i : conformed_.entries.first(corner + i);
-            if (!visit(conformed_.vertices[own])) return;
+            if (!visit(conformed_.vertices[corner_entry])) return;
         }
     }
 
@@ -187,11 +187,11 @@ private:
     /// The cells above and below faces that are flat themselves, ascending.
     std::vector<std::int32_t> cells_of_flat_faces() const {
         auto cells =
-            found_in_each<std::int32_t>(faces_.size(), execution_, [&](std::size_t f, auto& found) {
+            found_in_each<std::int32_t>(faces_.size(), execution_, [&](std::size_t f, auto& sides) {
                 prefetch_face(f);
                 if (!is_flat_in_plan(f)) return;
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                    if (cell != kOutsideCell) found.push_back(cell);
+                    if (cell != kOutsideCell) sides.push_back(cell);
                 }
             });
         sort_unique(cells);
@@ -200,11 +200,11 @@ private:
 
     void find_faces() {
         of_cells_ = found_in_each<std::pair<std::size_t, std::size_t>>(
-            faces_.size(), execution_, [&](std::size_t f, auto& found) {
+            faces_.size(), execution_, [&](std::size_t f, auto& pairs) {
                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                     const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
                     if (at != cells_.end() && *at == cell)
-                        found.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
+                        pairs.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
                 }
             });
     }
@@ -242,7 +242,7 @@ std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, cons
     std::vector<FlatCell> left;
     for (int round = 0; flat.find(); ++round) {
         if (round < kRounds && flat.spread()) continue;
-        left = flat.found();
+        left = flat.flat_cells();
         break;
     }
     return left;

@@ -153,13 +153,13 @@ bool is_on_line(const Window& window, std::size_t axis, double coordinate) {
 /// The plan vertices that are on lines when rounded, as all are that are there exactly.
 std::vector<TileBorder::PlanVertex> plan_vertices_on(const Window& window,
                                                      const PlanVertices& plan_vertices) {
-    std::vector<TileBorder::PlanVertex> found;
+    std::vector<TileBorder::PlanVertex> vertices;
     for (std::size_t p = 0; p < plan_vertices.size(); ++p) {
         const auto [x, y] = plan_vertices.position[p];
         const std::array is_on{is_on_line(window, 0, x), is_on_line(window, 1, y)};
-        if (is_on[0] || is_on[1]) found.push_back({static_cast<PlanVertexId>(p), is_on});
+        if (is_on[0] || is_on[1]) vertices.push_back({static_cast<PlanVertexId>(p), is_on});
     }
-    return found;
+    return vertices;
 }
 
 /// For each vertex from the first one of each of some plan vertices on, a plane that it lies in.
@@ -226,7 +226,7 @@ TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& fac
     TileBorder border{window, plan_vertices_on(window, plan_vertices), {}};
     const auto planes = planes_at(border.plan_vertices, faces, conformed);
     constexpr std::size_t kGrain = 64;
-    const auto find = [&](std::size_t begin, std::size_t end, auto& found) {
+    const auto find = [&](std::size_t begin, std::size_t end, auto& vertices) {
         const ExactPositions exactly(geometry);
         for (std::size_t i = begin; i < end; ++i) {
             TileBorder::PlanVertex& vertex = border.plan_vertices[i];
@@ -242,9 +242,9 @@ TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& fac
             const std::array text{at[0].get_str(16), at[1].get_str(16)};
             for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
                 const mpq_class z = exactly.height(planes[i][rank], point);
-                found.push_back({conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
-                                 {rounded[0], rounded[1], nearest(z)},
-                                 {text[0], text[1], z.get_str(16)}});
+                vertices.push_back({conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
+                                    {rounded[0], rounded[1], nearest(z)},
+                                    {text[0], text[1], z.get_str(16)}});
             }
         }
     };

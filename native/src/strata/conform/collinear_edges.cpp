@@ -194,8 +194,8 @@ private:
         const Name first = geometry_.plane(plane).above(line);
         if (first.is_edge()) return first;
         // several edges in a row are one line, each on a line of its own
-        const auto own = faces_.polygons.lines[edge.begin].id();
-        const Name second = geometry_.plane(plane).above(geometry_.line(own));
+        const auto edge_line = faces_.polygons.lines[edge.begin].id();
+        const Name second = geometry_.plane(plane).above(geometry_.line(edge_line));
         return second.is_edge() ? second : Name(plane);
     }
     bool find_matches(std::span<const LineEdge> edges, LineId line_id) {
@@ -455,10 +455,10 @@ struct UnmatchedLines {
 };
 
 /// Puts the lines that are left together, which are given back on the way.
-void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result,
+void join_unmatched(std::vector<UnmatchedLines> lines, CollinearEdges& result,
                     const Execution& execution) {
     std::vector<std::size_t> first_line, first_edge;
-    for (const UnmatchedLines& some : kept) {
+    for (const UnmatchedLines& some : lines) {
         first_line.push_back(some.representative.size());
         first_edge.push_back(some.edges.size());
     }
@@ -466,15 +466,15 @@ void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result,
     result.edge_offsets = Array<std::uint32_t>(result.size() + 1);
     result.edges = Array<LineEdge>(exclusive_scan(first_edge));
     result.edge_offsets[result.size()] = static_cast<std::uint32_t>(result.edges.size());
-    parallel_chunks(kept.size(), execution, [&](std::size_t i) {
+    parallel_chunks(lines.size(), execution, [&](std::size_t i) {
         std::size_t line = first_line[i], edge = first_edge[i];
-        std::copy(kept[i].edges.begin(), kept[i].edges.end(), result.edges.begin() + edge);
-        for (std::size_t t = 0; t < kept[i].representative.size(); ++t, ++line) {
-            result.representative[line] = kept[i].representative[t];
+        std::copy(lines[i].edges.begin(), lines[i].edges.end(), result.edges.begin() + edge);
+        for (std::size_t t = 0; t < lines[i].representative.size(); ++t, ++line) {
+            result.representative[line] = lines[i].representative[t];
             result.edge_offsets[line] = static_cast<std::uint32_t>(edge);
-            edge += kept[i].edge_counts[t];
+            edge += lines[i].edge_counts[t];
         }
-        kept[i] = {};
+        lines[i] = {};
     });
 }
 
@@ -599,7 +599,7 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
     LineBuckets buckets(faces, lines);
     result.passed.resize(buckets.size());
     result.matched.resize(buckets.size());
-    std::vector<UnmatchedLines> kept(buckets.size());
+    std::vector<UnmatchedLines> unmatched(buckets.size());
     for (const std::size_t half : {0, 1}) {
         const std::size_t first = buckets.size() * half / 2, end = buckets.size() * (half + 1) / 2;
         buckets.fill(first, end, execution);
@@ -622,13 +622,13 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
                     continue;
                 chunk.pass_all(
                     {extra_vertices.begin() + first_extra, extra_vertices.begin() + next_extra});
-                kept[bucket].add(lines.representative[t], of_line);
+                unmatched[bucket].add(lines.representative[t], of_line);
             }
             result.matched[bucket] = matched;  // without room for more
         };
         parallel_chunks(end - first, execution, match, 0.4);
     }
-    join_unmatched(std::move(kept), result, execution);
+    join_unmatched(std::move(unmatched), result, execution);
     return result;
 }
 

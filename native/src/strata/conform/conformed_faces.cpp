@@ -398,8 +398,8 @@ private:
             conformed_.vertex_offsets[first + p] = before;
             for (std::int32_t& rank : on_vertex)
                 rank += rank < 0 ? 0 : before;
-            const auto& found = finder.heights();
-            all.insert(all.end(), found.begin(), found.end());
+            const auto& heights = finder.heights();
+            all.insert(all.end(), heights.begin(), heights.end());
         }
         for (VertexEntry& entry : entries)
             entry.value = planes[entry.plan_vertex];
@@ -413,18 +413,18 @@ private:
             count, execution_, [&](std::size_t i) { find_heights(first_ + i, on[i]); }, 2 * share_);
         std::vector<std::int32_t> before(count);
         for (std::size_t i = count; i-- > 0;) {
-            const std::size_t own = conformed_.heights[first_ + i].size();
+            const std::size_t vertex_count = conformed_.heights[first_ + i].size();
             // those that are left are larger than any plan vertex
-            check_total(own + plan_vertices_.size(), static_cast<std::uint64_t>(next_));
-            before[i] = next_ -= static_cast<std::int32_t>(own);
+            check_total(vertex_count + plan_vertices_.size(), static_cast<std::uint64_t>(next_));
+            before[i] = next_ -= static_cast<std::int32_t>(vertex_count);
         }
         parallel_chunks(
             count, execution_,
             [&](std::size_t i) {
                 std::int32_t* const vertices = conformed_.vertices.begin();
-                const std::int32_t own = before[i];
+                const std::int32_t first = before[i];
                 for (const VertexEntry& entry : on[i])
-                    vertices[entry.number] = entry.value < 0 ? kNoVertex : own + entry.value;
+                    vertices[entry.number] = entry.value < 0 ? kNoVertex : first + entry.value;
                 const std::size_t begin = (first_ + i) * kGrain;
                 for (std::size_t p = begin; p < std::min(begin + kGrain, plan_vertices_.size());
                      ++p)
@@ -476,12 +476,12 @@ void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
 /// The vertices that the left edge of a pair took up, for the right one.
 void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conformed,
                            const Execution& execution) {
-    const auto find = [&](std::size_t chunk, std::size_t, auto& found) {
+    const auto find = [&](std::size_t chunk, std::size_t, auto& added) {
         for (const MatchedPair& pair : collinear.matched[chunk].passing) {
             const std::uint32_t first = conformed.entries.first(pair.left) + 1;
             for (std::uint32_t e = conformed.entries.first(pair.left + 1); e-- > first;) {
                 if (conformed.vertices[e] >= 0)
-                    found.push_back({conformed.entries.first(pair.right), conformed.vertices[e]});
+                    added.push_back({conformed.entries.first(pair.right), conformed.vertices[e]});
             }
         }
     };

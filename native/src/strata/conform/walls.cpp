@@ -125,7 +125,7 @@ struct Batch {
     explicit Batch(const PlanArrangement& geometry) : scope(geometry) {}
     LocalArrangement scope;
     WallBatch walls;
-    FoundWalls found;
+    FoundWalls line_walls;
 };
 
 /// The walls of one line after another.
@@ -160,7 +160,7 @@ private:
     }
     void link(std::int32_t a, std::int32_t b) {
         if (blocks_ != nullptr && a != b && a >= 0 && b >= 0 && block(a) == block(b))
-            batch_.found.links.emplace_back(a, b);
+            batch_.line_walls.links.emplace_back(a, b);
     }
 
     void process_interval(std::size_t line, std::size_t interval,
@@ -181,7 +181,7 @@ private:
             continue_faces(curves);
             return;
         }
-        auto& missing = batch_.found.missing;
+        auto& missing = batch_.line_walls.missing;
         const std::size_t known = missing.size();
         curves_.find_crossings(line, curves, batch_.scope, missing);
         if (missing.size() > known) return;
@@ -194,9 +194,9 @@ private:
                          } else if (blocks_ == nullptr) {
                              joining_.add(lower, upper, left, right, low.start != high.start);
                          } else {
-                             batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
-                                                               static_cast<std::int32_t>(interval),
-                                                               lower, upper, left, right});
+                             batch_.line_walls.stretches.push_back(
+                                 {static_cast<std::int32_t>(line),
+                                  static_cast<std::int32_t>(interval), lower, upper, left, right});
                          }
                      });
     }
@@ -320,37 +320,37 @@ FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, Collinea
                       const ConformedFaces& conformed, const BlockLines* blocks,
                       const Execution& execution) {
     const std::size_t chunks = (collinear.size() + kLines - 1) / kLines;
-    FoundWalls found;
-    found.walls.resize(chunks);
+    FoundWalls walls;
+    walls.walls.resize(chunks);
     std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
     parallel_ranges(collinear.size(), kLines, execution, [&](std::size_t begin, std::size_t end) {
         auto batch = std::make_unique<Batch>(geometry);
         LineWalls of_line(faces, collinear, conformed, blocks, *batch);
         for (std::size_t t = begin; t < end; ++t)
             of_line.process(t);
-        found.walls[begin / kLines] = std::move(batch->walls);
-        if (blocks != nullptr || !batch->found.missing.empty())
+        walls.walls[begin / kLines] = std::move(batch->walls);
+        if (blocks != nullptr || !batch->line_walls.missing.empty())
             batches[begin / kLines] = std::move(batch);
     });
     for (const auto& batch : batches) {
         if (batch == nullptr) continue;
-        if (!batch->found.missing.empty()) batch->scope.commit(geometry);
-        for (const ExtraPoint& e : batch->found.missing)
-            found.missing.push_back({e.line, batch->scope.shared_point(e.point)});
-        const FoundWalls& own = batch->found;
-        found.links.insert(found.links.end(), own.links.begin(), own.links.end());
-        found.stretches.insert(found.stretches.end(), own.stretches.begin(), own.stretches.end());
+        if (!batch->line_walls.missing.empty()) batch->scope.commit(geometry);
+        for (const ExtraPoint& e : batch->line_walls.missing)
+            walls.missing.push_back({e.line, batch->scope.shared_point(e.point)});
+        const FoundWalls& part = batch->line_walls;
+        walls.links.insert(walls.links.end(), part.links.begin(), part.links.end());
+        walls.stretches.insert(walls.stretches.end(), part.stretches.begin(), part.stretches.end());
     }
-    if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
-    found.walls.resize(chunks + collinear.matched.size());
+    if (!walls.missing.empty()) return {std::move(walls.missing), {}, {}, {}};
+    walls.walls.resize(chunks + collinear.matched.size());
     parallel_chunks(collinear.matched.size(), execution, [&](std::size_t chunk) {
         const MatchedEdges matched = std::move(collinear.matched[chunk]);
-        WallBatch& batch = found.walls[chunks + chunk];
+        WallBatch& batch = walls.walls[chunks + chunk];
         batch.sizes.reserve(matched.walls.size());
         batch.cells.reserve(matched.walls.size());
         PlannedWalls(conformed, batch).add(matched);
     });
-    return found;
+    return walls;
 }
 
 }  // namespace realmodel::strata

@@ -54,8 +54,8 @@ public:
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
         const auto near = found_in_each<std::pair<std::uint32_t, std::int32_t>>(
-            tiling_.whole.size(), execution_, [&](std::size_t t, auto& found) {
-                if (filter_.surface[t] == HeightRelation::kBelow) look(t, found);
+            tiling_.whole.size(), execution_, [&](std::size_t t, auto& pairs) {
+                if (filter_.surface[t] == HeightRelation::kBelow) look(t, pairs);
             });
         for (const auto& [s, t] : near) {
             if (searched_[s].beneath == kNothing && lies_over(searched_[s].node, t))
@@ -301,7 +301,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
     const std::size_t first_face = construction_.faces.size();
     Overlaid overlaid = overlay_facets(geometry_, envelope, {part, number}, &blocks, nullptr,
                                        construction_, execution_);
-    sort_overlaid(overlaid.kept, first_face);
+    sort_overlaid(overlaid.remaining, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
         PartState& state = wholes_.part_state[index(whole_[exact[i]])];
         state = state == PartState::kMayStayWhole ? PartState::kInParts : PartState::kWhole;
@@ -317,7 +317,7 @@ bool BlockEnvelope::is_triangle(PolygonView polygon, PlaneId plane) const {
 }
 
 /// Of what facets overlaid exactly became, whole triangles stay or become whole faces.
-void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) {
+void BlockEnvelope::sort_overlaid(const Envelope& remaining, std::size_t first_face) {
     const auto stays_whole = [&](PolygonView polygon, PlaneId plane) {
         if (!plane.has_value()) return false;
         PartState& state = wholes_.part_state[index(plane)];
@@ -334,12 +334,12 @@ void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) 
         wholes_.of(faces.plane[f]).below = faces.below[f];
         wholes_.is_added[index(faces.plane[f])] = 1;
     }
-    for (std::size_t f = 0; f < kept.size(); ++f) {
-        if (stays_whole(kept.outlines[f], kept.plane[f])) {
-            next_whole_.push_back(kept.plane[f]);
-            next_whole_block_.push_back(kept.block_beneath[f]);
+    for (std::size_t f = 0; f < remaining.size(); ++f) {
+        if (stays_whole(remaining.outlines[f], remaining.plane[f])) {
+            next_whole_.push_back(remaining.plane[f]);
+            next_whole_block_.push_back(remaining.block_beneath[f]);
         } else {
-            next_parts_.add_facet_of(kept, f, kept.block_beneath[f]);
+            next_parts_.add_facet_of(remaining, f, remaining.block_beneath[f]);
         }
     }
 }
@@ -389,10 +389,11 @@ std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
         for (std::size_t t = begin; t < end; ++t) {
             if (filter_.polygon[t] < 0) continue;
             const auto p = static_cast<std::size_t>(filter_.polygon[t]);
-            const auto own = pieces[p];
-            if (own.empty() || overlaid.is_divided[p] != 0 || overlaid.is_touched[p] != 0) continue;
-            const bool alike = std::all_of(own.begin(), own.end(), [&](std::uint32_t i) {
-                return block_above(i) == block_above(own.front());
+            const auto below = pieces[p];
+            if (below.empty() || overlaid.is_divided[p] != 0 || overlaid.is_touched[p] != 0)
+                continue;
+            const bool alike = std::all_of(below.begin(), below.end(), [&](std::uint32_t i) {
+                return block_above(i) == block_above(below.front());
             });
             is_whole[p] =
                 alike && !borders_.divide(scope, part.polygons[p], filter_.surface_at[t].span);
@@ -423,11 +424,11 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
         }
         if (filter_.polygon[t] < 0) continue;
         const auto p = static_cast<std::size_t>(filter_.polygon[t]);
-        const auto own = pieces[p];
-        if (relation != HeightRelation::kExact || own.empty()) {
+        const auto below = pieces[p];
+        if (relation != HeightRelation::kExact || below.empty()) {
             use[p] = kElsewhere;
             if (relation == HeightRelation::kAbove) continue;
-            for (const std::uint32_t piece : own)
+            for (const std::uint32_t piece : below)
                 link(node_above_[t], node_of(piece));
             continue;
         }
@@ -437,9 +438,9 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
             continue;
         }
         use[p] = kElsewhere;
-        for (const std::uint32_t piece : own)
-            link(node_of(own.front()), node_of(piece));
-        enter(plane, number, node_of(own.front()), filter_.surface_at[t].span);
+        for (const std::uint32_t piece : below)
+            link(node_of(below.front()), node_of(piece));
+        enter(plane, number, node_of(below.front()), filter_.surface_at[t].span);
     }
     add_surface_facets({part, number}, use, overlaid.below, pieces, next_parts_, execution_);
 }

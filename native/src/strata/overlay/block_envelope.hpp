@@ -51,7 +51,7 @@ private:
     void enter(PlaneId plane, std::int32_t number, std::int32_t node_above, const TileSpan& span);
     Overlaid overlay_exactly(const FacetView& facets, const SurfaceTiling& part,
                              std::int32_t number);
-    void sort_overlaid(const Envelope& kept, std::size_t first_face);
+    void sort_overlaid(const Envelope& remaining, std::size_t first_face);
     CoveredFacets sort_facets(std::int32_t number);
     std::vector<std::uint8_t> find_whole(const SurfaceTiling& part, const PiecesOfPolygons& pieces,
                                          const Overlaid& overlaid, std::size_t triangles) const;

@@ -78,9 +78,9 @@ bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& tr
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
     const PlanBox box = spatial::box_around(corners);
     return any_in(span, [&](const BorderSegment& segment) {
-        const PlanBox& own = segment.box;
-        if (own.high_x <= box.low_x || own.low_x >= box.high_x || own.high_y <= box.low_y ||
-            own.low_y >= box.high_y)
+        const PlanBox& extent = segment.box;
+        if (extent.high_x <= box.low_x || extent.low_x >= box.high_x ||
+            extent.high_y <= box.low_y || extent.low_y >= box.high_y)
             return false;
         const auto from = position(segment.from), to = position(segment.to);
         return reaches_inside(

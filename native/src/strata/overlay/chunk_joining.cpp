@@ -114,8 +114,8 @@ void ChunkStart::pass(const ChunkResult& chunk) {
     face.polygon += chunk.closed_faces;
     face.corner += chunk.closed_corners;
     strata::pass(below, chunk.below_outlines);
-    strata::pass(facet, chunk.kept.outlines);
-    strata::pass(facet_face, chunk.kept.face_polygons);
+    strata::pass(facet, chunk.remaining.outlines);
+    strata::pass(facet_face, chunk.remaining.face_polygons);
 }
 
 ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks,
@@ -201,9 +201,9 @@ void ChunkJoining::put_faces(const ChunkResult& chunk, const ChunkStart& at) {
     };
     std::size_t face = 0;
     const auto put_own_up_to = [&](std::size_t end) {
-        for (const auto& own = chunk.faces; face < end; ++face)
-            put_face(own.polygons[face], own.plane[face], own.surface[face], own.above[face],
-                     own.below[face]);
+        for (const auto& faces = chunk.faces; face < end; ++face)
+            put_face(faces.polygons[face], faces.plane[face], faces.surface[face],
+                     faces.above[face], faces.below[face]);
     };
     for (const ClosedFacet& closed : chunk.closed) {
         put_own_up_to(closed.before);
@@ -231,16 +231,16 @@ void ChunkJoining::put(std::size_t c) {
         below_.polygon[at.below.polygon + i] = chunk.below[i].polygon;
         below_.node_above[at.below.polygon + i] = shared_node(chunk.below[i].node_above);
     }
-    strata::put(next_.outlines, at.facet, chunk.kept.outlines, scope);
-    strata::put(next_.plane, at.facet.polygon, chunk.kept.plane);
-    strata::put(next_.surface, at.facet.polygon, chunk.kept.surface);
-    strata::put(next_.block_beneath, at.facet.polygon, chunk.kept.block_beneath);
-    for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
+    strata::put(next_.outlines, at.facet, chunk.remaining.outlines, scope);
+    strata::put(next_.plane, at.facet.polygon, chunk.remaining.plane);
+    strata::put(next_.surface, at.facet.polygon, chunk.remaining.surface);
+    strata::put(next_.block_beneath, at.facet.polygon, chunk.remaining.block_beneath);
+    for (std::size_t f = 1; f < chunk.remaining.face_offsets.size(); ++f) {
         next_.face_offsets[at.facet.polygon + f] =
-            static_cast<std::int64_t>(at.facet_face.polygon) + chunk.kept.face_offsets[f];
+            static_cast<std::int64_t>(at.facet_face.polygon) + chunk.remaining.face_offsets[f];
     }
-    strata::put(next_.face_polygons, at.facet_face, chunk.kept.face_polygons, scope);
-    strata::put(next_.face_above, at.facet_face.polygon, chunk.kept.face_above);
+    strata::put(next_.face_polygons, at.facet_face, chunk.remaining.face_polygons, scope);
+    strata::put(next_.face_above, at.facet_face.polygon, chunk.remaining.face_above);
     chunks_[c].reset();
 }
 

@@ -105,10 +105,10 @@ struct ChunkResult {
     std::size_t closed_faces = 0, closed_corners = 0;
     PolygonPool below_outlines;
     Array<PieceBelow> below;
-    Envelope kept;
+    Envelope remaining;
 
     std::array<PolygonPool*, 4> pools() {
-        return {&faces.polygons, &below_outlines, &kept.outlines, &kept.face_polygons};
+        return {&faces.polygons, &below_outlines, &remaining.outlines, &remaining.face_polygons};
     }
 };
 

@@ -43,7 +43,7 @@ public:
         if (plane == kOutside) {
             for (const std::int32_t polygon : finder_.overlapping(outline))
                 atomic_set(overlaid_.is_divided[index(polygon)]);
-            result_.kept.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
+            result_.remaining.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
             return;
         }
         const Pieces& pieces = finder_.find(outline, plane, true);
@@ -57,11 +57,11 @@ public:
         const bool is_complete = blocks_ == nullptr || blocks_->is_complete[facet] != 0;
         const bool all_below = below == pieces.list.size();
         if (below == 0 && not_below == 0 && is_complete) {
-            result_.kept.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
+            result_.remaining.add_facet_of(envelope_, facet, envelope_.block_beneath[facet]);
         } else if (plane == kSky) {
             split_sky(facet, pieces);
         } else if (below == 0 && not_below == pieces.list.size()) {
-            result_.kept.add_facet_of(envelope_, facet, number_);
+            result_.remaining.add_facet_of(envelope_, facet, number_);
         } else if (all_below && is_one_node(facet, pieces)) {
             close(facet, pieces);
         } else {
@@ -126,8 +126,8 @@ private:
             if (piece.side == PieceSide::kBelow) {
                 add_below(pieces, piece, kOutsideCell);
             } else {
-                result_.kept.add_facet(pieces.outline(piece), kSky, envelope_.surface[facet],
-                                       envelope_.block_beneath[facet]);
+                result_.remaining.add_facet(pieces.outline(piece), kSky, envelope_.surface[facet],
+                                            envelope_.block_beneath[facet]);
             }
         }
     }
@@ -174,7 +174,7 @@ private:
             if (below) {
                 add_below(pieces, piece, node);
             } else {
-                result_.kept.add_facet(
+                result_.remaining.add_facet(
                     outline, envelope_.plane[facet], envelope_.surface[facet],
                     piece.side == PieceSide::kNotBelow ? number_ : envelope_.block_beneath[facet]);
             }
@@ -187,7 +187,7 @@ private:
                 if (below) {
                     seal(facet, f, part, node);
                 } else {
-                    result_.kept.add_face(part, envelope_.face_above[f]);
+                    result_.remaining.add_face(part, envelope_.face_above[f]);
                 }
             }
         }
@@ -228,7 +228,7 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     const std::size_t size = blocks == nullptr ? kColumnFacets : kBlockFacets;
     const std::size_t chunks = (envelope.size() + size - 1) / size;
     std::vector<std::unique_ptr<ChunkResult>> results(chunks);
-    ChunkJoining joining(results, envelope, construction, overlaid.kept, overlaid.below);
+    ChunkJoining joining(results, envelope, construction, overlaid.remaining, overlaid.below);
     OrderedCommit commit(geometry, chunks, envelope.size());
     const auto find_offset = [&](std::size_t c) { joining.find_offset(c); };
     parallel_chunks(chunks, execution, [&](std::size_t c) {
@@ -256,9 +256,9 @@ Envelope overlay_columns(PlanArrangement& geometry, Envelope envelope,
     envelope = {};
     const PiecesOfPolygons pieces =
         sort_by_polygon(overlaid.below, surface.tiling.plane.size(), execution);
-    add_surface_facets(surface, overlaid.is_divided, overlaid.below, pieces, overlaid.kept,
+    add_surface_facets(surface, overlaid.is_divided, overlaid.below, pieces, overlaid.remaining,
                        execution);
-    return std::move(overlaid.kept);
+    return std::move(overlaid.remaining);
 }
 
 }  // namespace realmodel::strata

@@ -21,8 +21,8 @@ struct BlockFacets {
 
 /// What facets and a surface became.
 struct Overlaid {
-    Envelope kept;      ///< what is left of the facets
-    PiecesBelow below;  ///< what of the surface lies beneath them
+    Envelope remaining;  ///< what is left of the facets
+    PiecesBelow below;   ///< what of the surface lies beneath them
     /// Of each polygon of the surface: 1 where a part of it does not lie below.
     std::vector<std::uint8_t> is_divided;
     /// Of each polygon, for blocks: 1 where one of its pieces is somewhere as high as the facet.

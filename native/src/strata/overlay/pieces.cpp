@@ -241,10 +241,10 @@ void PieceGrouping::collect_edges(const Pieces& pieces) {
         const Piece& piece = pieces.list[i];
         for (std::int64_t c = piece.first; c < piece.last; ++c) {
             const auto here = static_cast<std::size_t>(c);
-            const auto there = static_cast<std::size_t>(c + 1 < piece.last ? c + 1 : piece.first);
-            edges_.push_back({pieces.corners[here].point, pieces.corners[there].point,
+            const auto next = static_cast<std::size_t>(c + 1 < piece.last ? c + 1 : piece.first);
+            edges_.push_back({pieces.corners[here].point, pieces.corners[next].point,
                               static_cast<std::int32_t>(i), piece.side == PieceSide::kBelow,
-                              pieces.touches[here] != 0 && pieces.touches[there] != 0});
+                              pieces.touches[here] != 0 && pieces.touches[next] != 0});
         }
     }
     std::sort(edges_.begin(), edges_.end(), [](const PieceEdge& a, const PieceEdge& b) {

@@ -68,10 +68,10 @@ Envelope region_envelope(PlanContext& context, LoadedRock& rock, const Execution
     Construction nothing;
     Overlaid overlaid = overlay_facets(context.geometry, region, {window, kSkyBlock}, nullptr,
                                        nullptr, nothing, execution);
-    std::fill(overlaid.kept.plane.begin(), overlaid.kept.plane.end(), kOutside);
+    std::fill(overlaid.remaining.plane.begin(), overlaid.remaining.plane.end(), kOutside);
     for (std::size_t i = 0; i < overlaid.below.polygon.size(); ++i)
-        overlaid.kept.add_facet(overlaid.below.outlines[i], kSky, -1, kSkyBlock);
-    return std::move(overlaid.kept);
+        overlaid.remaining.add_facet(overlaid.below.outlines[i], kSky, -1, kSkyBlock);
+    return std::move(overlaid.remaining);
 }
 
 void clip_to_window(PlanContext& context, const LoadedRock& rock, SurfaceTiling& tiling,
@@ -112,31 +112,31 @@ void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList&
                          std::size_t first_face, Progress* progress) {
     // The lowest faces tile what a rock mass covers, each position once; where columns are left
     // out, others may lie over or under them.
-    Footprint own;
+    Footprint footprint;
     LocalArrangement scope(geometry);
     for (std::size_t f = first_face; f < faces.size(); ++f) {
         if (faces.below[f] != kOutsideCell) continue;
-        own.polygons.add(faces.polygons[f]);
-        own.box = own.box.united(box_of(scope, faces.polygons[f]));
+        footprint.polygons.add(faces.polygons[f]);
+        footprint.box = footprint.box.united(box_of(scope, faces.polygons[f]));
     }
     Clipper clipper(scope);
     std::optional<PlanGrid> grid;  // made for the first rock mass near this one
     Array<std::int32_t> candidates;
     for (std::size_t r = 0; r < rocks_.size(); ++r) {
-        if (!own.box.meets(rocks_[r].box)) continue;
+        if (!footprint.box.meets(rocks_[r].box)) continue;
         const PolygonPool& earlier = rocks_[r].polygons;
         for (std::size_t i = 0; i < earlier.size(); ++i) {
             poll(progress, i);
-            if (!own.box.meets(box_of(scope, earlier[i]))) continue;
+            if (!footprint.box.meets(box_of(scope, earlier[i]))) continue;
             if (!grid) {
-                grid.emplace(geometry, own.polygons,
-                             std::vector<std::uint8_t>(own.polygons.size(), 1), 0,
+                grid.emplace(geometry, footprint.polygons,
+                             std::vector<std::uint8_t>(footprint.polygons.size(), 1), 0,
                              Execution{1, progress});
             }
             grid->candidates(scope, earlier[i], candidates);
             clipper.begin(earlier[i]);
             for (const std::int32_t c : candidates) {
-                const PolygonView other = own.polygons[static_cast<std::size_t>(c)];
+                const PolygonView other = footprint.polygons[static_cast<std::size_t>(c)];
                 if (!clipper.overlaps(other)) continue;
                 const auto [x, y] = scope.rounded(clipper.intersect(other)[0].point);
                 throw InputError(
@@ -148,7 +148,7 @@ void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList&
             }
         }
     }
-    rocks_.push_back(std::move(own));
+    rocks_.push_back(std::move(footprint));
 }
 
 }  // namespace realmodel::strata

@@ -42,23 +42,23 @@ AllFound over_facets(PlanArrangement& geometry, const SurfaceTiling& older,
                      const SurfaceTiling& surface, const Execution& execution, const Work& work) {
     const std::size_t count = older.plane.size(),
                       chunks = (count + kFacetsAtOnce - 1) / kFacetsAtOnce;
-    AllFound found(chunks);
+    AllFound facets(chunks);
     parallel_chunks(chunks, execution, [&](std::size_t c) {
-        found[c] = std::make_unique<FoundFacets>(geometry);
-        PieceFinder finder(found[c]->scope, surface);
+        facets[c] = std::make_unique<FoundFacets>(geometry);
+        PieceFinder finder(facets[c]->scope, surface);
         for (std::size_t f = c * kFacetsAtOnce; f < std::min(count, (c + 1) * kFacetsAtOnce); ++f) {
-            work(f, finder, *found[c]);
+            work(f, finder, *facets[c]);
         }
     });
-    for (auto& chunk : found)
+    for (auto& chunk : facets)
         chunk->scope.commit(geometry);
-    return found;
+    return facets;
 }
 
 /// Adds those facets found of which is_wanted(polygon) holds, in shared ids.
 template <class IsWanted>
-void append(const AllFound& found, SurfaceTiling& tiling, const IsWanted& is_wanted) {
-    for (const auto& chunk : found) {
+void append(const AllFound& facets, SurfaceTiling& tiling, const IsWanted& is_wanted) {
+    for (const auto& chunk : facets) {
         for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
             if (!is_wanted(chunk->polygon[i])) continue;
             Polygon outline(chunk->outlines[i].begin(), chunk->outlines[i].end());
@@ -70,21 +70,21 @@ void append(const AllFound& found, SurfaceTiling& tiling, const IsWanted& is_wan
         }
     }
 }
-SurfaceTiling tiling_of(const AllFound& found) {
+SurfaceTiling tiling_of(const AllFound& facets) {
     SurfaceTiling tiling;
-    append(found, tiling, [](std::int32_t) { return true; });
+    append(facets, tiling, [](std::int32_t) { return true; });
     return tiling;
 }
 
 }  // namespace
 
 SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surface,
-                           const SurfaceTiling& bound, std::span<const std::uint8_t> given,
+                           const SurfaceTiling& bound, std::span<const std::uint8_t> excluded,
                            const Execution& execution) {
-    assert(given.empty() || given.size() == surface.plane.size());
-    const auto is_given = [&](std::size_t p) { return !given.empty() && given[p] != 0; };
+    assert(excluded.empty() || excluded.size() == surface.plane.size());
+    const auto is_excluded = [&](std::size_t p) { return !excluded.empty() && excluded[p] != 0; };
     std::vector<std::uint8_t> is_covered(surface.plane.size(), 0);  // somewhere, by the bound
-    const auto found = over_facets(
+    const auto facets = over_facets(
         geometry, bound, surface, execution,
         [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = bound.plane[f];
@@ -106,12 +106,12 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
         });
     SurfaceTiling raised;
     for (std::size_t p = 0; p < surface.plane.size(); ++p) {
-        if (is_given(p) || (surface.plane[p].has_value() && is_covered[p] != 0)) continue;
+        if (is_excluded(p) || (surface.plane[p].has_value() && is_covered[p] != 0)) continue;
         raised.polygons.add(surface.polygons[p]);
         raised.plane.push_back(surface.plane[p]);
     }
-    append(found, raised, [&](std::int32_t polygon) {
-        return polygon < 0 || (is_covered[index(polygon)] != 0 && !is_given(index(polygon)));
+    append(facets, raised, [&](std::int32_t polygon) {
+        return polygon < 0 || (is_covered[index(polygon)] != 0 && !is_excluded(index(polygon)));
     });
     return raised;
 }
@@ -251,15 +251,15 @@ BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bo
     BlockTiling raised;
     raised.is_raised = true;
     raised.empty = surface.empty;
-    std::vector<std::uint8_t> given(part.plane.size(), 0);
+    std::vector<std::uint8_t> excluded(part.plane.size(), 0);
     for (std::size_t t = 0; t < surface.whole.size(); ++t) {
         if (filter_.surface[t] == HeightRelation::kAbove) raised.whole.push_back(surface.whole[t]);
         if (filter_.surface[t] != HeightRelation::kExact && filter_.polygon[t] >= 0)
-            given[static_cast<std::size_t>(filter_.polygon[t])] = 1;
+            excluded[static_cast<std::size_t>(filter_.polygon[t])] = 1;
     }
     add_facets_that_are(bound.tiling, filter_.facet, HeightRelation::kAbove, raised);
     const SurfaceTiling exact =
-        raise_tiling(geometry_, part, exact_facets(bound.tiling), given, execution_);
+        raise_tiling(geometry_, part, exact_facets(bound.tiling), excluded, execution_);
     for (std::size_t p = 0; p < exact.plane.size(); ++p) {
         if (exact.plane[p].has_value()) raised.add_part(exact.polygons[p], exact.plane[p]);
     }

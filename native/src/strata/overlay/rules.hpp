@@ -49,8 +49,8 @@ public:
         if constexpr (kCanEmpty) {
             if (number < fills_.size()) lowest_ = raising_.lowest(lowest_, e, fills_[number] != 0);
         }
-        const auto renew = [&](std::optional<Bound>& kept) {
-            kept = kept ? raising_.cover(*kept, e, surface) : raising_.first(e);
+        const auto renew = [&](std::optional<Bound>& bound) {
+            bound = bound ? raising_.cover(*bound, e, surface) : raising_.first(e);
         };
         if (!is_needed_later(false)) {
             top_.reset();
@@ -113,11 +113,11 @@ private:
     std::optional<Tiling> lowest_;
 };
 
-/// The higher of a surface and a bound, where there is a surface. Polygons that are `given` are not
-/// among the result: they lie elsewhere, or the bound is above them.
-/// @param given  of each polygon of the surface; empty: none
+/// The higher of a surface and a bound, where there is a surface. Polygons that are `excluded` are
+/// not among the result: they lie elsewhere, or the bound is above them.
+/// @param excluded  of each polygon of the surface; empty: none
 SurfaceTiling raise_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& surface,
-                           const SurfaceTiling& bound, std::span<const std::uint8_t> given,
+                           const SurfaceTiling& bound, std::span<const std::uint8_t> excluded,
                            const Execution& execution);
 
 /// What of an older tiling the surface does not cover; facets that it covers nowhere are not

@@ -18,8 +18,8 @@ TilingWalk::TilingEdge TilingWalk::beyond(TilingEdge edge) const {
     const std::int32_t next = tiling_.neighbor[index(edge.triangle)][edge.corner];
     if (next < 0) return {};
     const PointId to = triangle(edge.triangle)[after(edge.corner)].point;
-    const PolygonView there = triangle(next);
-    return {next, there[0].point == to ? 0U : (there[1].point == to ? 1U : 2U)};
+    const PolygonView neighbor = triangle(next);
+    return {next, neighbor[0].point == to ? 0U : (neighbor[1].point == to ? 1U : 2U)};
 }
 
 /// On which side of a triangle's edge a point lies: 1 that of the triangle.

@@ -139,8 +139,8 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
     const bool is_new = surface_tiles_.empty();
     if (is_new) surface_at.resize(tiling.size());
     facet_at.resize(facets.size());
-    const std::size_t own = is_new ? tiling.size() : 0;
-    parallel_ranges(own + facets.size(), kTrianglesAtOnce, execution_,
+    const std::size_t tiling_count = is_new ? tiling.size() : 0;
+    parallel_ranges(tiling_count + facets.size(), kTrianglesAtOnce, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         const LocalArrangement scope(geometry_);
                         const auto at = [&](const auto& list, std::size_t i) {
@@ -152,10 +152,10 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
                             return located(bounds);
                         };
                         for (std::size_t i = begin; i < end; ++i) {
-                            if (i < own) {
+                            if (i < tiling_count) {
                                 surface_at[i] = at(tiling, i);
                             } else {
-                                facet_at[i - own] = at(facets, i - own);
+                                facet_at[i - tiling_count] = at(facets, i - tiling_count);
                             }
                         }
                     });
@@ -294,16 +294,16 @@ void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatia
         const PlaneId other = facets.plane(f);
         const PlanBox& box = facet_at[f].bounds.box;
         if (!bounds.box.meets(box)) return true;
-        const Comparison found = compare_over(geometry_, plane, other, bounds.box, box, margin_);
-        if (found == Comparison::kApart) return true;
+        const Comparison order = compare_over(geometry_, plane, other, bounds.box, box, margin_);
+        if (order == Comparison::kApart) return true;
         if (beside) {
             over = merged(over, facets.block(f));
             covered =
                 covered || (facets.is_whole(f) &&
                             side_of_border(geometry_, geometry_.plane(other).plan, middle) > 0);
         }
-        below &= found == Comparison::kBelow;
-        above &= found == Comparison::kAbove;
+        below &= order == Comparison::kBelow;
+        above &= order == Comparison::kAbove;
         return over != kSeveral && (below || above);
     });
     if (over == kSeveral || !covered || below == above) return;
@@ -379,11 +379,11 @@ HeightRelation WholeTriangleFilter::compare_facet(PlaneId plane, const TileBound
         const PlanBox& other = surface_at[t].bounds.box;
         if (!box.meets(other)) return true;
         if (surface[t] == HeightRelation::kExact) return are_apart(geometry_, triangle, plane);
-        const Comparison found = compare_over(geometry_, triangle, plane, other, box, margin_);
-        if (found == Comparison::kApart) return true;
+        const Comparison order = compare_over(geometry_, triangle, plane, other, box, margin_);
+        if (order == Comparison::kApart) return true;
         covers = covers || side_of_border(geometry_, geometry_.plane(triangle).plan, middle) > 0;
-        below &= found == Comparison::kBelow;
-        above &= found == Comparison::kAbove;
+        below &= order == Comparison::kBelow;
+        above &= order == Comparison::kAbove;
         return below || above;
     });
     if (!clear || below == above || !covers) return HeightRelation::kExact;

@@ -110,7 +110,7 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
     const PlanPosition &p = edge.first, &q = edge.second;
     const PlanPosition way = minus(q, p);
     const double length = distance(p, q);
-    std::vector<std::pair<double, PlanPosition>> found;
+    std::vector<std::pair<double, PlanPosition>> near_vertices;
     bool beside = false;
     const spatial::PlanBox box = spatial::box_around(std::array{p, q}).widened(2 * reach);
     vertices.within(box, [&](std::size_t, const PlanPosition& v) {
@@ -118,15 +118,15 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
         if (std::abs(cross(off, way)) > reach * length) return;
         const double along = dot(off, way) / length;
         if (along <= 2 * reach || along >= length - 2 * reach) return;
-        found.emplace_back(along, v);
+        near_vertices.emplace_back(along, v);
         beside |= exact::orient2d(p, q, v) != 0;
     });
     // An edge that is bent anywhere has to run through those on its line by name, too.
     if (!beside) return {};
-    std::sort(found.begin(), found.end());
+    std::sort(near_vertices.begin(), near_vertices.end());
     std::vector<PlanPosition> chain;
     double last = 0;
-    for (const auto& [along, v] : found) {
+    for (const auto& [along, v] : near_vertices) {
         if (!chain.empty() && along - last <= 2 * reach) continue;
         chain.push_back(v);
         last = along;

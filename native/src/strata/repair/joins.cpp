@@ -13,11 +13,11 @@ struct Joins::Found {
     BorderChains chains;
     Warning warning;
 
-    std::optional<JoinedMesh> mesh(const TriangleView& given, std::size_t columns,
+    std::optional<JoinedMesh> mesh(const TriangleView& surface, std::size_t columns,
                                    const Execution& execution) const {
         begin_step(execution.progress, 0.0, 1.0, "joining the borders");
-        JoinedMesh joined = joined_mesh(given.vertices, given.triangles, columns, snapping, chains,
-                                        execution.progress);
+        JoinedMesh joined = joined_mesh(surface.vertices, surface.triangles, columns, snapping,
+                                        chains, execution.progress);
         if (!is_single_valued({joined.vertices, joined.triangles}, columns, execution)) return {};
         return joined;
     }
@@ -40,27 +40,27 @@ private:
 };
 
 const Warning& Joins::warning() const {
-    return found_->warning;
+    return joining_->warning;
 }
 
 std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t columns) const {
-    return joined_mesh(vertices, {}, columns, found_->snapping, {}).vertices;
+    return joined_mesh(vertices, {}, columns, joining_->snapping, {}).vertices;
 }
 
 std::optional<JoinedMesh> Joins::mesh(const TriangleView& mesh, std::size_t columns,
                                       const Execution& execution) const {
-    return found_->mesh(mesh, columns, execution);
+    return joining_->mesh(mesh, columns, execution);
 }
 
 std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
                                 const Execution& execution) {
     begin_step(execution.progress, 0.0, 1.0, "comparing the borders");
-    const auto found = std::make_shared<Joins::Found>();
-    found->snapping = find_snapping(rocks, execution);
-    if (borders) found->chains = find_chains(rocks, found->snapping, {1, execution.progress});
-    if (found->snapping.empty() && found->chains.empty()) return {};
-    found->warning = joined_by_rounding(found->snapping, found->chains);
-    return Joins(found);
+    const auto joining = std::make_shared<Joins::Found>();
+    joining->snapping = find_snapping(rocks, execution);
+    if (borders) joining->chains = find_chains(rocks, joining->snapping, {1, execution.progress});
+    if (joining->snapping.empty() && joining->chains.empty()) return {};
+    joining->warning = joined_by_rounding(joining->snapping, joining->chains);
+    return Joins(joining);
 }
 
 }  // namespace realmodel::strata

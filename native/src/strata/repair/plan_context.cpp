@@ -288,9 +288,9 @@ std::unique_ptr<PlanContext> load_input(std::span<const StackInput> rocks,
     context.geometry.expect_vertices(vertices);
     context.geometry.expect_planes(triangles + rocks.size());
     for (const StackInput& rock : rocks) {
-        LoadedRock& own = context.rocks.emplace_back(
+        LoadedRock& loaded_rock = context.rocks.emplace_back(
             load_rock(context.geometry, rock, context.surfaces, snapping, warnings, execution));
-        own.number = static_cast<std::int32_t>(context.rocks.size()) - 1;
+        loaded_rock.number = static_cast<std::int32_t>(context.rocks.size()) - 1;
         context.surfaces += static_cast<std::int32_t>(rock.surfaces.size());
     }
     if (context.is_empty()) return loaded;

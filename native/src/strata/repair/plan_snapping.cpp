@@ -146,7 +146,7 @@ public:
         }
         begin_pass();
     }
-    CloseValues take() { return std::move(found_); }
+    CloseValues take() { return std::move(close_values_); }
 
 private:
     /// All values from one to another.
@@ -216,8 +216,8 @@ private:
     }
     void end_run() {
         if (run_.size() > 1) {
-            found_.values.insert(found_.values.end(), run_.begin(), run_.end());
-            found_.ends.push_back(found_.values.size());
+            close_values_.values.insert(close_values_.values.end(), run_.begin(), run_.end());
+            close_values_.ends.push_back(close_values_.values.size());
         }
         run_.clear();
     }
@@ -229,7 +229,7 @@ private:
     std::vector<Slice> bins_;   // of equal width; empty where the slice is small enough
     std::vector<double> seen_;  // else its values
     std::vector<CloseValues::Value> run_;
-    CloseValues found_;
+    CloseValues close_values_;
     bool is_done_ = false;
 };
 

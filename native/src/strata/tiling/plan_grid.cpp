@@ -111,7 +111,7 @@ void PolygonCells::for_each_cell(const LocalArrangement& scope, PolygonView poly
 }
 
 bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
-                          const std::vector<PlanBox>& boxes, Array<std::int32_t>& found) const {
+                          const std::vector<PlanBox>& boxes, Array<std::int32_t>& numbers) const {
     if (items_.values.empty() || !box.meets(cells_.frame())) return true;
     const TileSpan span = cells_.span(box);
     bool is_once = true;
@@ -120,7 +120,7 @@ bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, co
             if (!is_first(item)) continue;
             if (!boxes[index(item.polygon)].meets(box)) continue;
             is_once &= item.left != kScattered;
-            found.push_back(item.polygon);
+            numbers.push_back(item.polygon);
         }
     };
     if (is_inside(box) && is_narrow(span)) {
@@ -158,15 +158,15 @@ PlanGrid::PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& po
 }
 
 void PlanGrid::candidates(const LocalArrangement& scope, PolygonView polygon,
-                          Array<std::int32_t>& found) const {
-    found.clear();
+                          Array<std::int32_t>& numbers) const {
+    numbers.clear();
     const PlanBox box = box_of(scope, polygon);
-    bool is_once = inner_.append(scope, polygon, box, boxes_, found);
-    is_once &= outer_.append(scope, polygon, box, boxes_, found);
-    std::sort(found.begin(), found.end());
+    bool is_once = inner_.append(scope, polygon, box, boxes_, numbers);
+    is_once &= outer_.append(scope, polygon, box, boxes_, numbers);
+    std::sort(numbers.begin(), numbers.end());
     if (!is_once)
-        found.resize(
-            static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin()));
+        numbers.resize(static_cast<std::size_t>(std::unique(numbers.begin(), numbers.end()) -
+                                                numbers.begin()));
 }
 
 WantedBoxes::WantedBoxes(const WantedSpace& space) : space_(space) {

@@ -30,7 +30,7 @@ public:
     /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
     /// comes repeatedly.
     bool append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
-                const std::vector<PlanBox>& boxes, Array<std::int32_t>& found) const;
+                const std::vector<PlanBox>& boxes, Array<std::int32_t>& numbers) const;
 
 private:
     /// A polygon in a cell. Of those entered in all cells of a box, the first column and row: two
@@ -63,7 +63,7 @@ public:
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
     void candidates(const LocalArrangement& scope, PolygonView polygon,
-                    Array<std::int32_t>& found) const;
+                    Array<std::int32_t>& numbers) const;
 
 private:
     std::vector<PlanBox> boxes_;

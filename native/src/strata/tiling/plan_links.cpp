@@ -208,9 +208,9 @@ std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
     segments.reserve(border.size());
     for (const BorderEdge& edge : border)
         segments.push_back({local(edge.low), local(edge.high)});
-    const auto found = triangulate(points, segments);
-    if (!found) return std::nullopt;
-    const auto& mesh = *found;
+    const auto triangulation = triangulate(points, segments);
+    if (!triangulation) return std::nullopt;
+    const auto& mesh = *triangulation;
     const NetAlongEdges net(mesh, points, segments, border);
 
     // Whatever has a corner of the frame lies outside of everything.

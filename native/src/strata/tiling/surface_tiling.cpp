@@ -257,7 +257,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);
     const auto border = found_in_each<std::pair<exact::VertexId, exact::VertexId>>(
-        triangles.size(), execution, [&](std::size_t t, auto& found) {
+        triangles.size(), execution, [&](std::size_t t, auto& edges) {
             const PlaneId plane = tiling.whole[t];
             const PlanTriangle& corner = geometry.plane(plane).plan;
             auto& neighbors = links.neighbor[index(plane)];
@@ -268,7 +268,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
                     continue;
                 }
                 neighbors[i] = kNone;
-                found.emplace_back(corner[i], corner[(i + 1) % 3]);
+                edges.emplace_back(corner[i], corner[(i + 1) % 3]);
             }
         });
     assert(are_symmetric(links, first));

@@ -78,7 +78,7 @@ TEST(ManyPoints, APartOfThemGivesTheSame) {
         EXPECT_EQ(a.errors, b.errors);
         EXPECT_EQ(a.variances, b.variances);
     }
-    EXPECT_LT(ManyPoints(points, true, 100).kept({}).size(), 100U);
+    EXPECT_LT(ManyPoints(points, true, 100).part_with({}).size(), 100U);
 }
 
 TEST(ManyPoints, RepeatedOnesCountOnce) {
