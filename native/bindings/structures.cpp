@@ -94,7 +94,7 @@ structures::ContinuedStructure continued_of(const ContinuedArrays& arrays) {
     }
     own.is_continuation.assign(is_continuation.data(),
                                is_continuation.data() + is_continuation.size());
-    own.kept = kept;
+    own.kept_sides = kept;
     return own;
 }
 
@@ -103,7 +103,7 @@ std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArr
     std::vector<ContinuedArrays> arrays;
     for (auto& own : structures::continued_structures(views_of(structures), box))
         arrays.emplace_back(corners_array(own.triangles), to_array(std::move(own.is_continuation)),
-                            std::move(own.kept));
+                            std::move(own.kept_sides));
     return arrays;
 }
 

@@ -465,9 +465,10 @@ void SurfaceParts::attach_hollows(Progress* progress) {
                     corners.push_back(at(node));
                 visit(corners, facing);
             };
-            const auto visit_loops = [&](const auto& loops) {
+            const auto visit_loops = [&, facing = sign](const auto& loops) {
                 for (const auto& loop : loops)
-                    visit_loop(loop, sign, [this](NodeId node) { return overlay_.position(node); });
+                    visit_loop(loop, facing,
+                               [this](NodeId node) { return overlay_.position(node); });
             };
             if (source < 0) {
                 visit_cap_loops(caps_[index(-1 - source)], visit_loops);

@@ -37,13 +37,13 @@ std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment
         tick(0.5);
         const Cdt::Face_handle face = open.back();
         open.pop_back();
-        const signed char here = parity[face->time_stamp()];
+        const signed char face_parity = parity[face->time_stamp()];
         for (int i = 0; i < 3; ++i) {
             const Cdt::Face_handle next = face->neighbor(i);
-            signed char& there = parity[next->time_stamp()];
-            if (there != kUnknown) continue;
+            signed char& neighbor_parity = parity[next->time_stamp()];
+            if (neighbor_parity != kUnknown) continue;
             const bool changes = face->is_constrained(i) && !is_inner(face, i);
-            there = static_cast<signed char>(changes ? 1 - here : here);
+            neighbor_parity = static_cast<signed char>(changes ? 1 - face_parity : face_parity);
             open.push_back(next);
         }
     }
