@@ -76,6 +76,7 @@ public:
         }
         refill();
         volumes_ = filling_->columns.mesh.volumes;
+        least_change_ = kMostOfAll * std::accumulate(volumes_.begin(), volumes_.end(), 0.0);
         is_whole_.assign(volumes_.size(), 0);
         is_narrow_ = narrow_strips(plan_, filling_->columns.fronts);
     }
@@ -200,9 +201,8 @@ private:
     /// Whether a block has changed by more than repairs may cost: a share of itself, and a little
     /// of all volumes.
     bool changes_much(std::size_t block, double most) const {
-        const double all = std::accumulate(volumes_.begin(), volumes_.end(), 0.0);
         return std::abs(filling_->columns.mesh.volumes[block] - volumes_[block]) >
-               std::max(most * volumes_[block], kMostOfAll * all);
+               std::max(most * volumes_[block], least_change_);
     }
 
     /// Faces that are steep, so that the centers of neighbors lie far from the direction across
@@ -275,6 +275,7 @@ private:
     PillarLevels levels_;
     std::optional<Filling> filling_;
     std::vector<double> volumes_;              ///< of each block, before the first repair
+    double least_change_ = 0;                  ///< what every block may lose or gain
     std::vector<std::uint8_t> is_whole_;       ///< of each block: it stays as it is
     const Buckets<std::size_t> pillars_;       ///< of each node
     std::vector<std::uint8_t> is_narrow_;      ///< of each triangle, before the first repair

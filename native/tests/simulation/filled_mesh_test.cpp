@@ -19,16 +19,39 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-/// A box divided by an inclined face, which is a fault (surface 0).
-struct DividedBox {
-    // below at y = 0 and 6, then above, then the ends of the fault below and above
-    std::vector<double> vertices{0,  0, 0, 10, 0, 0, 10, 6, 0, 0, 6, 0, 0, 0, 8, 10, 0, 8,
-                                 10, 6, 8, 0,  6, 8, 4,  0, 0, 4, 6, 0, 6, 0, 8, 6,  6, 8};
+/// Cells of faces with four corners.
+struct QuadComplex {
+    std::vector<double> vertices;
+    std::vector<std::int32_t> block;  // of each cell
     std::vector<std::int64_t> offsets{0};
-    std::vector<std::int32_t> corners, cells, surface, block{0, 0};
-    ComplexView view;
+    std::vector<std::int32_t> corners, cells, surface;
 
+    void add(const std::array<std::int32_t, 4>& loop, std::int32_t first, std::int32_t second,
+             std::int32_t on) {
+        corners.insert(corners.end(), loop.begin(), loop.end());
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        cells.insert(cells.end(), {first, second});
+        surface.push_back(on);
+    }
+    ComplexView view(std::size_t blocks, std::int32_t surfaces) const {
+        return {.vertices = vertices,
+                .face_offsets = offsets,
+                .face_vertices = corners,
+                .face_cells = cells,
+                .face_surface = surface,
+                .cell_block = block,
+                .blocks = blocks,
+                .surfaces = surfaces};
+    }
+};
+
+/// A box divided by an inclined face, which is a fault (surface 0).
+struct DividedBox : QuadComplex {
     DividedBox() {
+        // below at y = 0 and 6, then above, then the ends of the fault below and above
+        vertices = {0,  0, 0, 10, 0, 0, 10, 6, 0, 0, 6, 0, 0, 0, 8, 10, 0, 8,
+                    10, 6, 8, 0,  6, 8, 4,  0, 0, 4, 6, 0, 6, 0, 8, 6,  6, 8};
+        block = {0, 0};
         add({8, 9, 11, 10}, 0, 1, 0);
         add({0, 3, 9, 8}, 0, -1, 1);
         add({4, 10, 11, 7}, 0, -1, 2);
@@ -40,26 +63,11 @@ struct DividedBox {
         add({1, 2, 6, 5}, 1, -1, -1);
         add({8, 1, 5, 10}, 1, -1, -1);
         add({9, 11, 6, 2}, 1, -1, -1);
-        view = {.vertices = vertices,
-                .face_offsets = offsets,
-                .face_vertices = corners,
-                .face_cells = cells,
-                .face_surface = surface,
-                .cell_block = block,
-                .blocks = 1,
-                .surfaces = 3};
-    }
-    void add(const std::array<std::int32_t, 4>& loop, std::int32_t first, std::int32_t second,
-             std::int32_t on) {
-        corners.insert(corners.end(), loop.begin(), loop.end());
-        offsets.push_back(static_cast<std::int64_t>(corners.size()));
-        cells.insert(cells.end(), {first, second});
-        surface.push_back(on);
     }
     FilledMesh filled(double edge_length, double tolerance,
                       const std::vector<std::int32_t>& regions = {0, 1},
                       const std::vector<meshing::LocalLength>& sizes = {}) const {
-        return filled_mesh(view, regions, std::vector<std::uint8_t>{1, 0, 0}, edge_length,
+        return filled_mesh(view(1, 3), regions, std::vector<std::uint8_t>{1, 0, 0}, edge_length,
                            tolerance, sizes, {1, nullptr});
     }
 };
@@ -129,44 +137,29 @@ TEST(FilledMeshTest, AnInclinedFaultDividesABox) {
 
 /// Three layers in a box; the one in the middle is as thin as doubles allow.
 TEST(FilledMeshTest, ALayerThinnerThanRoundingOfSharesOfARayIsInItsPlaceAlone) {
-    std::vector<double> vertices;
-    std::vector<std::int64_t> offsets{0};
-    std::vector<std::int32_t> corners, cells, surface, block{0, 1, 2};
-    const auto add = [&](const std::array<std::int32_t, 4>& loop, std::int32_t first,
-                         std::int32_t second, std::int32_t on) {
-        corners.insert(corners.end(), loop.begin(), loop.end());
-        offsets.push_back(static_cast<std::int64_t>(corners.size()));
-        cells.insert(cells.end(), {first, second});
-        surface.push_back(on);
-    };
+    QuadComplex layers;
+    layers.block = {0, 1, 2};
     for (std::int32_t level = 0; level < 4; ++level) {
         for (const auto& [x, y] : {std::array{0.1, 0.2}, {3.1, 0.2}, {3.1, 2.2}, {0.1, 2.2}}) {
             const double middle = 1 + 0.3 * x + 0.1 * y;
             const std::array heights{0.0, middle, std::nextafter(middle, 9), 3.0};
-            vertices.insert(vertices.end(), {x, y, heights[static_cast<std::size_t>(level)]});
+            layers.vertices.insert(layers.vertices.end(),
+                                   {x, y, heights[static_cast<std::size_t>(level)]});
         }
     }
     for (const std::int32_t level : {3, 2, 1}) {
         const std::int32_t v = 4 * level;
-        add({v, v + 1, v + 2, v + 3}, level - 1, level < 3 ? level : -1, level);
+        layers.add({v, v + 1, v + 2, v + 3}, level - 1, level < 3 ? level : -1, level);
     }
-    add({0, 3, 2, 1}, 0, -1, 0);
+    layers.add({0, 3, 2, 1}, 0, -1, 0);
     for (std::int32_t cell = 0; cell < 3; ++cell) {
         for (std::int32_t i = 0; i < 4; ++i) {
             const std::int32_t a = 4 * cell + i, b = 4 * cell + (i + 1) % 4;
-            add({a, b, b + 4, a + 4}, cell, -1, -1);
+            layers.add({a, b, b + 4, a + 4}, cell, -1, -1);
         }
     }
-    const ComplexView view{.vertices = vertices,
-                           .face_offsets = offsets,
-                           .face_vertices = corners,
-                           .face_cells = cells,
-                           .face_surface = surface,
-                           .cell_block = block,
-                           .blocks = 3,
-                           .surfaces = 4};
-    const FilledMesh mesh = filled_mesh(view, std::array{0, 1, 2}, std::vector<std::uint8_t>(4),
-                                        0.4, 0.1, {}, {1, nullptr});
+    const FilledMesh mesh = filled_mesh(layers.view(3, 4), std::array{0, 1, 2},
+                                        std::vector<std::uint8_t>(4), 0.4, 0.1, {}, {1, nullptr});
     EXPECT_NEAR(volume(mesh, 0), 9.6, 0.3);
     EXPECT_EQ(volume(mesh, 1), 0);
     EXPECT_NEAR(volume(mesh, 2), 8.4, 0.3);
