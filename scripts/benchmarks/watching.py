@@ -37,7 +37,7 @@ def progress(spec: dict, cells: str, threads: int) -> dict:
     """
     given = project(StackSpec(**spec))
     told, spent = [], []
-    said = estimate(given, cells, threads)
+    said = estimate(given, cells, threads=threads)
     resident_before = resident()
 
     def tell(share: float, text: str) -> None:

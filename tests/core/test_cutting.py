@@ -234,7 +234,7 @@ def test_what_is_refused_says_where():
     assert refused.value.place[2] == 0.5
     with pytest.raises(InputRefused, match="names vertices"):
         model.cut_by_surface(vertices, triangles + 100)
-    with pytest.raises(UsageError, match="block 7 does not exist"):
+    with pytest.raises(UsageError, match="there is no block 7; blocks are"):
         model.cut_by_block(model, 7)
     with pytest.raises(UsageError, match="no block named 'chalk'"):
         model.cut_by_block(model, "chalk")

@@ -53,8 +53,8 @@ class SectionRequest:
 
     def cut(self, model, threads: int = 0) -> Section:
         if self.option == "--fence":
-            return model.fence(self.what, threads)
-        return model.section(self.what[:3], self.what[3:], threads)
+            return model.fence(self.what, threads=threads)
+        return model.section(self.what[:3], self.what[3:], threads=threads)
 
     def run(self, model, outputs, threads: int, progress) -> str:
         """Makes the section and stages its file. Returns the summary for the terminal."""
@@ -149,20 +149,22 @@ class CutRequest:
 
         lines = []
         if isinstance(self.cutter, np.ndarray):
-            cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads, step)
+            cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads=threads, progress=step)
             text = "by the plane"
         elif isinstance(self.cutter, Path):
             vertices, warnings = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
             lines += [f"warning: {warning}" for warning in warnings]
             try:
-                cut = model.cut_by_surface(vertices, self._mesh.triangles, threads, step)
+                cut = model.cut_by_surface(vertices, self._mesh.triangles, threads=threads, progress=step)
             except InputRefused as error:
                 raise InputRefused(f"{self.cutter}: {error}") from error
             text = f"by {self.cutter.name}"
         else:
             other = model if self.cutter[0] is None else self._other
             block = self.cutter[1]
-            cut = model.cut_by_block(other, int(block) if block.isdecimal() else block, threads, step)
+            cut = model.cut_by_block(
+                other, int(block) if block.isdecimal() else block, threads=threads, progress=step
+            )
             text = f"by block '{block}'"
         for half, path in ((cut.below, self.below), (cut.above, self.above)):
             if path is None:

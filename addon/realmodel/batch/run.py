@@ -120,7 +120,9 @@ def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> Non
 def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
     with Outputs() as outputs, Interruptible(outputs):
         try:
-            surfaces = build_surfaces(project, options.threads, progress, stage=options.stage)
+            surfaces = build_surfaces(
+                project, threads=options.threads, progress=progress, stage=options.stage
+            )
             for path in options.export:
                 with outputs.file(path) as file:
                     progress(1.0, f"writing {path.name}")
@@ -199,8 +201,8 @@ def _left_out_holes(options: argparse.Namespace, model, progress):
         return None
     return model.cross_validate_holes(
         options.cross_validate,
-        options.threads,
-        lambda _share, text: progress(1.0, f"without holes: {text}"),
+        threads=options.threads,
+        progress=lambda _share, text: progress(1.0, f"without holes: {text}"),
     )
 
 

@@ -40,6 +40,6 @@ class OpenedFile:
     ) -> Model:
         """The model: built, with the arguments of `build`, or loaded as it is. Raises RealModelError."""
         if self.project is not None:
-            return build(self.project, cells, threads, progress, stage=stage, memory=memory)
-        model = Model.load(self.file, threads, progress)
-        return model if stage is None else model.stage(stage, progress)
+            return build(self.project, cells, threads=threads, progress=progress, stage=stage, memory=memory)
+        model = Model.load(self.file, threads=threads, progress=progress)
+        return model if stage is None else model.stage(stage, progress=progress)

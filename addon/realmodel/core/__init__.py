@@ -11,6 +11,7 @@ from .base.errors import (
     RealModelError,
     UsageError,
 )
+from .base.sheet import Triangulation
 from .cells.blocks import Block, BlockBoundary
 from .exporters.meshes import save_mesh
 from .exporters.report import Report
@@ -120,6 +121,7 @@ __all__ = [
     "SurfaceSet",
     "Tile",
     "TiledModel",
+    "Triangulation",
     "UsageError",
     "ValidationReport",
     "Variogram",

@@ -85,6 +85,8 @@ class Store:
                 raise another(folder)
             with Outputs() as outputs, outputs.file(of) as file:
                 file.write(digest.encode())
+        except OutputFailed:
+            raise
         except OSError as error:
             raise OutputFailed(f"{folder}: {error.strerror or error}") from error
 

@@ -170,7 +170,7 @@ def _open(scene, path):
 
 def _open_model(context, path):
     """Shows a model from its file, its project as settings whose data are stored; returns its warnings."""
-    model = Model.load(path, threads())
+    model = Model.load(path, threads=threads())
     library = model.project.library
     # the files of the project are where it was built, if anywhere
     model.project = replace(model.project, path=None, library=library and replace(library, path=None))

@@ -181,7 +181,7 @@ def _begun(scene, state):
     def task(_):
         model = half
         if model is None:
-            model = request.make().cut_by_plane(point, normal, threads()).below
+            model = request.make().cut_by_plane(point, normal, threads=threads()).below
         made = polygon_mesh.of_blocks(model, origin, threads(), compartments=names)
         shapes = block_shapes.by_name(model, made)
         return state, model, shapes, request

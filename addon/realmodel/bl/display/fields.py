@@ -107,7 +107,7 @@ def _begun(scene, wanted):
         edges = np.linspace(*limits, _STEPS + 1)[1:-1]
         section = None
         if wanted["plane"]:
-            section = field_section(model, name, model.section(*wanted["plane"], threads()), edges)
+            section = field_section(model, name, model.section(*wanted["plane"], threads=threads()), edges)
         values = np.linspace(*limits, 2 * wanted["levels"] + 1)[1::2]  # in the middles of as many bands
         levels = field_levels(model, name, values) if wanted["levels"] else None
         return wanted, request, (limits, field_surfaces(model, name)), section, levels

@@ -20,7 +20,7 @@ class EstimateJob(ThreadJob):
         self._project = project_settings.compose(scene, depsgraph).project
 
     def _work(self, _job):
-        return estimate(self._project, self._cells, self._threads)
+        return estimate(self._project, self._cells, threads=self._threads)
 
     def _put(self, made):
         limit = preferences.build_memory() or made.available

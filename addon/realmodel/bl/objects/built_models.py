@@ -14,7 +14,7 @@ from ..host import caches
 
 def _bytes_of(model):
     """The memory that the arrays of a model take: those of its cells and of its surfaces, and its own."""
-    held = [value for part in (model, model.complex, model.surfaces) for value in vars(part).values()]
+    held = [value for part in (model, model.complex, model.surface_arrays) for value in vars(part).values()]
     return sum(value.nbytes for value in held if isinstance(value, np.ndarray))
 
 

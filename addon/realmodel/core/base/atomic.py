@@ -192,6 +192,8 @@ def explained(target: str | Path) -> Iterator[None]:
     """Raises OutputFailed, which names the target, in the place of OSError."""
     try:
         yield
+    except OutputFailed:
+        raise
     except OSError as error:
         reason = error.strerror or str(error)
         advice = "; make room or choose another folder" if error.errno in _FULL else ""

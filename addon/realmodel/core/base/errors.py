@@ -20,10 +20,10 @@ def _shortened(text: str) -> str:
 
 
 class RealModelError(Exception):
-    """Base of all errors that RealModel raises on purpose."""
+    """Base of all errors that RealModel raises on purpose. Most are also the built-in error of their kind."""
 
 
-class InputRefused(RealModelError):
+class InputRefused(RealModelError, ValueError):
     """The input is invalid.
 
     what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
@@ -88,7 +88,7 @@ class HeightsMissing(InputRefused):
     """There are points, but no heights in the chosen place; another choice may find them."""
 
 
-class OutputFailed(RealModelError):
+class OutputFailed(RealModelError, OSError):
     """A result could not be written: no folder, no right to write, disk full."""
 
 
@@ -113,7 +113,7 @@ class Cancelled(RealModelError):
     """The caller's cancel() returned True."""
 
 
-class UsageError(RealModelError):
+class UsageError(RealModelError, ValueError, TypeError):
     """A function or the command line was called with something that it does not know."""
 
 

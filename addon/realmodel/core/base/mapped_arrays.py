@@ -193,6 +193,8 @@ def _disk_errors(file: Path) -> Iterator[None]:
     """Raises OutputFailed, in one line, where the file of an array cannot be written or read."""
     try:
         yield
+    except OutputFailed:
+        raise
     except OSError as error:
         text = f"{file}: {error.strerror or error}; make room, or choose another folder"
         raise OutputFailed(text) from error

@@ -5,8 +5,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from .packages import extra
+
+if TYPE_CHECKING:
+    import pyvista
+
+
+class Triangulation(NamedTuple):
+    """vertices: (V, 3) float64, or (V, 2) in plan, model units. triangles: (T, 3) int32, numbers of vertices.
+
+    It is a tuple: `vertices, triangles = model.surfaces["top"]`.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The triangles as a mesh of PyVista; in plan all heights are 0. Raises UsageError where PyVista is
+        missing."""
+        places = np.pad(self.vertices, ((0, 0), (0, 3 - self.vertices.shape[1])))
+        return extra("pyvista", "to_pyvista()").PolyData.from_regular_faces(places, self.triangles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,9 +46,9 @@ class Sheet:
         return iter(self.arrays)
 
     @property
-    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
+    def arrays(self) -> Triangulation:
         """Vertices and triangles, as the native module takes them."""
-        return self.vertices, self.triangles
+        return Triangulation(self.vertices, self.triangles)
 
     @property
     def corners(self) -> np.ndarray:

@@ -29,6 +29,8 @@ def parse_xml(file: Path, raw: bytes, step: Step) -> ElementTree.Element:
             parser.feed(raw[at : at + BYTES_AT_ONCE])
             step(0.5 * at / len(raw))
         return parser.close()
+    except InputRefused:
+        raise
     except (ElementTree.ParseError, ValueError, LookupError) as error:  # the last of an unknown encoding
         line = error.position[0] if isinstance(error, ElementTree.ParseError) else None
         raise InputRefused(f"damaged XML: {error}", file=file, line=line) from error

@@ -13,6 +13,8 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
+from ..base.named import NamedList, number_of
+from ..base.sheet import Triangulation
 from ..heights import Interpolation
 from ..project.project import Project
 from ..structures.parts.parts import Structures
@@ -38,29 +40,29 @@ class UsedSurfaces(Protocol):
     def interpolations(self) -> list[Interpolation | None]: ...
     @property
     def surface_triangle_sheet(self) -> np.ndarray: ...
-    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]: ...
-    def surface_attributes(self, number: int) -> dict[str, np.ndarray]: ...
+    def surface(self, key: int | str) -> Triangulation: ...
+    def surface_attributes(self, key: int | str) -> dict[str, np.ndarray]: ...
 
 
 @dataclass(eq=False)
 class ModelData:
     """The data of a Model, and what follows from them at once.
 
-    The arrays of `complex`, the cells, and of `surfaces`, the input surfaces, are attributes here, too, under
-    the names of docs/dev/geometry.md. `surface_names` go with the global indices of the surfaces. `project`
-    holds the arrays that the model was built from, so that nothing is read again. `rock_inputs` are what the
-    stack builder took, by rock mass. `timings` are seconds by phase. `is_cut`: it is a half of another model
-    (docs/dev/geometry.md, "Cutting"). `warnings`: what was left out or changed, or is probably a mistake.
-    `threads`: how many it was built with. `surface_kind` (S,) int32: 0 an interface, 1 a fault, 2 a body.
-    `cell_compartment` (C,) int32: of each cell, an index of `compartment_names`; `compartment_sides`: on
-    which side of each fault the compartments are. `structures`: faults and bodies as they were built.
-    `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which says nothing of the
-    project but names, properties and shapes.
+    The arrays of `complex`, the cells, and of `surface_arrays`, the input surfaces, are attributes here, too,
+    under the names of docs/dev/geometry.md. `surface_names` go with the global indices of the surfaces.
+    `project` holds the arrays that the model was built from, so that nothing is read again. `rock_inputs` are
+    what the stack builder took, by rock mass. `timings` are seconds by phase. `is_cut`: it is a half of
+    another model (docs/dev/geometry.md, "Cutting"). `warnings`: what was left out or changed, or is probably
+    a mistake. `threads`: how many it was built with. `surface_kind` (S,) int32: 0 an interface, 1 a fault, 2
+    a body. `cell_compartment` (C,) int32: of each cell, an index of `compartment_names`;
+    `compartment_sides`: on which side of each fault the compartments are. `structures`: faults and bodies as
+    they were built. `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which
+    says nothing of the project but names, properties and shapes.
     """
 
     complex: CellComplex = field(repr=False)
-    blocks: list[Block]
-    surfaces: SurfaceArrays = field(repr=False)
+    blocks: NamedList[Block]
+    surface_arrays: SurfaceArrays = field(repr=False)
     surface_names: list[str]
     project: Project
     rock_inputs: list[RockInput] = field(default_factory=list, repr=False)
@@ -81,6 +83,7 @@ class ModelData:
         return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
 
     def __post_init__(self) -> None:
+        self.blocks = NamedList(self.blocks, (block.name for block in self.blocks), "block")
         if self.surface_kind is None:
             self.surface_kind = np.zeros(len(self.surface_names), np.int32)
         if self.cell_compartment is None:
@@ -153,22 +156,22 @@ class ModelData:
     @property
     def surface_vertices(self) -> np.ndarray:
         """(Vs, 3) float64: the vertices of all input surfaces, one surface after another."""
-        return self.surfaces.vertices
+        return self.surface_arrays.vertices
 
     @property
     def surface_triangles(self) -> np.ndarray:
         """(Ts, 3) int32: their triangles, which index within their own surface."""
-        return self.surfaces.triangles
+        return self.surface_arrays.triangles
 
     @property
     def surface_vertex_offsets(self) -> np.ndarray:
         """(S + 1,) int64: where the vertices of each surface begin."""
-        return self.surfaces.vertex_offsets
+        return self.surface_arrays.vertex_offsets
 
     @property
     def surface_triangle_offsets(self) -> np.ndarray:
         """(S + 1,) int64: where the triangles of each surface begin."""
-        return self.surfaces.triangle_offsets
+        return self.surface_arrays.triangle_offsets
 
     @property
     def face_blocks(self) -> np.ndarray:
@@ -192,17 +195,10 @@ class ModelData:
         Raises UsageError for an unknown one, and for a name of several blocks or of one of which nothing is
         left.
         """
-        names = [each.name for each in self.blocks]
-        found = [n for n, name in enumerate(names) if block in ((name,) if isinstance(block, str) else (n,))]
-        if len(found) != 1:
-            raise UsageError(
-                f"there are {len(found)} blocks {block!r}: give its number"
-                if found
-                else f"there is no block {block!r}; blocks are {', '.join(names)}, numbered from 0"
-            )
-        if isinstance(block, str) and not self.blocks[found[0]].cells:
-            raise UsageError(f"block '{names[found[0]]}' is absent: nothing of it is left in the model")
-        return self.complex.block_boundary(found[0])
+        number = number_of(block, self.blocks.names, "block")
+        if isinstance(block, str) and not self.blocks[number].cells:
+            raise UsageError(f"block '{block}' is absent: nothing of it is left in the model")
+        return self.complex.block_boundary(number)
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As CellComplex.face_corners."""
@@ -240,16 +236,28 @@ class ModelData:
         """The interpolation of each surface, by its global index; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
-    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
-        """What is known of the vertices of one input surface, by its global index, (V,) float64 each:
+    def surface_attributes(self, key: int | str) -> dict[str, np.ndarray]:
+        """What is known of the vertices of one input surface, by its name or global index, (V,) float64 each:
         `height`; `variance` of the error of an interpolated height, squared model units; `distance` in plan
         to the nearest point that it was interpolated from. NaN where there is no such thing, as for all
         vertices of a ready mesh."""
-        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+        number = number_of(key, self.surface_names, "surface")
+        return vertex_attributes(self.rock_inputs, number, self.surfaces[number].vertices)
 
-    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (V, 3) and triangles (T, 3) of one input surface, by its global index `number`."""
-        return self.surfaces.surface(number)
+    @property
+    def surfaces(self) -> NamedList[Triangulation]:
+        """The input surfaces, faults and bodies, by their names or global indices.
+
+        >>> vertices, triangles = model.surfaces["ground"]
+        >>> float(vertices[:, 2].max())
+        5.0
+        """
+        shapes = (shape.arrays for shape in self.surface_arrays.shapes)
+        return NamedList(shapes, self.surface_names, "surface")
+
+    def surface(self, key: int | str) -> Triangulation:
+        """One of `surfaces`. key: its name or global index. Raises UsageError."""
+        return self.surfaces[number_of(key, self.surface_names, "surface")]
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
@@ -260,12 +268,13 @@ class ModelData:
         count = sum(len(self.surface(number)[1]) for number in structures)
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
-    def sheet_triangles(self, number: int) -> list[np.ndarray]:
-        """The triangles (T, 3) of each sheet of a surface, by its global index `number`; a surface that no
-        fault displaces has one."""
+    def sheet_triangles(self, key: int | str) -> list[np.ndarray]:
+        """The triangles (T, 3) of each sheet of a surface; one that no fault displaces has one sheet. key: the
+        name or global index of the surface."""
+        number = number_of(key, self.surface_names, "surface")
         if self.surface_kind.any():
             self.require_project("a sheet of a surface")
-        triangles, sheets = self.surface(number)[1], [0]
+        triangles, sheets = self.surfaces[number].triangles, [0]
         if not self.surface_kind[number]:
             sheets = sheet_sizes(self.rock_inputs, number)
         return [own for own in np.split(triangles, np.cumsum(sheets[:-1])) if len(own)]

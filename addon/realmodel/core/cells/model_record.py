@@ -52,7 +52,7 @@ def record_arrays(model: ModelData) -> dict[str, np.ndarray]:
     """The record of a model as arrays of its file. It says nothing of where and when the model was built, and
     of files only the names in the folder of the project."""
     model.require_project("an .npz file")
-    arrays = NamedArrays(_shapes(model.surfaces), f"{RECORD}_")
+    arrays = NamedArrays(_shapes(model.surface_arrays), f"{RECORD}_")
     values = {name: getattr(model, name) for name in _FIELDS}
     text = _STORED.write(values, arrays, _within_folder(model.project))
     return {RECORD: np.frombuffer(text, np.uint8), **arrays}
@@ -104,7 +104,7 @@ def without_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays, na
     structures, rock = Structures([], [], [], []), -1
     named = zip(arrays["surface_kind"].tolist(), arrays["surface_names"].tolist(), strict=True)
     for number, (kind, own) in enumerate(named):
-        vertices, triangles = surfaces.surface(number)
+        vertices, triangles = surfaces.shapes[number]
         block = blocks.get(number)
         library_id = 0 if block is None else block.property
         if kind == 1:

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.errors import UsageError
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, run
 from ..model.build import build
 from ..model.model import Model
@@ -160,12 +161,14 @@ class Ensemble:
         """(N,) float64, bits, as of Probabilities, at each place."""
         return self.at().entropy()
 
+    @keyword_only
     def planned_hole(
         self,
         collar: tuple[float, float, float],
         azimuth: float = 0.0,
         dip: float = 90.0,
         length: float = 100.0,
+        *,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> PlannedHole:

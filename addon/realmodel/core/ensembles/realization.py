@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..base.errors import InputRefused
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.assembly import assemble, intersect
 from ..fields import FieldDraws
@@ -53,10 +54,12 @@ class Realizer:
         high = np.max([each.max(axis=0) for each in places], axis=0)
         self._area = FieldArea(low, high)
 
+    @keyword_only
     def realization(
         self,
         number: int,
         cells: str = "blocks",
+        *,
         threads: int = 0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.build_warning import BuildWarning
+from ..base.named import keyword_only
 from ..base.sheet import Sheet
 from ..base.triangles import welded
 from ..base.work import Cancel, Progress, Work, run
@@ -29,10 +30,12 @@ from .strata import Strata
 _SOLID, _STACK = 0.3, 0.35  # the progress at the end of these steps
 
 
+@keyword_only
 def fill_with_strata(
     vertices: ArrayLike,
     triangles: ArrayLike,
     strata: Strata,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -57,8 +60,8 @@ def fill_with_strata(
     mesh = closed_mesh(vertices, triangles, strata.base)
     beds = lay_beds(strata, mesh[0])
     model, places = run(lambda work: fill_within(work, mesh, beds, strata), progress, cancel, threads=threads)
-    surfaces = SurfaceArrays([Sheet(beds.leaned(own), of) for own, of in model.surfaces.shapes])
-    return replace(model, complex=replace(model.complex, vertices=places), surfaces=surfaces)
+    surfaces = SurfaceArrays([Sheet(beds.leaned(own), of) for own, of in model.surface_arrays.shapes])
+    return replace(model, complex=replace(model.complex, vertices=places), surface_arrays=surfaces)
 
 
 def fill_within(

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, UsageError
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..notebook import ShortRepr
 from ..settings.dips import Dips
@@ -96,13 +97,14 @@ class CrossValidation(ShortRepr):
         return float((np.abs(self.standardized[known]) <= 2).mean()) if known.any() else None
 
 
+@keyword_only
 def cross_validate(
     points: ArrayLike,
     method: str = "kriging",
     neighbours: int | None = None,
+    *,
     threads: int = 0,
     folds: int = DEFAULT_FOLDS,
-    *,
     mesh: Sequence[ArrayLike] | None = None,
     dips: Dips | None = None,
     progress: Progress | None = None,

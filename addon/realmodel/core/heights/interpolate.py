@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, run
 from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
@@ -20,14 +21,15 @@ from ..settings.methods import METHODS, check_method, checked_options
 from . import Interpolation, Task, heights
 
 
+@keyword_only
 def interpolate(
     points: ArrayLike | None,
     nodes: ArrayLike,
     method: str = "kriging",
     triangles: ArrayLike | None = None,
     neighbours: int | None = None,
-    threads: int = 0,
     *,
+    threads: int = 0,
     dips: Dips | None = None,
     bounds: Bounds | None = None,
     true_thickness: bool = False,

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.assembly import assemble, intersect
 from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
@@ -30,13 +31,14 @@ _SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "m
 __all__ = ["CELL_KINDS", "build"]
 
 
+@keyword_only
 def build(
     project: Project,
     cells: str = "columns",
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    *,
     stage: int | None = None,
     memory: int | None = None,
 ) -> Model:

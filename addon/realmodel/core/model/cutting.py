@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, number_list, place_text
+from ..base.named import keyword_only, number_of
 from ..base.triangles import checked_triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
 from ..cells.cell_complex import CellComplex
@@ -54,10 +55,12 @@ class Cut(ShortRepr, Generic[SomeModel]):
         return self.above
 
 
+@keyword_only
 def cut_by_plane(
     model: SomeModel,
     point: Sequence[float] | np.ndarray,
     normal: Sequence[float] | np.ndarray,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -76,10 +79,12 @@ def cut_by_plane(
     return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
 
 
+@keyword_only
 def cut_by_surface(
     model: SomeModel,
     vertices: ArrayLike,
     triangles: ArrayLike,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -100,10 +105,12 @@ def cut_by_surface(
     return _cut(model, lambda native: (native.cut_by_surface, vertices, triangles), threads, progress, cancel)
 
 
+@keyword_only
 def cut_by_block(
     model: SomeModel,
     other: ModelData,
     block: int | str,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -113,7 +120,7 @@ def cut_by_block(
 
     Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
     """
-    number = _block_number(other, block)
+    number = number_of(block, other.blocks.names, "block")
     return _cut(
         model,
         lambda native: (native.cut_by_block, other.native(), number),
@@ -121,18 +128,6 @@ def cut_by_block(
         progress,
         cancel,
     )
-
-
-def _block_number(model: ModelData, block: int | str) -> int:
-    names = [entry.name for entry in model.blocks]
-    if isinstance(block, str):
-        if names.count(block) != 1:
-            known = "no block" if block not in names else "more than one block"
-            raise UsageError(f"the model has {known} named '{block}'; give its number")
-        return names.index(block)
-    if isinstance(block, bool) or not hasattr(block, "__index__") or not 0 <= int(block) < len(names):
-        raise UsageError(f"block {block} does not exist: blocks are numbered from 0 to {len(names) - 1}")
-    return int(block)
 
 
 def _cut(
@@ -176,10 +171,12 @@ def _refused(error: NativeError) -> InputRefused:
     )
 
 
+@keyword_only
 def section(
     model: ModelData,
     point: Sequence[float] | np.ndarray,
     normal: Sequence[float] | np.ndarray,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -217,9 +214,73 @@ def section(
     return run(task, progress, cancel, threads=threads)
 
 
+_AXES = dict(zip(("x", "y", "z", "-x", "-y", "-z"), np.vstack([np.eye(3), -np.eye(3)]).tolist(), strict=True))
+
+
+def slice_model(
+    model: ModelData,
+    normal: str | Sequence[float] | np.ndarray = "x",
+    origin: Sequence[float] | np.ndarray | None = None,
+    *,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Section:
+    """`section` with the arguments of PyVista's slice. normal: an axis, "x" or "-x", or three numbers.
+    origin: a point of the plane; None: the middle of the model.
+
+    >>> model.slice("y").area
+    12.0
+    """
+    point, normal = _axis_plane(model, normal, origin)
+    return section(model, point, normal, threads=threads, progress=progress, cancel=cancel)
+
+
+def clip(
+    model: SomeModel,
+    normal: str | Sequence[float] | np.ndarray = "x",
+    origin: Sequence[float] | np.ndarray | None = None,
+    *,
+    invert: bool = True,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> SomeModel:
+    """One half of cut_by_plane, with the arguments of PyVista's clip: the one away from the normal, or with
+    invert=False that to which it points. normal, origin: as of `slice`.
+
+    >>> model.clip("x").volume, model.clip("x", invert=False).volume
+    (16.0, 32.0)
+    """
+    point, normal = _axis_plane(model, normal, origin)
+    cut = cut_by_plane(model, point, normal, threads=threads, progress=progress, cancel=cancel)
+    return cut.below if invert else cut.above
+
+
+def _axis_plane(
+    model: ModelData,
+    normal: str | Sequence[float] | np.ndarray,
+    origin: Sequence[float] | np.ndarray | None,
+) -> tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]:
+    if isinstance(normal, str):
+        if normal not in _AXES:
+            raise UsageError(f"normal must be one of {', '.join(_AXES)}, or three numbers, not {normal!r}")
+        normal = _AXES[normal]
+    if origin is None:
+        ends = (
+            (model.vertices.min(axis=0), model.vertices.max(axis=0))
+            if len(model.vertices)
+            else (np.zeros(3),)
+        )
+        origin = np.mean(ends, axis=0)
+    return origin, normal
+
+
+@keyword_only
 def fence(
     model: ModelData,
     polyline: ArrayLike,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -269,10 +330,12 @@ def fence(
     return run(task, progress, cancel, threads=threads)
 
 
+@keyword_only
 def fence_through_holes(
     model: ModelData,
     holes: Sequence[str],
     extend: float | None = None,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
@@ -283,7 +346,8 @@ def fence_through_holes(
     Raises InputRefused for a hole that is not there, or where all are at one place, UsageError, BuildFailed,
     Cancelled.
     """
-    return fence(model, line_through(hole_places(model.project), holes, extend), threads, progress, cancel)
+    line = line_through(hole_places(model.project), holes, extend)
+    return fence(model, line, threads=threads, progress=progress, cancel=cancel)
 
 
 def _joined(panels: list[dict]) -> dict:

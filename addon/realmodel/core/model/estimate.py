@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from ..base.elementary import cube_root
 from ..base.errors import NotEnoughMemory
+from ..base.named import keyword_only
 from ..base.sheet import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..fields.solve import MOST_CENTERS
@@ -88,13 +89,14 @@ class Estimate:
         return "\n".join(f"{name.ljust(width)}  {value}" for name, value in rows)
 
 
+@keyword_only
 def estimate(
     project: Project,
     cells: str = "columns",
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    *,
     stage: int | None = None,
 ) -> Estimate:
     """Estimates the memory and the time that build() with the same arguments needs. It reads the files and

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Self
 
 from ..base.errors import UsageError
+from ..base.named import keyword_only, number_of
 from ..base.work import Cancel, Progress, run
 from ..cells.assembly import build_stage
 from ..cells.model_data import ModelData
@@ -36,9 +37,11 @@ class Model(ModelData):
     """A built model: blocks of polyhedral cells that share faces."""
 
     @classmethod
+    @keyword_only
     def load(
         cls,
         path: str | Path,
+        *,
         threads: int = 0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
@@ -88,10 +91,11 @@ class Model(ModelData):
         """
         return field_of(self.project, rock_fields(self.rock_inputs), series, compartment)
 
-    def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
-        """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
-        rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
-        surfaces up to m.
+    @keyword_only
+    def stage(self, m: int | str, *, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
+        """The model as it was just after surface m (from 0) of each rock mass, or after the surface with this
+        name and those of the same number. Raises UsageError where no rock mass has a surface m, or the model
+        is a half: cut the stage instead. It is built anew from the surfaces up to m.
 
         >>> model.stage(1).volume, model.volume  # when the sand had just been laid down, and now
         (48.0, 48.0)
@@ -100,9 +104,13 @@ class Model(ModelData):
         """
         if self.is_cut:
             raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
+        if isinstance(m, str):
+            numbers = [number for rock in self.project.rocks for number in range(len(rock.surfaces))]
+            m = numbers[number_of(m, self.surface_names[: len(numbers)], "surface")]
         return build_stage(self, m, progress, cancel)
 
-    def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
+    @keyword_only
+    def eroded(self, *, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
         """What each surface removed of each block when it came: (S, B) volumes, and their sums.
 
         The volume of a block just before the surface, less that just after. For each surface that cuts the
@@ -116,10 +124,12 @@ class Model(ModelData):
             raise UsageError("a cut model has no erosion: ask the whole model")
         return eroded(self, self.threads, progress, cancel)
 
+    @keyword_only
     def validate(
         self,
         places: int = PLACES_OF_CHECK,
         seed: int = 1,
+        *,
         threads: int = 0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
@@ -166,6 +176,7 @@ class Model(ModelData):
     to_xarray = map_dataset
     block_table = block_table
     borehole_table = borehole_table
+    plot = notebook_view.plot
     simulation_mesh = simulation_mesh
     cleaned_cells = cleaned_cells
     geological_map = geological_map
@@ -174,6 +185,8 @@ class Model(ModelData):
     cut_by_surface = cutting.cut_by_surface
     cut_by_block = cutting.cut_by_block
     section = cutting.section
+    slice = cutting.slice_model
+    clip = cutting.clip
     fence = cutting.fence
     fence_through_holes = cutting.fence_through_holes
     borehole = borehole

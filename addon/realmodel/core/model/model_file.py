@@ -74,6 +74,8 @@ def read_model(work: Work, path: Path) -> ModelData:
         try:
             _check(arrays)
             return _model(arrays, path, work.threads)
+        except InputRefused:
+            raise
         except (ValueError, KeyError, IndexError) as error:
             raise InputRefused(f"a damaged model: {error}", file=path, advice=_AGAIN) from error
 

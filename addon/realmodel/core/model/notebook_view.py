@@ -6,7 +6,7 @@ from __future__ import annotations
 import base64
 import io
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -89,7 +89,7 @@ def _picture(model: ModelData) -> str:
         return ""
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     normal = (0.0, -1.0, 0.0) if high[0] - low[0] >= high[1] - low[1] else (-1.0, 0.0, 0.0)
-    cut = section(model, (low + high) / 2, normal, model.threads)
+    cut = section(model, (low + high) / 2, normal, threads=model.threads)
     if not len(cut):
         return ""
     drawing, exaggeration = _drawn(cut)
@@ -138,6 +138,12 @@ def to_pyvista(model: ModelData) -> pyvista.UnstructuredGrid:
     grid = PolyhedralMesh.of_model(model).to_pyvista()
     colors = rgb_bytes(model_with_library(model).block_colors)[model.cell_block]
     return with_data(grid, {"volume": model.cell_volumes, "color": colors})
+
+
+def plot(model: ModelData, **options: Any) -> Any:
+    """Shows the blocks in their colors with PyVista. options: those of pyvista.plot, such as `screenshot` or
+    `off_screen`. Returns what it returns. Raises UsageError where PyVista is missing."""
+    return to_pyvista(model).plot(**{"scalars": "color", "rgb": True, **options})
 
 
 def surfaces_to_pyvista(model: UsedSurfaces) -> pyvista.MultiBlock:

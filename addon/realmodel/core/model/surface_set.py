@@ -13,6 +13,8 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import UsageError
 from ..base.mapped_arrays import StoreArray, as_it_is
+from ..base.named import NamedList, keyword_only, number_of
+from ..base.sheet import Triangulation
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..exporters.surfaces import save_surfaces
 from ..heights import Interpolation
@@ -55,10 +57,16 @@ class SurfaceSet(ShortRepr):
         """The interpolation of each surface; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
-    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface, by its number."""
+    @property
+    def surfaces(self) -> NamedList[Triangulation]:
+        """The surfaces, by their names or numbers."""
         interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
-        return [*interfaces, *self.structures.shapes][number].arrays
+        shapes = (shape.arrays for shape in [*interfaces, *self.structures.shapes])
+        return NamedList(shapes, self.surface_names, "surface")
+
+    def surface(self, key: int | str) -> Triangulation:
+        """One of `surfaces`. key: its name or number. Raises UsageError."""
+        return self.surfaces[number_of(key, self.surface_names, "surface")]
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
@@ -66,9 +74,10 @@ class SurfaceSet(ShortRepr):
         count = sum(len(triangles) for _, triangles in self.structures.shapes)
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
-    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
+    def surface_attributes(self, key: int | str) -> dict[str, np.ndarray]:
         """As Model.surface_attributes."""
-        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+        number = number_of(key, self.surface_names, "surface")
+        return vertex_attributes(self.rock_inputs, number, self.surfaces[number].vertices)
 
     def to_pyvista(self) -> pyvista.MultiBlock:
         """As Model.surfaces_to_pyvista."""
@@ -83,12 +92,13 @@ class SurfaceSet(ShortRepr):
         save_surfaces(self, path)
 
 
+@keyword_only
 def build_surfaces(
     project: Project,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-    *,
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     reader: Reader = read_each,

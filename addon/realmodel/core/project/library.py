@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from ..base.errors import InputRefused
+from ..base.errors import InputRefused, UsageError
 from ..base.toml_table import Table, TomlDocument
 from .colors import RGB, rgb
 from .looks import LOOKS
@@ -60,8 +60,20 @@ class Library:
             _check_property(entry, seen)
             seen.add(entry.id)
 
-    def __contains__(self, number: int) -> bool:
-        return any(entry.id == number for entry in self.properties)
+    def __contains__(self, key: int | str) -> bool:
+        return any(key in (entry.id, entry.name) for entry in self.properties)
+
+    def __getitem__(self, key: int | str) -> Property:
+        """The property with this id or name. Raises UsageError.
+
+        >>> Library([Property(7, "Sandstone")])["Sandstone"].id
+        7
+        """
+        for entry in self.properties:
+            if key in (entry.id, entry.name):
+                return entry
+        known = ", ".join(f"{entry.id} '{entry.name}'" for entry in self.properties)
+        raise UsageError(f"the library has no property {key!r}; it has {known}")
 
     def __iter__(self) -> Iterator[Property]:
         return iter(self.properties)

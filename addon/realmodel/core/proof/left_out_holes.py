@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.errors import InputRefused, UsageError
+from ..base.named import keyword_only
 from ..base.work import Cancel, Progress, Work, run
 from ..cells.model_data import ModelData
 from ..heights.left_out_places import in_turn, places_of
@@ -92,9 +93,11 @@ class HoleValidation:
         return f"{len(self.holes)} holes left out in {self.groups} groups{share}{heights}{lost}"
 
 
+@keyword_only
 def cross_validate_holes(
     model: ModelData,
     folds: int | None = None,
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, UsageError, place_text
+from ..base.named import keyword_only
+from ..base.sheet import Triangulation
 from ..base.triangles import checked_triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, refused_as, run
 from ..settings.method_options import check_threads
@@ -108,20 +110,20 @@ class Intersection:
         """The parts of space that both surfaces enclose."""
         return [SubBlock(*entry) for entry in self._native.sub_blocks]
 
-    def union(self) -> tuple[np.ndarray, np.ndarray]:
+    def union(self) -> Triangulation:
         """The volume inside either surface or both: vertices (N, 3) float64 and triangles (M, 3) int32 of its
         boundary, counter-clockwise seen from outside. Raises InputRefused where a surface is open."""
         return self._solid("union")
 
-    def intersection(self) -> tuple[np.ndarray, np.ndarray]:
+    def intersection(self) -> Triangulation:
         """The volume inside both surfaces; as `union`."""
         return self._solid("intersection")
 
-    def difference(self) -> tuple[np.ndarray, np.ndarray]:
+    def difference(self) -> Triangulation:
         """The volume inside the first surface and outside the second; as `union`."""
         return self._solid("difference")
 
-    def reverse_difference(self) -> tuple[np.ndarray, np.ndarray]:
+    def reverse_difference(self) -> Triangulation:
         """The volume inside the second surface and outside the first; as `union`."""
         return self._solid("reverse_difference")
 
@@ -166,14 +168,14 @@ class Intersection:
         ends = np.cumsum([len(block.triangles) for block in self.sub_blocks])[:-1]
         return list(zip(np.split(rows, ends), np.split(is_turned, ends), strict=True))
 
-    def _solid(self, operation: str) -> tuple[np.ndarray, np.ndarray]:
+    def _solid(self, operation: str) -> Triangulation:
         rows, is_turned = self.boundary(operation)
         triangles = self.triangles[rows]
         triangles[is_turned] = triangles[is_turned][:, [0, 2, 1]]
         is_used = np.zeros(len(self.vertices), bool)
         is_used[triangles] = True
         number = np.cumsum(is_used, dtype=np.int32) - 1
-        return self.vertices[is_used], number[triangles]
+        return Triangulation(self.vertices[is_used], number[triangles])
 
     def _open(self, number: int) -> InputRefused:
         edges, uses = self._border(number)
@@ -203,9 +205,11 @@ def _from_least(triangles: np.ndarray) -> np.ndarray:
     return np.take_along_axis(triangles, order, axis=1)
 
 
+@keyword_only
 def intersect(
     a: Sequence[ArrayLike],
     b: Sequence[ArrayLike],
+    *,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,

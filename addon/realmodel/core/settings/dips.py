@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..base.algebra import ascending
 from ..base.errors import InputRefused, place_text
+from .directions import gradient_of, normal_of
 from .field_table import FieldTable
 
 NORMAL = ("normal_x", "normal_y", "normal_z")
@@ -83,6 +84,19 @@ class SpaceDips:
         used = np.concatenate([np.empty(0, bool), *(part.in_use for part in parts)])
         return cls(positions, normals, None if used.all() else used)
 
+    @classmethod
+    def from_angles(
+        cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, overturned: ArrayLike = False
+    ) -> SpaceDips:
+        """Dips as they are measured. positions: (D, 3), model units. dip: (D,) degrees below the horizontal,
+        beyond 90 overturned. dip_direction: (D,) degrees clockwise from north (+y). overturned: (D,) bool.
+        One number counts for all."""
+        places = np.asarray(positions, np.float64)
+        angles = np.broadcast_arrays(dip, dip_direction, overturned, np.empty(len(places)))[:3]
+        rows = zip(*(column.tolist() for column in angles), strict=True)
+        normals = [normal_of(*row) for row in rows]
+        return cls(places, np.array(normals).reshape(-1, 3))
+
     def row(self, number: int) -> int:
         """The row that one of them comes from."""
         return _row(self, number)
@@ -146,6 +160,32 @@ class Dips:
         """Those that are not switched off; None where there are none."""
         kept = self if self.used is None else replace(self.some(self.in_use), used=None)
         return kept if len(kept) else None
+
+    @classmethod
+    def from_angles(
+        cls, positions: ArrayLike, dip: ArrayLike, dip_direction: ArrayLike, **columns: Any
+    ) -> Dips:
+        """Dips as they are measured. positions: (D, 2) x, y or (D, 3) x, y, z, model units. dip: (D,) degrees
+        below the horizontal, less than 90. dip_direction: (D,) degrees clockwise from north (+y). One number
+        counts for all. columns: surfaces, blocks or used. Raises InputRefused where one is vertical.
+
+        >>> Dips.from_angles([[0, 0], [5, 0]], dip=45, dip_direction=[90, 270]).gradients.round(9)
+        array([[-1.,  0.],
+               [ 1.,  0.]])
+        """
+        places = np.asarray(positions, np.float64)
+        dips, directions, _ = np.broadcast_arrays(dip, dip_direction, np.empty(len(places)))
+        steep = np.flatnonzero(~((dips >= 0) & (dips < 90)))
+        if len(steep):
+            raise InputRefused(
+                f"dip {steep[0]} is {dips[steep[0]]:g} degrees, and a sheet has one height at each position",
+                item="dips",
+                advice="use SpaceDips in a series whose kind is field",
+            )
+        rows = zip(dips.tolist(), directions.tolist(), strict=True)
+        gradients = np.array([gradient_of(*row) for row in rows]).reshape(-1, 2)
+        z = places[:, 2] if places.shape[1:] == (3,) else None
+        return cls(places[:, :2], gradients, z, **columns)
 
     @property
     def heights(self) -> np.ndarray:

@@ -46,3 +46,20 @@ def unit_vector(degrees: float) -> np.ndarray:
 def degrees_text(vector: np.ndarray) -> str:
     """The direction of a vector (2,) for messages, in whole degrees."""
     return f"{round(math.degrees(math.atan2(vector[0], vector[1]))) % 360}"
+
+
+def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
+    """(2,) the slope along x and y of a plane that dips so many degrees, below 90, in a direction in degrees
+    clockwise from north (+y)."""
+    angle = math.radians(dip)
+    return -(sin(angle) / cos(angle)) * unit_vector(dip_direction) + 0.0  # no -0
+
+
+def normal_of(dip: float, dip_direction: float, is_overturned: bool = False) -> np.ndarray:
+    """(3,) the normal, toward younger rock, of bedding that dips so many degrees, up to 180, in a direction
+    in degrees clockwise from north (+y). Beyond 90 degrees it is overturned by itself, whether or not
+    `is_overturned` says so, too."""
+    angle = math.radians(dip)
+    down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(dip_direction)
+    upright = np.array([*down, cos(angle)])
+    return -upright if is_overturned and dip <= 90 else upright

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.errors import InputRefused, place_text
-from ..base.sheet import Sheet
+from ..base.sheet import Sheet, Triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
 from ..heights.ties import TieData, tie_data
 from ..project.region_rings import numbered_ring, region_rings
@@ -82,7 +82,7 @@ def mesh_region(
     points: ArrayLike | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> Triangulation:
     """Meshes a region in plan.
 
     outline: (N, 2) corners in model units, in either direction, not repeated at the end (a repeated
@@ -119,9 +119,9 @@ def mesh_region(
     options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
     rings, request = region_rings(outline, holes), options.request()
 
-    def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
+    def task(work: Work) -> Triangulation:
         with work.phase(0.0, 1.0, "meshing"):
-            return _native_call(work, native_module().mesh_region, rings, request)
+            return Triangulation(*_native_call(work, native_module().mesh_region, rings, request))
 
     return run(task, progress, cancel)
 

@@ -52,10 +52,6 @@ class SurfaceArrays:
         vars(found).update(given)
         return found
 
-    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (V, 3) and triangles (T, 3) of one surface."""
-        return self.shapes[number].arrays
-
 
 def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface

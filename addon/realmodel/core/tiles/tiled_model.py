@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
+from ..base.named import keyword_only
 from ..cells.blocks import Block
 from ..fields import ScalarField
 from ..model.model import Model
@@ -97,8 +98,9 @@ class TiledModel(ShortRepr):
         surfaces = [surface.name for rock in self.project.rocks for surface in rock.surfaces]
         return surfaces + [each.name for each in (*self.project.faults, *self.project.bodies)]
 
+    @keyword_only
     def section(
-        self, point: Sequence[float] | np.ndarray, normal: Sequence[float] | np.ndarray, threads: int = 0
+        self, point: Sequence[float] | np.ndarray, normal: Sequence[float] | np.ndarray, *, threads: int = 0
     ) -> Section:
         """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
         is moved off it by a rounding."""
@@ -112,9 +114,10 @@ class TiledModel(ShortRepr):
             away = dot(self._corners(tile) - point, normal)
             return away.min() <= 0 <= away.max()
 
-        return self._joined(meets, lambda model: model.section(point, normal, threads))
+        return self._joined(meets, lambda model: model.section(point, normal, threads=threads))
 
-    def fence(self, polyline: ArrayLike, threads: int = 0) -> Fence:
+    @keyword_only
+    def fence(self, polyline: ArrayLike, *, threads: int = 0) -> Fence:
         """As Model.fence; polygons come by tile."""
         line = np.asarray(polyline, np.float64)
         if line.ndim != 2 or line.shape[1:] != (2,) or len(line) < 2:
@@ -127,7 +130,7 @@ class TiledModel(ShortRepr):
             at = tile.extent[:, :2]
             return bool(((low <= at[1]) & (high >= at[0])).all(axis=1).any())
 
-        return self._joined(meets, lambda model: model.fence(line, threads))
+        return self._joined(meets, lambda model: model.fence(line, threads=threads))
 
     def borehole(self, x: float, y: float) -> list[Interval]:
         """As Model.borehole."""

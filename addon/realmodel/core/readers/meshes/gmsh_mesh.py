@@ -55,6 +55,8 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
         step(0.5)
         section = b"Elements"
         faces = (_elements_2 if old else _elements_4)(read[1])
+    except InputRefused:
+        raise
     except (ValueError, IndexError, OverflowError, MemoryError, KeyError) as error:
         what, line = f"not a Gmsh file that can be read: {error}", None
         if read:

@@ -76,6 +76,8 @@ def read_geotiff(
     except OSError as error:
         what = error.strerror or str(error)
         raise InputRefused(f"cannot be read: {what}", file=file, advice="check the path") from error
+    except InputRefused:
+        raise
     except (tifffile.TiffFileError, ValueError, KeyError, IndexError, TypeError, zlib.error) as error:
         raise InputRefused(f"a damaged TIFF: {error}", file=file) from error
     keys = _geo_keys(tags.get(_GEO_KEYS, ()))

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factors
 from ...settings.dips import NORMAL, DipFile, Dips, SpaceDips
-from ...settings.directions import unit_vector
+from ...settings.directions import gradient_of, normal_of
 from .hole_tables import OBSERVED, Row, rows
 from .observations import LeftOut
 from .points import AXES
@@ -43,23 +42,6 @@ _POLARITY = {
 _SHEET = "a sheet has one height at each position"
 _SAY_POLARITY = "write 1 or upright, -1 or overturned"
 _ELSEWHERE = 'leave the row out: steep folds belong in a series with kind = "field"'
-
-
-def gradient_of(dip: float, dip_direction: float) -> np.ndarray:
-    """(2,) the slope along x and y of a plane that dips so many degrees, below 90, in a direction in degrees
-    clockwise from north (+y)."""
-    angle = math.radians(dip)
-    return -(sin(angle) / cos(angle)) * unit_vector(dip_direction) + 0.0  # no -0
-
-
-def normal_of(dip: float, dip_direction: float, is_overturned: bool = False) -> np.ndarray:
-    """(3,) the normal, toward younger rock, of bedding that dips so many degrees, up to 180, in a direction
-    in degrees clockwise from north (+y). Beyond 90 degrees it is overturned by itself, whether or not
-    `is_overturned` says so, too."""
-    angle = math.radians(dip)
-    down = np.zeros(2) if dip in (0, 180) else sin(angle) * unit_vector(dip_direction)
-    upright = np.array([*down, cos(angle)])
-    return -upright if is_overturned and dip <= 90 else upright
 
 
 def read_dips(given: DipFile, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Dips:
