@@ -16,7 +16,7 @@ from ..structures.parts.part_models import LID
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
-from .blocks import Block
+from .blocks import Block, named_blocks
 from .built_cells import BuiltCells
 from .cell_complex import CellComplex
 from .joining import build_joined
@@ -90,7 +90,7 @@ def assemble(
         compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
         model = ModelData(
             own,
-            blocks,
+            named_blocks(blocks),
             _surfaces(inputs, structures),
             surface_kind=np.array(kinds, np.int32),
             cell_compartment=compartment,

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.named import NamedList
 from ..notebook import ShortRepr, polygon_mesh
 
 if TYPE_CHECKING:
@@ -30,10 +31,16 @@ class Block:
     components: int
 
 
-def blocks_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Block]:
+def named_blocks(blocks: Sequence[Block]) -> NamedList[Block]:
+    """The blocks of a model, which are found by their names, too."""
+    return NamedList(blocks, (block.name for block in blocks), "block")
+
+
+def blocks_of_arrays(arrays: Mapping[str, np.ndarray]) -> NamedList[Block]:
     """The blocks of a file, by its arrays `block_...`."""
     keys = ("names", "rock", "surface", "property", "volume", "cells", "components")
-    return [Block(*row) for row in zip(*(arrays[f"block_{key}"].tolist() for key in keys), strict=True)]
+    rows = zip(*(arrays[f"block_{key}"].tolist() for key in keys), strict=True)
+    return named_blocks([Block(*row) for row in rows])
 
 
 @dataclass(frozen=True, repr=False)

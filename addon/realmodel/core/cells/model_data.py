@@ -83,7 +83,6 @@ class ModelData:
         return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
 
     def __post_init__(self) -> None:
-        self.blocks = NamedList(self.blocks, (block.name for block in self.blocks), "block")
         if self.surface_kind is None:
             self.surface_kind = np.zeros(len(self.surface_names), np.int32)
         if self.cell_compartment is None:
@@ -269,8 +268,8 @@ class ModelData:
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
     def sheet_triangles(self, key: int | str) -> list[np.ndarray]:
-        """The triangles (T, 3) of each sheet of a surface; one that no fault displaces has one sheet. key: the
-        name or global index of the surface."""
+        """The triangles (T, 3) of each sheet of a surface; one that no fault displaces has one. key: the name
+        or global index of the surface."""
         number = number_of(key, self.surface_names, "surface")
         if self.surface_kind.any():
             self.require_project("a sheet of a surface")

@@ -191,7 +191,7 @@ def _compartments(model: ModelData) -> list[dict]:
             "volume": float(own.sum()),
             "blocks": [
                 {"block": model.blocks[number].name, "volume": float(own[number])}
-                for number in np.flatnonzero(own)
+                for number in np.flatnonzero(own).tolist()
             ],
         }
         for name, own in zip(model.compartment_names, volumes, strict=True)

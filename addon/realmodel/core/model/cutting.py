@@ -16,6 +16,7 @@ from ..base.errors import InputRefused, UsageError, number_list, place_text
 from ..base.named import keyword_only, number_of
 from ..base.triangles import checked_triangulation
 from ..base.work import Cancel, NativeError, Progress, Work, native_module, refused_as, run
+from ..cells.blocks import named_blocks
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..notebook import ShortRepr
@@ -258,22 +259,16 @@ def clip(
 
 
 def _axis_plane(
-    model: ModelData,
-    normal: str | Sequence[float] | np.ndarray,
-    origin: Sequence[float] | np.ndarray | None,
-) -> tuple[Sequence[float] | np.ndarray, Sequence[float] | np.ndarray]:
+    model: ModelData, normal: str | ArrayLike, origin: ArrayLike | None
+) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(normal, str):
         if normal not in _AXES:
             raise UsageError(f"normal must be one of {', '.join(_AXES)}, or three numbers, not {normal!r}")
         normal = _AXES[normal]
     if origin is None:
-        ends = (
-            (model.vertices.min(axis=0), model.vertices.max(axis=0))
-            if len(model.vertices)
-            else (np.zeros(3),)
-        )
-        origin = np.mean(ends, axis=0)
-    return origin, normal
+        places = model.vertices if len(model.vertices) else np.zeros((1, 3))
+        origin = (places.min(axis=0) + places.max(axis=0)) / 2
+    return np.asarray(origin), np.asarray(normal)
 
 
 @keyword_only
@@ -432,7 +427,7 @@ def _half(work: Work, model: SomeModel, arrays: dict, touches: bool) -> SomeMode
     return replace(
         model,
         complex=own,
-        blocks=blocks,
+        blocks=named_blocks(blocks),
         is_cut=True,
         warnings=list(model.warnings),
         timings={},

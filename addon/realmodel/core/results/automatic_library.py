@@ -9,6 +9,7 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 
+from ..cells.blocks import named_blocks
 from ..cells.model_data import SomeModel
 from ..project.colors import hex_color, rgb
 from ..project.library import Library, Property
@@ -83,5 +84,5 @@ def model_with_library(model: SomeModel) -> SomeModel:
     numbers = [surface.property for rock in project.rocks for surface in rock.surfaces]
     made.structures = replace(model.structures, bodies=project.bodies)
     numbers += [0] * len(project.faults) + [body.property for body in project.bodies]
-    made.blocks = [replace(block, property=numbers[block.surface]) for block in model.blocks]
+    made.blocks = named_blocks([replace(block, property=numbers[block.surface]) for block in model.blocks])
     return made

@@ -153,10 +153,10 @@ def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions) -> tup
     return _native_call(work, native_module().mesh_region, rings, options.request())
 
 
-def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def triangulate_rings(rings: list[np.ndarray]) -> Triangulation:
     """The region of checked rings in as few triangles as there are, without further vertices."""
     with refused_as(refused_region) as native:
-        return native.triangulate_rings(rings)
+        return Triangulation(*native.triangulate_rings(rings))
 
 
 def triangulate_polygon(outline: ArrayLike, holes: Iterable[ArrayLike] = ()) -> np.ndarray:

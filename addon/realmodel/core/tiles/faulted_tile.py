@@ -11,7 +11,7 @@ import numpy as np
 from ..base.sheet import Sheet
 from ..base.work import Work
 from ..cells.assembly import assemble
-from ..cells.blocks import Block
+from ..cells.blocks import Block, named_blocks
 from ..cells.built_cells import BuiltCells, CellParts
 from ..cells.cell_complex import CellComplex
 from ..cells.joining import blocks_divided, body_block, build_joined
@@ -162,7 +162,7 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels:
     labels_of_cells, names, sides = labels
     return Model(
         own,
-        blocks,
+        named_blocks(blocks),
         SurfaceArrays(shapes + ends),
         surface_names=whole.surface_names,
         project=frame.project,

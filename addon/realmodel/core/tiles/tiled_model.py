@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
-from ..base.named import keyword_only
-from ..cells.blocks import Block
+from ..base.named import NamedList, keyword_only
+from ..cells.blocks import Block, named_blocks
 from ..fields import ScalarField
 from ..model.model import Model
 from ..model.section import Fence, Section
@@ -75,7 +75,7 @@ class TiledModel(ShortRepr):
     name: str
     folder: Path
     cell_kind: str
-    blocks: list[Block]
+    blocks: NamedList[Block]
     tiles: list[Tile]
     x: np.ndarray
     y: np.ndarray
@@ -258,7 +258,7 @@ def tiled_model(catalog: Catalog, folder: Path) -> TiledModel:
         catalog.project.name,
         folder,
         catalog.cell_kind,
-        catalog.blocks,
+        named_blocks(catalog.blocks),
         tiles,
         catalog.grid.x,
         catalog.grid.y,
