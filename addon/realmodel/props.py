@@ -31,6 +31,7 @@ from . import (
     props_view,
 )
 from .bl import changes, display
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import library_rows, results, units
 from .bl.scene import data_objects, quality
 from .bl.shading import looks
@@ -117,7 +118,7 @@ class RealModelProperty(bpy.types.PropertyGroup):
         update=changes.property_hardness,
         options=set(),
     )
-    exact: StringProperty(options={"HIDDEN"})
+    exact = ArraysProperty()
 
 
 class RealModelBlock(bpy.types.PropertyGroup):

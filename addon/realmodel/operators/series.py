@@ -118,7 +118,7 @@ class REALMODEL_OT_series_dips_remove(Reporting, bpy.types.Operator):
     needs = (a_rock, dips_of_series)
 
     def act(self, context):
-        series_settings.keep_dips(series_settings.active(settings.active_rock(context.scene)), None)
+        surface_dips.keep(series_settings.active(settings.active_rock(context.scene)), None)
         data_objects.update(context.scene)
         live.touch(context.scene)
 

@@ -121,7 +121,7 @@ def _by_column(scene):
 def _scale(scene, name):
     """The range (low, high) of a column of numbers and no words; or None, and the words of another, the most
     frequent first."""
-    known = name, *(rock.interval_values for rock in scene.realmodel.rocks)
+    known = name, *(rock.interval_values.digest for rock in scene.realmodel.rocks)
     if known not in _scales:
         _scales[known] = _scale_of(scene, name)
     return _scales[known]
