@@ -176,10 +176,16 @@ class OfVersion6(PanelCase):
         rock["edge_length"], rock["exact"] = 0.1, json.dumps({"edge_length": 0.1 + 1e-12})
         rock["region_stored"] = _npz(ring0=places[:, :2], ring1=places[:1, :2])
         rock["observations"] = _npz(places=places, blocks=["top", "B"], used=[True, False], on=["", "top"])
-        rock["dips"] = _npz(positions=places[:, :2], gradients=places[:, 1:], surfaces=["top", ""], blocks=["", "B"])
-        rock["map"] = _npz(vertices=places, triangles=np.array([[0, 1, 0]], np.int32), unit=[0], names=["sand"])
+        rock["dips"] = _npz(
+            positions=places[:, :2], gradients=places[:, 1:], surfaces=["top", ""], blocks=["", "B"]
+        )
+        rock["map"] = _npz(
+            vertices=places, triangles=np.array([[0, 1, 0]], np.int32), unit=[0], names=["sand"]
+        )
         columns = {"column:Au, ppm": [0.1, np.nan], "column:note": ["", "ä"]}
-        rock["interval_values"] = _npz(holes=["A", "B"], begins=places, ends=places, depths=places[:, :2], **columns)
+        rock["interval_values"] = _npz(
+            holes=["A", "B"], begins=places, ends=places, depths=places[:, :2], **columns
+        )
         rock.series[0]["dips"] = _npz(positions=places, normals=-places)
         top["stored"], top["left_out"] = _npz(points=places), _npz(points=places[:1])
         top["stored_mesh"], top["dips"] = "", "UEsDBA=="
@@ -197,11 +203,18 @@ class OfVersion6(PanelCase):
         self.assertEqual(borehole_picks.of_rock(rock), picks)
         self.assertEqual(borehole_picks.ends_of(rock), ends)
         self.assertEqual(settings.number(rock, "edge_length"), 0.1 + 1e-12)
-        self.assertEqual([ring.tolist() for ring in rock.region_stored.values()], [places[:, :2].tolist(), places[:1, :2].tolist()])
+        self.assertEqual(
+            [ring.tolist() for ring in rock.region_stored.values()],
+            [places[:, :2].tolist(), places[:1, :2].tolist()],
+        )
         observations = observed_blocks.of_rock(rock)
         self.assertEqual(observations.places.tolist(), places.tolist())
-        self.assertEqual((observations.blocks.tolist(), observations.used.tolist()), (["top", "B"], [True, False]))
-        self.assertEqual([names.tolist() for names in surface_dips.of_row(rock).named], [["top", ""], ["", "B"]])
+        self.assertEqual(
+            (observations.blocks.tolist(), observations.used.tolist()), (["top", "B"], [True, False])
+        )
+        self.assertEqual(
+            [names.tolist() for names in surface_dips.of_row(rock).named], [["top", ""], ["", "B"]]
+        )
         self.assertEqual(surface_dips.of_row(rock.series[0]).normals.tolist(), (-places).tolist())
         self.assertEqual(map_settings.of_rock(rock).names, ["sand"])
         values = interval_values.of_rock(rock)

@@ -12,12 +12,13 @@ import zlib
 import bpy
 import numpy as np
 
+from ...core import RealModelError
 from ..display.ensembles import BLOCKS
 from ..objects.stored_arrays import ArraysProperty, store
 from . import borehole_picks, method_settings, settings
 
 _BROKEN = (AttributeError, KeyError, TypeError, ValueError, OSError, EOFError, MemoryError)
-_BROKEN += (zipfile.BadZipFile, zlib.error)
+_BROKEN += (zipfile.BadZipFile, zlib.error, RealModelError)
 _FIRST = 6  # the first version that was released
 
 
@@ -46,17 +47,19 @@ def _rows(group):
 def _take_texts(row):
     """Stores as arrays what a row has as text. What cannot be read stays, and is refused where it is used."""
     for key in list(row.keys()):
-        if isinstance(inspect.getattr_static(row, key, None), ArraysProperty) and isinstance(row[key], str):
+        text = row[key]
+        if isinstance(inspect.getattr_static(row, key, None), ArraysProperty) and isinstance(text, str):
+            del row[key]
             try:
-                _take(row, key, row[key])
+                _take(row, key, text)
             except _BROKEN:
-                continue
+                row[key] = text
 
 
 def _take(row, key, text):
     if not text:
-        del row[key]
-    elif text[0] not in "[{":
+        return
+    if text[0] not in "[{":
         arrays = _arrays_of_npz(text)
         if key == "interval_values":
             names = [name for name in arrays if name.startswith("column:")]
