@@ -154,7 +154,7 @@ class RealModelMisfit(bpy.types.PropertyGroup):
     says: StringProperty(name="Says", description="What the datum says")
     has: StringProperty(name="Has", description="What the model has there, or why the datum is not used")
     by: StringProperty(name="By", description="How much is between them")
-    place: StringProperty(options={"HIDDEN"})  # JSON: model coordinates
+    place = ArraysProperty()  # model coordinates
 
 
 class RealModelLeftOutHole(bpy.types.PropertyGroup):

@@ -15,6 +15,7 @@ from realmodel.bl.objects import built_models, meshes
 from realmodel.bl.project import series_settings, surface_dips
 from realmodel.bl.scene import live
 from realmodel.core import Cancelled, InputRefused, SpaceDips, build, estimate, load_project
+from realmodel.core.readers import gradient_of
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -245,6 +246,13 @@ class Series(PanelCase):
         normal = dips.normals[0] / np.linalg.norm(dips.normals[0])
         np.testing.assert_allclose(normal, (np.sqrt(0.5), 0.0, np.sqrt(0.5)), atol=1e-12)
         self.assertFalse(rock.surfaces[1].dips)
+
+    def test_a_dip_by_hand_is_what_was_typed(self):
+        ops.new()
+        ops.surface_add(name="A", empty=True)
+        ops.dip_add(dip=33.3, dip_direction=12.1)
+        dips = surface_dips.of_row(self.model.rocks[0].surfaces[0])
+        self.assertEqual(dips.gradients.tolist(), [gradient_of(33.3, 12.1).tolist()])
 
     def test_sheets_take_dips_of_their_surfaces_and_of_none(self):
         ops.new()

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 from blender_state import empty_file
 from panel_case import PanelCase, ops
+from realmodel.bl.display import coordinates, modes
 from realmodel.bl.field import interval_values, map_settings
 from realmodel.bl.objects.stored_arrays import StoredArrays
 from realmodel.bl.project import borehole_picks, method_settings, observed_blocks, settings, surface_dips
@@ -193,13 +194,15 @@ class OfVersion6(PanelCase):
         top["other_options"] = json.dumps({"to": [0.1, 0.2]})
         hole = self.model.planned_holes.add()
         hole["collar"] = json.dumps(collar)
+        view, misfit = self.model.view, self.model.misfits.add()
+        view["hidden"], view["zero"], misfit["place"] = "[3, 7]", json.dumps(collar), json.dumps(collar)
         self.model.version = 6
         self.save_and_open()
 
         rock = self.model.rocks[0]
         top = rock.surfaces[0]
         self.assertEqual(self.model.version, settings.VERSION)
-        self.assertEqual(rock.sizes[0].stored["place"].tolist(), [[0.1, 2.0], [3.0, 4.0]])
+        self.assertEqual(rock.sizes[0].stored["values"].tolist(), [[0.1, 2.0], [3.0, 4.0]])
         self.assertEqual(borehole_picks.of_rock(rock), picks)
         self.assertEqual(borehole_picks.ends_of(rock), ends)
         self.assertEqual(settings.number(rock, "edge_length"), 0.1 + 1e-12)
@@ -224,6 +227,9 @@ class OfVersion6(PanelCase):
         self.assertEqual(top.left_out["points"].tolist(), places[:1].tolist())
         self.assertEqual(method_settings.options_of(top)["to"].tolist(), [0.1, 0.2])
         self.assertEqual(planned_holes.collar(self.model.planned_holes[0]), collar)
+        self.assertEqual(modes.hidden_properties(self.scene), {3, 7})
+        for place in (coordinates.zero(self.scene), self.model.misfits[0].place["values"]):
+            self.assertEqual(place.tolist(), collar)
         self.assertFalse(top.stored_mesh)
         with self.assertRaisesRegex(InputRefused, "cannot be read"):
             surface_dips.of_row(top)  # it was damaged

@@ -174,15 +174,16 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
         scene, row = context.scene, settings.active_surface(context.scene)
         place = self.location if self.properties.is_property_set("location") else scene.cursor.location
         place = np.array(place, np.float64) + project_settings.model_origin(scene)
+        dip, direction = settings.plain(self.dip), settings.plain(self.dip_direction)
         series = series_settings.of_surface(row)
         if series is not None:
             if series.kind != FIELD:
                 self._require_sheet(series)
-            normal = normal_of(self.dip, self.dip_direction, self.overturned)
+            normal = normal_of(dip, direction, self.overturned)
             series_settings.add_dips(series, SpaceDips(place[None], normal[None]))
         else:
             self._require_sheet(row)
-            gradient = gradient_of(self.dip, self.dip_direction)
+            gradient = gradient_of(dip, direction)
             surface_dips.add(row, Dips(place[None, :2], gradient[None], place[2:]))
         with settings.filling():
             scene.realmodel.view.show_dips = True

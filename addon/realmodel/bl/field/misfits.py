@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The list of data that the built model does not have as they say, and the way from each to its datum."""
 
-import json
-
 import numpy as np
 
 from ...core import RealModelError
@@ -47,7 +45,7 @@ def fill(scene):
             row.depth = "" if each.depth is None else f"{round(each.depth, 2):g}"
             row.says, row.has = each.says, each.has
             row.by = "" if each.by is None else f"{each.by:.3g}{'°' if each.kind == 'dip' else ''}"
-            row.place = "" if each.place is None else json.dumps(list(each.place))
+            row.place = {} if each.place is None else {"values": each.place}
             row.hole = each.hole
 
 
@@ -55,7 +53,7 @@ def datum_of(scene, row):
     """The Datum that a row of the list speaks of; None where it has no place, or is not there any more."""
     if not row.place:
         return None
-    place = np.array(json.loads(row.place))
+    place = row.place["values"]
     wanted = {"dip": data.DIPS, "point": (data.POINT, data.INTERVAL, data.PLACE)}
     kinds = wanted.get(row.kind, (data.INTERVAL, data.PLACE))
     best = None

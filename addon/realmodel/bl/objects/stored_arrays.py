@@ -20,8 +20,8 @@ _BROKEN = (AttributeError, KeyError, TypeError, ValueError, MemoryError)
 
 
 class StoredArrays(Mapping):
-    """The arrays that a row of the settings, or an object, has under a key: copies, by name. False where there
-    are none, which is known without a look at them. Not to be kept: undo ends it. Raises InputRefused for
+    """The arrays that a row of the settings, or an object, has under a key: copies, by name. False where it
+    has none, which is known without a look at them. Not to be kept: undo ends it. Raises InputRefused for
     arrays of a damaged file."""
 
     def __init__(self, owner, key):

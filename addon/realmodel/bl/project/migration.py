@@ -27,7 +27,7 @@ def migrate_all():
     for scene in bpy.data.scenes:
         group = scene.realmodel
         if group.exists and group.version == _FIRST:
-            for row in _rows(group):
+            for row in (group.view, *_rows(group)):
                 _take_texts(row)
             item = group.ensemble.object
             if item is not None and isinstance(item.get(BLOCKS), str):
@@ -74,7 +74,7 @@ def _take(row, key, text):
         method_settings.set_options(row, None, json.loads(text))
     else:
         values = json.loads(text)
-        setattr(row, key, values if key == "exact" else {"place": np.array(values, np.float64)})
+        setattr(row, key, values if key == "exact" else {"values": np.array(values)})
 
 
 def _arrays_of_npz(text):

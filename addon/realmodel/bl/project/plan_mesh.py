@@ -83,7 +83,7 @@ def _sizes(entry, depsgraph, origin):
             raise InputRefused("a refinement has no object", advice=advice)
         places = [(line + origin[:2]).tolist() for line in shapes.plan_lines(entry.object, depsgraph)]
     elif entry.at == "STORED":
-        places = [entry.stored["place"].tolist() if entry.stored else []]
+        places = [entry.stored["values"].tolist() if entry.stored else []]
     else:
         places = [_WORDS[entry.at]]
     return [{"at": at, "length": length, "distance": distance} for at in places]
@@ -113,7 +113,7 @@ def _fill_size(row, entry):
     at = entry["at"]
     row.at = next((key for key, word in _WORDS.items() if isinstance(at, str) and at == word), "STORED")
     if row.at == "STORED":
-        row.stored = {"place": np.asarray(at, np.float64)}
+        row.stored = {"values": np.asarray(at, np.float64)}
     for key in SIZE:
         settings.set_number(row, key, entry[key])
 

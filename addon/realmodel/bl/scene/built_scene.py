@@ -54,8 +54,8 @@ class Prepared:
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
     PolygonMesh or None; bounds: of them all. stored: by place the arrays that its row is to store of its
-    file, and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by place
-    the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    file, and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by
+    place the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
     `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 

@@ -22,11 +22,11 @@ _NOTHING = ("Planned hole", "#404040")
 
 def collar(row):
     """[x, y, z] of the collar of a hole, model coordinates."""
-    return row.collar["place"].tolist() if row.collar else [0.0, 0.0, 0.0]
+    return row.collar["values"].tolist() if row.collar else [0.0, 0.0, 0.0]
 
 
 def set_collar(row, place):
-    row.collar = {"place": np.asarray(place, np.float64)}
+    row.collar = {"values": np.asarray(place, np.float64)}
 
 
 def move_collar(row, place):
