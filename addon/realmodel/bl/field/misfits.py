@@ -11,20 +11,26 @@ from ..project import project_settings, settings
 from . import data
 
 MOST = 500  # rows of the list: the largest of each kind
-_found = caches.new(most=2)  # by the stamp of a model and the tolerances: its Misfits
+_of_model = caches.of_model(misfits)
 
 
 def shown(scene):
     """The core's Misfits of a scene's model; none where it has no model, or one without its project. Raises
     RealModelError."""
-    group = scene.realmodel
-    if not len(group.results):
+    if not len(scene.realmodel.results):
         return []
-    tolerance = group.view.misfit_tolerance or None
-    key = group.built_stamp, tolerance, group.view.dip_tolerance
-    if key not in _found:
-        _found[key] = misfits(shown_models.whole(scene, None), tolerance, group.view.dip_tolerance)
-    return _found[key]
+    return _asked(scene)(shown_models.whole(scene, None))
+
+
+def _asked(scene):
+    view = scene.realmodel.view
+    tolerances = view.misfit_tolerance or None, view.dip_tolerance
+    return lambda model: _of_model(model, *tolerances)
+
+
+def ahead(scene):
+    """What may be asked of a new model of a scene before it is shown: functions of it, for other threads."""
+    return [_asked(scene)] if scene.realmodel.view.show_misfits else []
 
 
 def fill(scene):

@@ -38,6 +38,9 @@ def unregister():
     handle.stop()
 
 
+ahead = misfits.ahead
+
+
 def show(scene):
     """Shows what is wanted of the field data of a scene, in place of what is shown."""
     view = scene.realmodel.view

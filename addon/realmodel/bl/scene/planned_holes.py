@@ -10,6 +10,7 @@ import numpy as np
 from ...core import HoleAxis, HoleContact, HoleInterval, PlannedHole, RealModelError
 from .. import display
 from ..display import bodies, colors, explosion
+from ..host import caches
 from ..objects import built_models, marks
 from ..project import project_settings, settings
 
@@ -39,6 +40,20 @@ def axis_of(row):
     """The core's HoleAxis of a row. Raises UsageError."""
     angles = (settings.number(row, key) for key in ("azimuth", "dip", "length"))
     return HoleAxis(tuple(collar(row)), *angles)
+
+
+@caches.of_model
+def _met(model, axis):
+    return model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
+
+
+def ahead(scene):
+    """As of `display.ahead`."""
+    try:
+        axes = [axis_of(row) for row in scene.realmodel.planned_holes]
+    except RealModelError:
+        return []  # their look-up tells
+    return [lambda model, axis=axis: _met(model, axis) for axis in axes]
 
 
 def update(scene, row):
@@ -71,8 +86,7 @@ def _look_up(scene, row):
     if model is None:
         return
     try:
-        axis = axis_of(row)
-        keep(scene, row, model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length))
+        keep(scene, row, _met(model, axis_of(row)))
     except RealModelError as error:
         scene.realmodel.view.message = str(error)
 
