@@ -137,7 +137,7 @@ class Series(PanelCase):
         ops.save_project(filepath=str(saved))
         self.assertEqual([block.volume for block in build(load_project(saved)).blocks], expected)
         row = self.model.rocks[0].series[0]
-        series_settings.add_dips(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
+        surface_dips.add(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
         self.assertEqual(surface_dips.of_row(row).gradients[-1].tolist(), [-0.5, 0.0])
 
     def test_a_fold_is_made_from_scratch(self):

@@ -141,7 +141,7 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
             z = np.where(np.isnan(z), points[:, 2].mean(), z)
         normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
         given = SpaceDips(np.column_stack([dips.positions, z]), normals, dips.used)
-        series_settings.add_dips(series_settings.of_surface(row), given)
+        surface_dips.add(series_settings.of_surface(row), given)
         surface_dips.keep(row, None)
         data_objects.update(scene)
         live.touch(scene)
@@ -180,7 +180,7 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
             if series.kind != FIELD:
                 self._require_sheet(series)
             normal = normal_of(dip, direction, self.overturned)
-            series_settings.add_dips(series, SpaceDips(place[None], normal[None]))
+            surface_dips.add(series, SpaceDips(place[None], normal[None]))
         else:
             self._require_sheet(row)
             gradient = gradient_of(dip, direction)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ...core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
+from ...core import InputRefused, Rock, Series, Surface
 from ...core.base.errors import naming
 from ...core.project.series_checks import check_level_set, check_series
 from ...core.settings.schema import ROCK, SERIES
@@ -38,17 +38,6 @@ def _series(row, dips_of):
         given = {key: value for key, value in values.items() if value is not None}
     with naming(f"series '{row.name}'"):
         return Series(row.name, row.kind, dips_of(row), **given)
-
-
-def add_dips(row, dips):
-    """Adds SpaceDips, or Dips of sheets, to the dips that a series has. Raises InputRefused where sheets
-    would get a vertical or an overturned one."""
-    parts = [each for each in (surface_dips.of_row(row), dips) if each is not None]
-    if any(isinstance(each, Dips) for each in parts):
-        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
-        surface_dips.keep(row, Dips.joined(flat))
-    else:
-        surface_dips.keep(row, SpaceDips.joined(parts))
 
 
 def active(rock):

@@ -15,9 +15,14 @@ def keep(row, dips):
 
 
 def add(row, dips):
-    """Adds Dips to those that a row has."""
-    known = of_row(row)
-    keep(row, dips if known is None else Dips.joined([known, dips]))
+    """Adds Dips, or SpaceDips, to those that a row has; together with Dips all are of sheets. Raises
+    InputRefused where sheets would get a vertical or an overturned one."""
+    parts = [each for each in (of_row(row), dips) if each is not None]
+    if any(isinstance(each, Dips) for each in parts):
+        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+        keep(row, Dips.joined(flat))
+    else:
+        keep(row, SpaceDips.joined(parts))
 
 
 def of_row(row):
