@@ -13,7 +13,6 @@ from realmodel.bl.scene import data_objects
 from realmodel.core.base.build_warning import BuildWarning
 from realmodel.core.project.colors import hex_color
 from realmodel.core.results.automatic_library import PALETTE, palette
-from realmodel.core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
 from realmodel.core.settings.series import THICKNESSES
 from realmodel.core.settings.variogram import RANGE_BEYOND
 
@@ -502,10 +501,9 @@ class Opened(Imported):
 
     def test_a_key_of_several_tables_has_one_label(self):
         labels = {}
-        for table in (SERIES, BODY, FAULT, ROCK, SURFACE):
-            for key, setting in table.items():
-                if setting.label:
-                    self.assertEqual(labels.setdefault(key, setting.label), setting.label, key)
+        for key, setting in notices._SETTINGS:
+            if setting.label:
+                self.assertEqual(labels.setdefault(key, setting.label), setting.label, key)
 
     def test_what_concerns_variances_alone_is_not_told_in_a_compartment_either(self):
         model = type("Model", (), {})()
