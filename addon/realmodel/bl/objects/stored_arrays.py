@@ -8,6 +8,7 @@ digest by which caches know them.
 
 import hashlib
 from collections.abc import Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -40,10 +41,8 @@ class StoredArrays(Mapping):
 
     def __getitem__(self, name):
         part = self._parts()[name]
-        try:
+        with _refusing():
             return _array(**part)
-        except _BROKEN as error:
-            raise _refused(error) from error
 
     def __contains__(self, name):
         return name in self._parts()
@@ -56,13 +55,12 @@ class StoredArrays(Mapping):
 
     def count(self, name):
         """How many rows an array has, without a look at it."""
-        return self._parts()[name]["shape"][0]
+        with _refusing():
+            return self._parts()[name]["shape"][0]
 
     def _parts(self):
-        try:
+        with _refusing():
             return dict(self._owner[self._key]["arrays"].items()) if self else {}
-        except _BROKEN as error:
-            raise _refused(error) from error
 
 
 class ArraysProperty:
@@ -110,11 +108,15 @@ def _array(kind, shape, values):
     return array.reshape(shape)
 
 
-def _refused(error):
-    return InputRefused(
-        f"what the .blend keeps of it cannot be read: {error}",
-        advice="choose its file again, or open an older copy of the .blend",
-    )
+@contextmanager
+def _refusing():
+    try:
+        yield
+    except _BROKEN as error:
+        raise InputRefused(
+            f"what the .blend keeps of it cannot be read: {error}",
+            advice="choose its file again, or open an older copy of the .blend",
+        ) from error
 
 
 def file_stamp(path):

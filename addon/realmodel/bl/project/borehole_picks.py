@@ -1,25 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The picks of boreholes, stored in the row of their rock mass for display."""
 
-from itertools import islice
-
 import numpy as np
 
 from ..host import caches
 from . import observed_blocks
 
+_ARRAYS = ("holes", "surfaces", "places")
+_UNKNOWN = (np.nan, np.nan, np.nan)
 _paths = caches.new(most=8)  # by the digests of what they are made from: viewports ask at each redraw
 
 
 def keep(row, holes):
     """Adds holes, as realmodel.core's Picks.holes, to those that a rock mass has."""
-    if not holes:
-        return
-    known = of_rock(row)
-    for name, (collar, picks) in holes.items():
-        given = [[surface, [float(value) for value in place]] for surface, place in picks]
-        known[name] = [None if collar is None else [float(value) for value in collar], given]
-    store(row, known)
+    if holes:
+        store(row, of_rock(row) | holes)
 
 
 def rename(row, old, new):
@@ -99,23 +94,23 @@ def of_rock(row):
     """{hole: [collar or None, [[surface, place], ...]]} in model coordinates, the highest pick first."""
     if not row.hole_picks:
         return {}
-    stored = {name: array.tolist() for name, array in row.hole_picks.items()}
-    picks = map(list, zip(stored["surfaces"], stored["places"], strict=True))
-    return {
-        hole: [None if np.isnan(collar).any() else collar, list(islice(picks, count))]
-        for hole, collar, count in zip(stored["holes"], stored["collars"], stored["counts"], strict=True)
-    }
+    found = {}
+    for hole, surface, place in zip(*(row.hole_picks[name].tolist() for name in _ARRAYS), strict=True):
+        if surface:
+            found[hole][1].append([surface, place])
+        else:
+            found[hole] = [None if np.isnan(place).any() else place, []]
+    return found
 
 
-def store(row, picks):
-    """Stores what `of_rock` gives."""
-    collars = [(np.nan,) * 3 if collar is None else collar for collar, _ in picks.values()]
-    met = [pick for _, met in picks.values() for pick in met]
-    arrays = {
-        "holes": np.array(list(picks), str),
-        "collars": np.array(collars, np.float64),
-        "counts": np.array([len(met) for _, met in picks.values()], np.int32),
-        "surfaces": np.array([surface for surface, _ in met], str),
-        "places": np.array([place for _, place in met], np.float64).reshape(-1, 3),
-    }
-    row.hole_picks = arrays if picks else {}
+def store(row, holes):
+    """Stores what `of_rock` gives: of each hole its collar, as a pick of "", before its picks."""
+    rows = [
+        (hole, surface, _UNKNOWN if place is None else place)
+        for hole, (collar, picks) in holes.items()
+        for surface, place in (("", collar), *picks)
+    ]
+    row.hole_picks = {}
+    if rows:
+        names, surfaces, places = zip(*rows, strict=True)
+        row.hole_picks = {"holes": names, "surfaces": surfaces, "places": np.array(places, np.float64)}
