@@ -76,8 +76,11 @@ class Rocks(PanelCase):
     def test_a_region_of_a_scene_that_was_never_shown_is_measured(self):
         other = bpy.data.scenes.new("other")
         rocks = other.realmodel.rocks
+        region = outline("r", SQUARE)
+        bpy.context.collection.objects.unlink(region)
+        other.collection.objects.link(region)
         for row in (rocks.add(), rocks.add()):
-            row.region = outline("r", SQUARE)
+            row.region = region
         region_size._measure_all()
         self.assertEqual([round(row.region_area, 2) for row in rocks], [1e4, 1e4])
 
