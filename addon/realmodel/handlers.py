@@ -15,7 +15,7 @@ from .bl.field import handle
 from .bl.host import afterwards, caches, undo
 from .bl.objects import viewports
 from .bl.overlay import rendered
-from .bl.project import region_size, settings
+from .bl.project import migration, region_size, settings
 from .bl.scene import live, quality
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -58,6 +58,7 @@ def _loaded(*_arguments):
     display.stop()
     quality.stop()
     caches.clear()
+    migration.migrate_all()
     afterwards.call(_take_opened)
 
 
@@ -125,8 +126,7 @@ def _frame_changed(scene, depsgraph=None, *_arguments):
 
 
 def check_versions():
-    """Reports scenes whose settings another version of RealModel wrote; no released version wrote older ones,
-    so there are no migrations."""
+    """Reports scenes whose settings are of a version that `migration` does not know."""
     for scene in bpy.data.scenes:
         group = scene.realmodel
         if group.exists and group.version != settings.VERSION:
@@ -150,8 +150,14 @@ def _render_ends(scene, *_arguments):
     display.render_ends(scene)
 
 
+@persistent
+def _imported(*_arguments):
+    migration.migrate_all()
+
+
 _HANDLERS = (
     ("load_post", _loaded),
+    ("blend_import_post", _imported),  # of Blender 4.3 and later
     ("load_pre", _before_loading),
     ("undo_pre", _undoing),
     ("redo_pre", _undoing),
@@ -167,13 +173,13 @@ _HANDLERS = (
 
 def register():
     for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
+        getattr(bpy.app.handlers, name, []).append(handler)
     live.start()
 
 
 def unregister():
     for name, handler in _HANDLERS:
-        registered = getattr(bpy.app.handlers, name)
+        registered = getattr(bpy.app.handlers, name, [])
         if handler in registered:
             registered.remove(handler)
     afterwards.stop()

@@ -31,6 +31,7 @@ from . import (
     props_view,
 )
 from .bl import changes, display
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import library_rows, results, units
 from .bl.scene import data_objects, quality
 from .bl.shading import looks
@@ -117,7 +118,7 @@ class RealModelProperty(bpy.types.PropertyGroup):
         update=changes.property_hardness,
         options=set(),
     )
-    exact: StringProperty(options={"HIDDEN"})
+    exact = ArraysProperty()
 
 
 class RealModelBlock(bpy.types.PropertyGroup):
@@ -153,7 +154,7 @@ class RealModelMisfit(bpy.types.PropertyGroup):
     says: StringProperty(name="Says", description="What the datum says")
     has: StringProperty(name="Has", description="What the model has there, or why the datum is not used")
     by: StringProperty(name="By", description="How much is between them")
-    place: StringProperty(options={"HIDDEN"})  # JSON: model coordinates
+    place = ArraysProperty()  # model coordinates
 
 
 class RealModelLeftOutHole(bpy.types.PropertyGroup):

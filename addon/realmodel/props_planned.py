@@ -5,6 +5,7 @@ import bpy
 from bpy.props import FloatProperty, StringProperty
 
 from .bl import changes
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.scene import planned_holes
 from .props_coordinates import coordinate_field
 
@@ -23,7 +24,7 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
     """Where a hole is planned, and what it meets."""
 
     name: StringProperty(name="Name", description="Name of the hole")
-    collar: StringProperty(options={"HIDDEN"})  # JSON: model coordinates in full
+    collar = ArraysProperty()  # model coordinates in full
     east: _collar_field("East (x)", 0)
     north: _collar_field("North (y)", 1)
     height: _collar_field("Height (z)", 2)
@@ -55,6 +56,6 @@ class RealModelPlannedHole(bpy.types.PropertyGroup):
         options=set(),
         update=changes.planned_hole,
     )
-    exact: StringProperty(options={"HIDDEN"})
+    exact = ArraysProperty()
     result: StringProperty(options={"HIDDEN"})  # JSON: what it meets, as bl/scene/planned_holes.py keeps it
-    shares: StringProperty(options={"HIDDEN"})  # arrays: the probability of each block along it
+    shares = ArraysProperty()  # the probability of each block along it

@@ -14,6 +14,7 @@ from bpy.props import (
 
 from . import props_series, props_surface
 from .bl import changes
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import plan_mesh, settings
 from .core.settings.schema import ROCK, SIZE
 from .props_schema import settings_of
@@ -47,8 +48,8 @@ class RealModelSize(settings_of(SIZE), bpy.types.PropertyGroup):
         options=set(),
     )
     object: _object("Curve or mesh object, in plan")
-    stored: StringProperty(options={"HIDDEN"})  # JSON: places [x, y] or lines, model coordinates
-    exact: StringProperty(options={"HIDDEN"})
+    stored = ArraysProperty()  # a place [x, y] or a line, model coordinates
+    exact = ArraysProperty()
 
 
 class RealModelConstraint(bpy.types.PropertyGroup):
@@ -87,11 +88,11 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
         subtype="FILE_PATH",
         update=changes.region,
     )
-    region_stored: StringProperty(options={"HIDDEN"})
+    region_stored = ArraysProperty()
     region_stamp: StringProperty(options={"HIDDEN"})
-    hole_picks: StringProperty(options={"HIDDEN"})  # JSON of the picks of boreholes
-    hole_ends: StringProperty(options={"HIDDEN"})  # JSON: where holes end
-    interval_values: StringProperty(options={"HIDDEN"})  # arrays of the columns of tables of intervals
+    hole_picks = ArraysProperty()
+    hole_ends = ArraysProperty()
+    interval_values = ArraysProperty()  # the columns of tables of intervals
     ground: StringProperty(
         name="Ground",
         description="File with the heights of the ground: a raster, points or a mesh. The youngest surface, "
@@ -100,18 +101,18 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
         update=changes.ground,
     )
     ground_is_raster: BoolProperty(options={"HIDDEN"})
-    ground_stored: StringProperty(options={"HIDDEN"})  # the data of its file
+    ground_stored = ArraysProperty()  # the data of its file
     ground_stamp: StringProperty(options={"HIDDEN"})
-    map: StringProperty(options={"HIDDEN"})  # arrays of a map on its ground
-    observations: StringProperty(options={"HIDDEN"})  # arrays of places and their blocks
-    dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
+    map = ArraysProperty()  # on its ground
+    observations = ArraysProperty()  # places and their blocks
+    dips = ArraysProperty()  # of realmodel.core.Dips
     series: CollectionProperty(type=props_series.RealModelSeries)
     active_series: IntProperty(
         name="Active Series", description="The series whose settings are shown", options=set()
     )
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)
-    constraints_stored: StringProperty(options={"HIDDEN"})
+    constraints_stored = ArraysProperty()
     sizes: CollectionProperty(type=RealModelSize)
     edges_by: EnumProperty(
         name="Mesh Size From",
@@ -130,4 +131,4 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     blocks: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
-    exact: StringProperty(options={"HIDDEN"})
+    exact = ArraysProperty()

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import StringProperty
 
 from .bl import changes
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, series_settings, settings
 from .core.settings.schema import SERIES
 from .props_schema import settings_of
@@ -47,5 +48,5 @@ class RealModelSeries(settings_of(SERIES, name=changes.name), bpy.types.Property
         "Youngest", "Youngest surface of the series: it and all down to the oldest belong to it", -1
     )
     oldest: _end("Oldest", "Oldest surface of the series: it and all up to the youngest belong to it", 0)
-    dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.SpaceDips
-    exact: StringProperty(options={"HIDDEN"})
+    dips = ArraysProperty()  # of realmodel.core.SpaceDips, or Dips of sheets
+    exact = ArraysProperty()

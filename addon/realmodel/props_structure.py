@@ -5,11 +5,12 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringProperty
 
 from .bl import changes
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
 from .core.readers.meshes.mesh_file import MESH_FORMATS
 from .core.settings.schema import BODY, FAULT, READING
 from .props_schema import settings_of
-from .props_surface import RealModelFilter, interface_properties
+from .props_surface import Interface, RealModelFilter
 
 _FORMATS = ", ".join(known.name for known in MESH_FORMATS)
 _MESH_SOURCES = (
@@ -53,9 +54,8 @@ def _shape_properties(sources, poll=settings.is_mesh_object):
             description="Object with the shape, including its modifiers",
             update=changes.source,
         ),
-        **interface_properties(),
     }
-    return type("Shape", (), {"__module__": __name__, "__annotations__": properties})
+    return type("Shape", (Interface,), {"__module__": __name__, "__annotations__": properties})
 
 
 class RealModelFaultEnd(bpy.types.PropertyGroup):
@@ -100,7 +100,7 @@ class RealModelFault(
 ):
     """A fault: where its surface comes from, and what it displaces."""
 
-    stored_trace: StringProperty(options={"HIDDEN"})
+    stored_trace = ArraysProperty()
     filters: CollectionProperty(type=RealModelFilter)
     ends_at: CollectionProperty(type=RealModelFaultEnd)
     rocks: CollectionProperty(type=RealModelFaultRock)

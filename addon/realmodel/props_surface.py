@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerProperty, StringProperty
 
 from .bl import changes
+from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
 from .core.readers.meshes.mesh_file import MESH_FORMATS
 from .core.settings.methods import STRUCTURE
@@ -24,32 +25,28 @@ SOURCES = (
 )
 
 
-def interface_properties():
+class Interface:
     """The properties by which a row knows the object that shows its shape, and keeps what its file had."""
-    return {
-        "known_name": StringProperty(options={"HIDDEN"}),
-        "hide": BoolProperty(
-            name="Hide",
-            description="Hide this interface in the viewport; it is still built",
-            update=changes.view,
-            options=set(),
-        ),
-        "interface": PointerProperty(type=bpy.types.Object, options={"HIDDEN"}),
-        "interface_digest": StringProperty(options={"HIDDEN"}),
-        "stored_stamp": StringProperty(options={"HIDDEN"}),
-        "stored_mesh": StringProperty(options={"HIDDEN"}),
-        "exact": StringProperty(options={"HIDDEN"}),
-        "figures": StringProperty(options={"HIDDEN"}),
-    }
 
-
-_Interface = type("Interface", (), {"__module__": __name__, "__annotations__": interface_properties()})
+    known_name: StringProperty(options={"HIDDEN"})
+    hide: BoolProperty(
+        name="Hide",
+        description="Hide this interface in the viewport; it is still built",
+        update=changes.view,
+        options=set(),
+    )
+    interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
+    interface_digest: StringProperty(options={"HIDDEN"})
+    stored_stamp: StringProperty(options={"HIDDEN"})
+    stored_mesh = ArraysProperty()
+    exact = ArraysProperty()
+    figures: StringProperty(options={"HIDDEN"})
 
 
 class RealModelStructure(settings_of(STRUCTURE), bpy.types.PropertyGroup):
     """A structure of a nested variogram, added to the nugget and the other structures."""
 
-    exact: StringProperty(options={"HIDDEN"})
+    exact = ArraysProperty()
 
 
 class RealModelFilter(bpy.types.PropertyGroup):
@@ -75,7 +72,7 @@ _OWN = {key: setting for key, setting in SURFACE.items() if key not in READING}
 class RealModelSurface(
     settings_of(_OWN, name=changes.name),
     settings_of(READING, changes.reading),
-    _Interface,
+    Interface,
     bpy.types.PropertyGroup,
 ):
     """A surface: the source of its shape, its rule, and the block beneath it."""
@@ -117,7 +114,7 @@ class RealModelSurface(
         options=set(),
     )
     structures: CollectionProperty(type=RealModelStructure)
-    stored: StringProperty(options={"HIDDEN"})
-    dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
-    left_out: StringProperty(options={"HIDDEN"})  # array of its points that are switched off
-    other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file
+    stored = ArraysProperty()  # its points
+    dips = ArraysProperty()  # of realmodel.core.Dips
+    left_out = ArraysProperty()  # its points that are switched off
+    other_options = ArraysProperty()  # heights, or a triangulation, given in a project file

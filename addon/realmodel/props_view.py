@@ -15,6 +15,7 @@ from bpy.props import (
 from .bl import changes
 from .bl.display import cuts, fields
 from .bl.field import boreholes
+from .bl.objects.stored_arrays import ArraysProperty
 from .core.proof.misfits import DIP_TOLERANCE
 from .props_coordinates import coordinate_field
 
@@ -46,7 +47,7 @@ class RealModelView(bpy.types.PropertyGroup):
         update=changes.view,
         options=set(),
     )
-    hidden: StringProperty(options={"HIDDEN"})  # JSON list of the property IDs whose blocks are hidden
+    hidden = ArraysProperty()  # the property IDs whose blocks are hidden
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})  # of objects for display only
     plane: PointerProperty(
         name="Section Plane",
@@ -252,7 +253,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )  # JSON of the state that the bodies of kind "cells" were made from
     applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show
     place: StringProperty(options={"HIDDEN"})  # JSON of the last requested coordinates
-    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are measured from
+    zero = ArraysProperty()  # the point that distances are measured from
     message: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     bounds_low: FloatVectorProperty(options={"HIDDEN"})
     bounds_high: FloatVectorProperty(options={"HIDDEN"})

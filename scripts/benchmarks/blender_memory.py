@@ -60,7 +60,7 @@ def many_points(number, folder):
     rock.surfaces[0].method = "idw"
     ops.build()
     before = resident()
-    told = {"points": number, "csv": (folder / "top.csv").stat().st_size, "kept": _text_bytes(rock)}
+    told = {"points": number, "csv": (folder / "top.csv").stat().st_size, "kept": _stored_bytes(rock)}
     seconds = {"change and step": [], "undo": []}
     bpy.ops.ed.undo_push(message="begin")
     for n in range(5):
@@ -83,8 +83,9 @@ def _square(size):
     return corners, np.array([[0, 1, 2], [0, 2, 3]])
 
 
-def _text_bytes(rock):
-    return sum(len(row.stored) + len(row.stored_mesh) for row in rock.surfaces)
+def _stored_bytes(rock):
+    stored = (arrays for row in rock.surfaces for arrays in (row.stored, row.stored_mesh))
+    return sum(array.nbytes for arrays in stored for array in arrays.values())
 
 
 def main():

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -P tests/blender/make_version_fixture.py
 
-Run it once when settings.VERSION goes up. Files of versions that were released are kept, as they must be
+Run it once before settings.VERSION goes up. Files of versions that were released are kept, as they must be
 migrated. test_panel_versions.py opens them.
 """
 

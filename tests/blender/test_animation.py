@@ -101,6 +101,7 @@ class Stages(Case):
         ops.animate_stages(frames=3)
         self.assertEqual((self.scene.frame_start, self.scene.frame_end), (1, 15))
         self.assertTrue(self.scene.render.use_lock_interface)
+        self.assertIn("Lock Interface", ops.animate_stages.get_rna_type().description)
         self.assertEqual(self.settings.stage, 4)
         self.assert_shows(4)
         for frame, stage in ((1, 0), (3, 0), (4, 1), (9, 2), (12, 3), (13, 4), (15, 4)):

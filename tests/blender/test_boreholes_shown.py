@@ -1,14 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Boreholes as tubes in the colors of the layers."""
 
+from unittest import mock
+
 import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl.project import borehole_picks, project_settings
+from realmodel.bl.display import bodies, colors
+from realmodel.bl.project import borehole_picks, observed_blocks, project_settings, surface_dips
+from realmodel.core import Dips, Observations
 
 
 class BoreholesShown(PanelCase):
+    def test_materials_are_looked_for_once_and_not_for_each_datum(self):
+        ops.rock_add()
+        ops.surface_add(name="top", empty=True)
+        rock, count = self.model.rocks[0], 200
+        z = -np.arange(count, dtype=float)
+        places = np.column_stack([np.zeros(count), np.zeros(count), z])
+        used = np.arange(count) % 3 > 0
+        observed_blocks.keep(
+            rock, Observations(places, ["top"] * count, ["A"] * count, -z, np.arange(count) // 2, used)
+        )
+        surface_dips.keep(
+            rock.surfaces[0], Dips(places[:, :2] + z[:, None], np.ones((count, 2)), z, used=used)
+        )
+        view = self.model.view
+        with (
+            mock.patch.object(colors, "of_property", wraps=colors.of_property) as of_property,
+            mock.patch.object(colors, "plain_material", wraps=colors.plain_material) as plain,
+        ):
+            view.show_boreholes = view.show_contacts = view.show_dips = True
+        self.assertEqual(len(bodies.listed(self.scene, "dips")), 1)
+        self.assertLess(of_property.call_count + plain.call_count, 30)
+
     def test_tubes_stand_where_the_holes_are(self):
         ops.open_project(filepath=str(SAMPLES / "gravel_plain" / "project.toml"))
         if not len(self.model.results):

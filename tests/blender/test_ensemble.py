@@ -7,7 +7,7 @@ from blender_state import inventory
 from panel_case import PanelCase, ops, outline, select
 from realmodel.bl.display import ensembles, shown_models
 from realmodel.bl.jobs import ensemble_job
-from realmodel.bl.objects import stored_arrays
+from realmodel.bl.objects.stored_arrays import StoredArrays
 from realmodel.core import Cancelled
 from realmodel.core.ensembles import Realizer, blocks_at
 
@@ -26,7 +26,7 @@ class EnsembleInTheScene(PanelCase):
         return self.model.ensemble
 
     def blocks(self):
-        return stored_arrays.unpack(ensembles.item_of(self.scene)[ensembles.BLOCKS])["blocks"]
+        return StoredArrays(ensembles.item_of(self.scene), ensembles.BLOCKS)["blocks"]
 
     def slots(self):
         mesh = ensembles.item_of(self.scene).data

@@ -48,9 +48,9 @@ class FieldTables(PanelCase):
         rows = [
             (
                 rock.name,
-                rock.observations,
-                rock.hole_picks,
-                [(s.name, s.stored, s.dips) for s in rock.surfaces],
+                rock.observations.digest,
+                rock.hole_picks.digest,
+                [(s.name, s.stored.digest, s.dips.digest) for s in rock.surfaces],
             )
             for rock in self.model.rocks
         ]

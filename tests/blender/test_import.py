@@ -13,6 +13,8 @@ from realmodel.bl.scene import data_objects
 from realmodel.core.base.build_warning import BuildWarning
 from realmodel.core.project.colors import hex_color
 from realmodel.core.results.automatic_library import PALETTE, palette
+from realmodel.core.settings.series import THICKNESSES
+from realmodel.core.settings.variogram import RANGE_BEYOND
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
 
@@ -483,6 +485,10 @@ class Opened(Imported):
             ("one and a base_elevation", "one and a Base Elevation"),
             ('or give extrapolate = "nearest"', "or set Extrapolation to Nearest Point"),
             (
+                'write thickness = "free"',
+                f"set Thickness to {THICKNESSES['free'][0]}",
+            ),  # surfaces have one, too
+            (
                 "surface 'after': 'to' names 'name', which depends on this surface",
                 "surface 'after': Parallel To names 'name', which depends on this surface",
             ),
@@ -492,6 +498,18 @@ class Opened(Imported):
             ),
         ):
             self.assertEqual(notices.in_panel_words(text), wanted)
+
+    def test_a_key_of_several_tables_has_one_label(self):
+        labels = {}
+        for key, setting in notices._SETTINGS:
+            if setting.label:
+                self.assertEqual(labels.setdefault(key, setting.label), setting.label, key)
+
+    def test_what_concerns_variances_alone_is_not_told_in_a_compartment_either(self):
+        model = type("Model", (), {})()
+        texts = (f"in compartment 'A': {RANGE_BEYOND}, 9, far exceeds", f"{RANGE_BEYOND}, 9", "other")
+        model.warnings = [BuildWarning(text, "points") for text in texts]
+        self.assertEqual([warning.text for warning in notices.shown(model)], ["other"])
 
 
 class Palette(PanelCase):

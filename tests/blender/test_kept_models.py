@@ -7,7 +7,7 @@ from unittest import mock
 
 import numpy as np
 from realmodel.bl.host import caches
-from realmodel.bl.objects import built_models, stored_arrays
+from realmodel.bl.objects import built_models
 from realmodel.core import Project, Rock, Surface, build
 
 
@@ -46,10 +46,3 @@ class KeptModels(unittest.TestCase):
         for _ in range(20):
             built_models.remember(_Model(1))
         self.assertEqual(len(self.kept()), 20)
-
-    def test_arrays_of_files_likewise(self):
-        texts = [stored_arrays.pack(a=np.full(100, n, np.uint8)) for n in range(3)]
-        with mock.patch.object(stored_arrays._unpacked, "_most", 250):
-            for text in texts:
-                stored_arrays.unpack(text)
-        self.assertEqual([a["a"][0] for a in stored_arrays._unpacked.values()], [1, 2])

@@ -120,6 +120,13 @@ class MeshExport(PanelCase):
         with self.assertRaisesRegex(OutputFailed, "there is no folder"):
             ExportJob(model, self.folder / "none" / "m.vtu")
 
+    def test_cells_are_as_large_as_they_were_typed(self):
+        self.open_two_layers()
+        path, expected = self.folder / "m.csv", self.folder / "e.csv"
+        ops.export(filepath=str(path), cell_size=(2.3, 2.3, 0.7))
+        shown_models.whole(self.scene).save(expected, cell_size=(2.3, 2.3, 0.7))
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+
     def test_maps_and_their_interval(self):
         self.open_two_layers()
         path, expected = self.folder / "m.gpkg", self.folder / "e.gpkg"

@@ -73,6 +73,17 @@ class Rocks(PanelCase):
         region_size._measure_all()
         self.assertAlmostEqual(self.model.rocks[0].region_area, 1e4, places=2)
 
+    def test_a_region_of_a_scene_that_was_never_shown_is_measured(self):
+        other = bpy.data.scenes.new("other")
+        rocks = other.realmodel.rocks
+        region = outline("r", SQUARE)
+        bpy.context.collection.objects.unlink(region)
+        other.collection.objects.link(region)
+        for row in (rocks.add(), rocks.add()):
+            row.region = region
+        region_size._measure_all()
+        self.assertEqual([round(row.region_area, 2) for row in rocks], [1e4, 1e4])
+
     def test_an_open_region_is_refused(self):
         stack(0.0, 10.0)
         self.model.rocks[0].region = outline("r", SQUARE, cyclic=False)

@@ -3,12 +3,15 @@
 scenes."""
 
 import random
+from unittest import mock
 
 import bpy
+import numpy as np
 from blender_state import empty_file, inventory, open_edges, volume
 from panel_case import PanelCase, ops, raise_by, select, sheet, stack
 from realmodel.bl.display import colors
 from realmodel.bl.objects import built_models
+from realmodel.bl.scene import data_objects, live
 
 
 def block(name):
@@ -56,10 +59,12 @@ class Persistence(PanelCase):
         self.assertEqual([name for name, _ in colors.key(self.scene).entries], ["S2", "S1"])
 
     def all_settings(self):
-        """Every property, by its path, but pointers."""
+        """Every property, by its path, but pointers; of arrays their digest."""
         found = {}
 
         def walk(group, path):
+            for key in set(group.keys()) - set(group.bl_rna.properties.keys()):
+                found[f"{path}.{key}"] = getattr(group, key).digest
             for prop in group.bl_rna.properties:
                 key, value = prop.identifier, getattr(group, prop.identifier)
                 if prop.type == "COLLECTION":
@@ -197,6 +202,33 @@ class Deleted(PanelCase):
             ops.build()
             self.assertEqual(self.volumes(), volumes)
             self.assertIn(block("S1"), list(self.scene.objects))
+
+    def test_a_moved_collection_of_data_stays_the_only_one(self):
+        ops.rock_add()
+        rock = self.model.rocks[0]
+        rock.region_stored = {"ring0": np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]])}
+        self.model.show_data = True
+        (data,) = (c for c in bpy.data.collections if data_objects.KEY in c)
+        mine = bpy.data.collections.new("mine")
+        self.scene.collection.children.link(mine)
+        self.scene.collection.children.unlink(data)
+        mine.children.link(data)
+        rock.region_stored = {"ring0": np.array([[0.0, 0.0], [8.0, 0.0], [8.0, 8.0]])}
+        data_objects.update(self.scene)
+        self.assertEqual([c for c in bpy.data.collections if data_objects.KEY in c], [data])
+        self.assertEqual(len(data.objects), 1)
+
+    def test_a_mesh_with_the_name_of_an_interface_is_not_taken_for_it(self):
+        ops.rock_add()
+        ops.surface_add(name="top", empty=True)
+        row = self.model.rocks[0].surfaces[0]
+        row.interface, row.interface_digest = sheet("Top", 0.0), "made"
+        row.interface.data.name = "of Top"
+        with mock.patch.object(live, "_edited") as edited:
+            live.changed(self.scene, {(False, "Top")})
+            edited.assert_not_called()
+            live.changed(self.scene, {(True, "Top")})
+            edited.assert_called_once()
 
     def test_renamed_moved_and_linked_twice(self):
         stack(0.0, 10.0, 20.0)

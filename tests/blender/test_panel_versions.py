@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A file of the present version of the settings, opened today: tests/data/versions/v6.blend, written by
+"""A file of RealModel 0.1, version 6 of the settings, opened today: tests/data/versions/v6.blend, written by
 make_version_fixture.py from the example two_layers, whose files are not beside it."""
 
 import math
@@ -15,8 +15,8 @@ CLAY, SAND = 105000.0, 25400.0  # about: methods become better
 
 
 class Versions(PanelCase):
-    def test_a_file_of_this_version_can_be_gone_on_with(self):
-        bpy.ops.wm.open_mainfile(filepath=str(FILES / f"v{settings.VERSION}.blend"))
+    def test_a_file_of_an_earlier_version_can_be_gone_on_with(self):
+        bpy.ops.wm.open_mainfile(filepath=str(FILES / "v6.blend"))
         self.assertEqual(self.model.version, settings.VERSION)
         self.assertEqual([s.name for s in self.model.rocks[0].surfaces], ["top of clay", "ground"])
         self.assertEqual([e.name for e in self.model.library], ["Clay", "Sand"])

@@ -12,9 +12,10 @@ from realmodel.bl.display import cuts, ensembles
 from realmodel.bl.field import data, edits, handle
 from realmodel.bl.jobs.estimate_job import EstimateJob
 from realmodel.bl.objects import built_models, meshes
-from realmodel.bl.project import series_settings
+from realmodel.bl.project import series_settings, surface_dips
 from realmodel.bl.scene import live
 from realmodel.core import Cancelled, InputRefused, SpaceDips, build, estimate, load_project
+from realmodel.core.readers import gradient_of
 from realmodel.core.surfaces.prepare import with_arrays
 from recording_layout import draw_tab
 
@@ -127,7 +128,7 @@ class Series(PanelCase):
         rock = self.model.rocks[0]
         self.assertIn("3 dips", " ".join(draw_tab(bpy.context).labels))
         rock.surfaces[1].name = "top"
-        dips = series_settings.dips_of(rock.series[0])
+        dips = surface_dips.of_row(rock.series[0])
         self.assertEqual([names.tolist() for names in dips.named], [["", "top", ""], ["", "", "top"]])
         self.save_and_open()
         ops.build()
@@ -136,8 +137,8 @@ class Series(PanelCase):
         ops.save_project(filepath=str(saved))
         self.assertEqual([block.volume for block in build(load_project(saved)).blocks], expected)
         row = self.model.rocks[0].series[0]
-        series_settings.add_dips(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
-        self.assertEqual(series_settings.dips_of(row).gradients[-1].tolist(), [-0.5, 0.0])
+        surface_dips.add(row, SpaceDips(np.zeros((1, 3)), np.array([[1.0, 0.0, 2.0]])))
+        self.assertEqual(surface_dips.of_row(row).gradients[-1].tolist(), [-0.5, 0.0])
 
     def test_a_fold_is_made_from_scratch(self):
         ops.new()
@@ -230,21 +231,28 @@ class Series(PanelCase):
         rock.active_surface = 1
         self.scene.cursor.location = (10.0, 20.0, 30.0)
         ops.dip_add(dip=60.0, dip_direction=90.0, overturned=True)
-        dips = series_settings.dips_of(rock.series[0])
+        dips = surface_dips.of_row(rock.series[0])
         self.assertEqual(len(dips), 51)
         np.testing.assert_allclose(dips.normals[-1], (-np.sqrt(0.75), 0.0, -0.5), atol=1e-12)
         ops.series_dips_remove()
-        self.assertIsNone(series_settings.dips_of(rock.series[0]))
+        self.assertIsNone(surface_dips.of_row(rock.series[0]))
         rock.surfaces[1].series = ""
         self.refused(ops.dip_add, "one height", dip=60.0, overturned=True)
         ops.dip_add(dip=45.0, dip_direction=90.0)
         rock.surfaces[1].series = "folded beds"
         self.refused(ops.build, "give the dips to the series")
         ops.series_take_dips()
-        dips = series_settings.dips_of(rock.series[0])
+        dips = surface_dips.of_row(rock.series[0])
         normal = dips.normals[0] / np.linalg.norm(dips.normals[0])
         np.testing.assert_allclose(normal, (np.sqrt(0.5), 0.0, np.sqrt(0.5)), atol=1e-12)
-        self.assertEqual(rock.surfaces[1].dips, "")
+        self.assertFalse(rock.surfaces[1].dips)
+
+    def test_a_dip_by_hand_is_what_was_typed(self):
+        ops.new()
+        ops.surface_add(name="A", empty=True)
+        ops.dip_add(dip=33.3, dip_direction=12.1)
+        dips = surface_dips.of_row(self.model.rocks[0].surfaces[0])
+        self.assertEqual(dips.gradients.tolist(), [gradient_of(33.3, 12.1).tolist()])
 
     def test_sheets_take_dips_of_their_surfaces_and_of_none(self):
         ops.new()
@@ -258,10 +266,10 @@ class Series(PanelCase):
         table.write_text("x,y,dip,dip_direction,surface\n1,2,10,90,A\n3,4,20,90,\n")
         ops.boreholes_read(filepath=str(table), series="series")
         ops.dip_add(location=(5.0, 6.0, 7.0), dip=30.0, dip_direction=90.0)
-        dips = series_settings.dips_of(row)
+        dips = surface_dips.of_row(row)
         self.assertEqual(dips.named[0].tolist(), ["A", "", ""])
         np.testing.assert_allclose(dips.gradients[:, 0], -np.tan(np.radians([10, 20, 30])))
-        self.assertEqual((rock.dips, rock.surfaces[0].dips), ("", ""))
+        self.assertFalse(rock.dips or rock.surfaces[0].dips)
         self.refused(ops.dip_add, "one height", overturned=True)
         self.assertEqual(len(data.groups(self.scene, (data.SERIES_DIP,))[0].places), 3)
 
@@ -278,9 +286,9 @@ class Series(PanelCase):
     def test_a_damaged_series_is_refused_with_its_name(self):
         ops.open_project(filepath=str(PROJECT))
         row = self.model.rocks[0].series[0]
-        row.dips = "not what is stored"
+        row["dips"]["arrays"]["positions"] = "not what is stored"
         with self.assertRaises(InputRefused):
-            series_settings.dips_of(row)
+            surface_dips.of_row(row)
         self.refused(ops.build, "series 'folded beds': what the .blend keeps of it cannot be read")
         self.assertIn("cannot be read", " ".join(draw_tab(bpy.context).labels))
 
@@ -313,9 +321,9 @@ class FieldData(PanelCase):
         ops.datum_pick()
         self.assertIn("dip of the series 293/18 overturned of folded beds", handle.text_of(self.scene, datum))
         ops.datum_switch()
-        self.assertEqual(int((~series_settings.dips_of(self.rock.series[0]).in_use).sum()), 1)
+        self.assertEqual(int((~surface_dips.of_row(self.rock.series[0]).in_use).sum()), 1)
         moved = edits.move(self.scene, handle.active(self.scene), (800.0, 150.0, -290.0))
-        dips = series_settings.dips_of(self.rock.series[0])
+        dips = surface_dips.of_row(self.rock.series[0])
         np.testing.assert_array_equal(dips.positions[1], (800.0, 150.0, -290.0))
         self.assertFalse(dips.in_use[1] or moved.used)
         saved = self.folder / "saved.toml"
@@ -323,7 +331,7 @@ class FieldData(PanelCase):
         (series,) = with_arrays(load_project(saved)).rocks[0].series
         np.testing.assert_array_equal(series.dips.in_use, dips.in_use)
         ops.data_switch_on()
-        self.assertTrue(series_settings.dips_of(self.rock.series[0]).in_use.all())
+        self.assertTrue(surface_dips.of_row(self.rock.series[0]).in_use.all())
 
     def test_misfits_lead_to_dips(self):
         self.rock.series[0].resolution = 100.0

@@ -195,7 +195,10 @@ def test_a_recumbent_fold_from_contacts_and_dips_in_batch(tmp_path):
     assert (said == true).mean() > 0.96
     field = model.field("folded")
     assert np.abs(field.at(np.concatenate([s.points for s in model.project.rocks[0].surfaces[:3]]))).any()
+    command[2:] = [str(model_file), "--quiet", "--export-field", str(tmp_path / "again.vtu")]
+    subprocess.run(command, check=True, timeout=300)
     text = field_file.read_bytes()
+    assert (tmp_path / "again.vtu").read_bytes() == text
     assert f'NumberOfPoints="{field.lattice.nodes}"'.encode() in text
     assert f'NumberOfCells="{6 * np.prod(np.subtract(field.lattice.counts, 1))}"'.encode() in text
     for number, surface in enumerate(model.project.rocks[0].surfaces[:3]):

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build, load_project
 from realmodel.core.ensembles import Realizer, blocks_at, ensemble
+from realmodel.core.results import model_boreholes
 from realmodel.core.results.layer_values import at_places
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
@@ -40,6 +41,16 @@ def test_an_upright_hole_is_what_a_borehole_meets(model):
     assert [contact.surface for contact in hole.contacts] == ["S2", "S1", "S0", ""]
     assert [(c.above, c.below) for c in hole.contacts] == [(-1, 2), (2, 1), (1, 0), (0, -1)]
     assert hole.contacts[-1].depth == pytest.approx(14)
+
+
+def test_a_borehole_looks_at_the_faces_near_it_alone(model, monkeypatch):
+    asked, outlines = [], model_boreholes._outlines
+    monkeypatch.setattr(
+        model_boreholes, "_outlines", lambda model, faces: asked.append(len(faces)) or outlines(model, faces)
+    )
+    assert len(model.borehole(3.3, 4.4)) == 3
+    assert 0 < max(asked) < len(model.face_surface) // 10
+    assert model.borehole(50.0, 4.4) == []
 
 
 @given(

@@ -114,7 +114,7 @@ def region(rock, context):
     """The region was changed: its stored outline is discarded."""
     if settings.is_filling():
         return
-    rock.region_stored = rock.region_stamp = ""
+    rock.region_stored, rock.region_stamp = {}, ""
     rock.region_area = -1.0
     region_size.ask()
     data_objects.update(rock.id_data)
@@ -127,7 +127,7 @@ def ground(rock, context):
     """The file of the ground was changed: its stored data are discarded."""
     if settings.is_filling():
         return
-    rock.ground_stored = rock.ground_stamp = ""
+    rock.ground_stored, rock.ground_stamp = {}, ""
     rock.ground_is_raster = PurePath(rock.ground).suffix.lower() in RASTER_ENDINGS
     setting(rock, context)
 

@@ -203,7 +203,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, FilesImportHelp
         if found.rock_dips is not None:
             surface_dips.add(rock, found.rock_dips)
         if found.series_dips is not None:
-            series_settings.add_dips(series, found.series_dips)
+            surface_dips.add(series, found.series_dips)
         borehole_picks.keep(rock, found.picks.holes)
         borehole_picks.keep_ends(rock, found.picks.ends)
         for draped, file in zip(found.maps, tables.maps, strict=True):

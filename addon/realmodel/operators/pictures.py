@@ -109,7 +109,7 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
 
 class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
     """Set keyframes of the stage from the oldest rock to the whole model. Keyframes that the stage has are
-    replaced"""
+    replaced. Switches on Lock Interface in the menu Render, which their renders need"""
 
     bl_label = "Animate Stages"
     needs = (a_model,)

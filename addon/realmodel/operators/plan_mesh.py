@@ -76,7 +76,7 @@ class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
     def act(self, context):
         rock = settings.active_rock(context.scene)
         if self.index < 0:
-            rock.constraints_stored = ""
+            rock.constraints_stored = {}
         else:
             remove_row(rock.constraints, self.index, "constraint")
         live.touch(context.scene)

@@ -264,7 +264,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
                 raise InputRefused(reason)
             line = sections.line_of(context.active_object)
             found = sections.along(context.scene, line, context.evaluated_depsgraph_get())
-        found.save(path, self.exaggeration, width)
+        found.save(path, settings.plain(self.exaggeration), width)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

@@ -118,7 +118,7 @@ class REALMODEL_OT_series_dips_remove(Reporting, bpy.types.Operator):
     needs = (a_rock, dips_of_series)
 
     def act(self, context):
-        series_settings.keep_dips(series_settings.active(settings.active_rock(context.scene)), None)
+        surface_dips.keep(series_settings.active(settings.active_rock(context.scene)), None)
         data_objects.update(context.scene)
         live.touch(context.scene)
 
@@ -141,7 +141,7 @@ class REALMODEL_OT_series_take_dips(Reporting, bpy.types.Operator):
             z = np.where(np.isnan(z), points[:, 2].mean(), z)
         normals = np.column_stack([-dips.gradients, np.ones(len(dips))])
         given = SpaceDips(np.column_stack([dips.positions, z]), normals, dips.used)
-        series_settings.add_dips(series_settings.of_surface(row), given)
+        surface_dips.add(series_settings.of_surface(row), given)
         surface_dips.keep(row, None)
         data_objects.update(scene)
         live.touch(scene)
@@ -174,15 +174,16 @@ class REALMODEL_OT_dip_add(Reporting, bpy.types.Operator):
         scene, row = context.scene, settings.active_surface(context.scene)
         place = self.location if self.properties.is_property_set("location") else scene.cursor.location
         place = np.array(place, np.float64) + project_settings.model_origin(scene)
+        dip, direction = settings.plain(self.dip), settings.plain(self.dip_direction)
         series = series_settings.of_surface(row)
         if series is not None:
             if series.kind != FIELD:
                 self._require_sheet(series)
-            normal = normal_of(self.dip, self.dip_direction, self.overturned)
-            series_settings.add_dips(series, SpaceDips(place[None], normal[None]))
+            normal = normal_of(dip, direction, self.overturned)
+            surface_dips.add(series, SpaceDips(place[None], normal[None]))
         else:
             self._require_sheet(row)
-            gradient = gradient_of(self.dip, self.dip_direction)
+            gradient = gradient_of(dip, direction)
             surface_dips.add(row, Dips(place[None, :2], gradient[None], place[2:]))
         with settings.filling():
             scene.realmodel.view.show_dips = True

@@ -71,8 +71,7 @@ def _draw_series(layout, rock, row):
 def _draw_dips(layout, row):
     line = layout.row(align=True)
     try:
-        dips = series_settings.dips_of(row)
-        text = "No dips" if dips is None else counted(len(dips), "dip")
+        text = counted(row.dips.count("positions"), "dip") if row.dips else "No dips"
     except RealModelError as error:
         text = str(error)
     line.label(text=text)

@@ -160,10 +160,15 @@ def fields_changed(scene):
 
 
 def show_field_with(shown):
-    """Sets what shows field data: show(scene); follow_exaggeration(scene) shapes them anew, follow_cut(scene)
-    those on the section plane."""
+    """Sets what shows field data: show(scene), with ahead(scene) as here; follow_exaggeration(scene) shapes
+    them anew, follow_cut(scene) those on the section plane."""
     global _field
     _field = shown
+
+
+def ahead(scene):
+    """What may be asked of a new model of a scene before it is shown: functions of it, for other threads."""
+    return residuals.ahead(scene) + ([] if _field is None else _field.ahead(scene))
 
 
 def ensemble_changed(scene):

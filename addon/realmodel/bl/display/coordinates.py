@@ -188,13 +188,12 @@ def last(scene):
 
 def set_zero(scene, point):
     """Sets the point, in model coordinates, that distances are measured from; None for none."""
-    scene.realmodel.view.zero = "" if point is None else json.dumps([float(value) for value in point])
+    scene.realmodel.view.zero = {} if point is None else {"values": np.asarray(point, np.float64)}
 
 
 def zero(scene):
     """(3,) float64 or None."""
-    text = scene.realmodel.view.zero
-    return np.array(json.loads(text), np.float64) if text else None
+    return scene.realmodel.view.zero.get("values")
 
 
 def from_zero(scene, place):

@@ -14,10 +14,11 @@ from ...core.project.colors import hex_color
 from ...core.results import layer_values
 from ..objects import meshes, model_tree, stored_arrays
 from ..objects.origin import offsets_from
+from ..objects.stored_arrays import StoredArrays
 from ..project import library_rows, project_settings
 from . import bodies, colors, sections
 
-BLOCKS = "realmodel_ensemble"  # on the object: the blocks (R, N) int16, as stored_arrays.pack has them
+BLOCKS = "realmodel_ensemble"  # on the object: StoredArrays, the blocks (R, N) int16
 ENTROPY, PROBABILITY, REALIZATION = "ENTROPY", "PROBABILITY", "REALIZATION"
 COLORS = (  # items of an enum
     (ENTROPY, "Entropy", "How uncertain the block is, in bits: 0 where all realizations have the same"),
@@ -38,7 +39,7 @@ def put(scene, found, samples, blocks, seed):
     ends = np.arange(0, 4 * len(kept) + 1, 4, dtype=np.int32)
     shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
     item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
-    item[BLOCKS] = stored_arrays.pack(blocks=blocks[:, kept])
+    stored_arrays.store(item, BLOCKS, {"blocks": blocks[:, kept]})
     item.show_in_front = True  # it runs through the blocks
     sections.stand(scene, item, samples.section.plane)
     group = scene.realmodel.ensemble
@@ -108,7 +109,7 @@ def recolor(scene):
     item = item_of(scene)
     if item is None or item.mode != "OBJECT" or item.data.library is not None:
         return
-    blocks = stored_arrays.unpack(item[BLOCKS])["blocks"]
+    blocks = StoredArrays(item, BLOCKS)["blocks"]
     if blocks.shape[1] != len(item.data.polygons):
         return  # its mesh was edited
     if scene.realmodel.ensemble.color_by == REALIZATION:

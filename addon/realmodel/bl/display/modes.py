@@ -10,8 +10,6 @@ POLYHEDRA   the single cells, each a little smaller        Blender, bodies of ki
 BLOCKS      the blocks, or their cut halves                Blender
 """
 
-import json
-
 from ...core import RealModelError
 from ...core.display import polygon_mesh
 from ..objects.visible import WANTED, want
@@ -227,12 +225,12 @@ def needs_cells(scene, mode, stage):
 
 def hidden_properties(scene):
     """The property IDs whose blocks are hidden."""
-    text = scene.realmodel.view.hidden
-    return set(json.loads(text)) if text else set()
+    hidden = scene.realmodel.view.hidden
+    return set(hidden["values"].tolist()) if hidden else set()
 
 
 def hide_properties(scene, ids):
-    scene.realmodel.view.hidden = json.dumps(sorted(ids)) if ids else ""
+    scene.realmodel.view.hidden = {"values": sorted(ids)} if ids else {}
 
 
 def is_hidden(scene, row):

@@ -9,6 +9,7 @@ from ...core.drawing.overlay import ColorKey
 from ...core.project.colors import hex_color
 from ...core.results import layer_values
 from ...core.results.residuals import residuals
+from ..host import caches
 from ..objects import exaggeration, marks, meshes
 from ..project import project_settings
 from . import bodies, colors, explosion, shown_models
@@ -18,10 +19,18 @@ _STEPS = 15  # of the color scale: each is a material, which all ways of shading
 _STRETCH = "realmodel_stretch"  # on the object: the vertical exaggeration that its bodies are shaped for
 
 
+_of_model = caches.of_model(residuals)
+
+
+def ahead(scene):
+    """As of `display.ahead`."""
+    return [_of_model] if scene.realmodel.view.show_residuals else []
+
+
 def show(scene):
     """Shows the residuals of a scene's model, in place of those that are shown. Raises RealModelError."""
     hide(scene)
-    found = residuals(shown_models.whole(scene, None))
+    found = _of_model(shown_models.whole(scene, None))
     scene.realmodel.view.residuals = json.dumps(
         [
             (

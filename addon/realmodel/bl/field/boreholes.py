@@ -3,6 +3,7 @@
 layers beneath these; or by a column of the tables of intervals. Where the model is cut, those within a width
 of the plane, on it. And the names of the holes."""
 
+import functools
 from itertools import pairwise
 
 import numpy as np
@@ -97,10 +98,11 @@ def labels(scene):
 
 def _by_block(scene):
     """(material, begin, end) of the tubes."""
+    material_of = functools.cache(lambda number: colors.of_property(scene, number))
     for rock in scene.realmodel.rocks:
         logs, _ = observed_blocks.shown(rock)
         for layer, begin, end in (*_of_logs(scene, rock, logs.values()), *_of_picks(rock, logs)):
-            yield colors.of_property(scene, layer or 0), begin, end
+            yield material_of(layer or 0), begin, end
 
 
 def _by_column(scene):
@@ -121,7 +123,7 @@ def _by_column(scene):
 def _scale(scene, name):
     """The range (low, high) of a column of numbers and no words; or None, and the words of another, the most
     frequent first."""
-    known = name, *(rock.interval_values for rock in scene.realmodel.rocks)
+    known = name, *(rock.interval_values.digest for rock in scene.realmodel.rocks)
     if known not in _scales:
         _scales[known] = _scale_of(scene, name)
     return _scales[known]

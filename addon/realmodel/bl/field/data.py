@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core import Dips, RealModelError
 from ..host import caches
-from ..project import borehole_picks, observed_blocks, series_settings, settings, surface_dips
+from ..project import borehole_picks, observed_blocks, settings, surface_dips
 from ..scene import borehole_points, data_objects
 
 POINT, DIP, PLACE, INTERVAL = "point", "dip", "place", "interval"
@@ -95,17 +95,24 @@ def groups(scene, kinds=KINDS):
         if POINT in kinds:
             found += _all_points(scene, rock)
         if DIP in kinds:
-            found += [group for row in rock.surfaces if row.dips for group in _dips(rock, row)]
-        if ROCK_DIP in kinds and rock.dips:
-            found += _dips(rock, rock)
+            found += [group for row in rock.surfaces for group in _known(_dips, rock, row, row.dips)]
+        if ROCK_DIP in kinds:
+            found += _known(_dips, rock, rock, rock.dips)
         if SERIES_DIP in kinds:
-            found += [group for row in rock.series if row.dips for group in _dips(rock, row)]
-        if rock.observations and (PLACE in kinds or INTERVAL in kinds):
-            key = (rock.name, rock.observations)
-            if key not in _groups:
-                _groups[key] = _observed(rock)
-            found += _groups[key]
+            found += [group for row in rock.series for group in _known(_dips, rock, row, row.dips)]
+        if PLACE in kinds or INTERVAL in kinds:
+            found += _known(_observed, rock, rock, rock.observations)
     return [group for group in found if group.kind in kinds and len(group.places)]
+
+
+def _known(make, rock, row, arrays):
+    """The Groups of the arrays of a row, made once: panels ask at each redraw."""
+    if not arrays:
+        return []
+    key = (settings.kind_of(row), rock.name, row.name, arrays.digest)
+    if key not in _groups:
+        _groups[key] = make(rock, row)
+    return _groups[key]
 
 
 def are_there(scene):
@@ -125,8 +132,8 @@ def switched_off(scene):
     count = sum(int((~group.used).sum()) for group in groups(scene, (*DIPS, PLACE, INTERVAL)))
     for rock in scene.realmodel.rocks:
         for row in rock.surfaces:
-            with suppress(RealModelError):  # damaged text, which a build refuses
-                count += len(borehole_points.left_out(row))
+            with suppress(RealModelError):  # damaged arrays, which a build refuses
+                count += row.left_out.count("points") if row.left_out else 0
     return count
 
 
@@ -136,7 +143,8 @@ def _all_points(scene, rock):
         if row.source not in ("POINTS_FILE", "NONE"):
             continue
         stamp = "" if row.stored or not row.filepath else _stamp(row)
-        key = (rock.name, row.name, row.source, row.stored, row.left_out, stamp, rock.hole_picks)
+        digests = (arrays.digest for arrays in (row.stored, row.left_out, rock.hole_picks))
+        key = (rock.name, row.name, row.source, stamp, *digests)
         if key not in _groups:
             holes = _holes_of_points(rock) if holes is None else holes
             _groups[key] = _points(scene, rock, row, holes)
@@ -199,7 +207,7 @@ def _dips(rock, row):
     """The dips of a surface, of a series or of a rock mass, by its row."""
     is_of_series = settings.kind_of(row) == "series"
     try:
-        dips = (series_settings.dips_of if is_of_series else surface_dips.of_row)(row)
+        dips = surface_dips.of_row(row)
     except RealModelError:
         return []
     if is_plan := isinstance(dips, Dips):
@@ -215,9 +223,9 @@ def _dips(rock, row):
     return [Group(kind, rock.name, names, places, holes, dips.in_use, rows, normals=normals)]
 
 
-def _observed(rock):
+def _observed(_rock, row):
     try:
-        observations = observed_blocks.of_rock(rock)
+        observations = observed_blocks.of_rock(row)
     except RealModelError:
         return []
     rows = interval_rows(observations)
@@ -228,5 +236,5 @@ def _observed(rock):
         names, holes = observations.blocks[first], observations.holes[first]
         places, ends = observations.places[first], observations.places[last]
         used = observations.in_use[first]
-        found.append(Group(kind, rock.name, names, places, holes, used, first, ends))
+        found.append(Group(kind, row.name, names, places, holes, used, first, ends))
     return found

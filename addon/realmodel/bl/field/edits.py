@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import InputRefused
-from ..objects import stored_arrays
-from ..project import borehole_picks, observed_blocks, reading_text, series_settings, settings, surface_dips
+from ..project import borehole_picks, observed_blocks, reading_text, settings, surface_dips
 from ..scene import borehole_points
 from . import data
 
@@ -30,7 +29,7 @@ def switch(scene, datum, used):
     if datum.kind == data.POINT:
         _switch_point(scene, row, np.array(datum.place), used)
     elif datum.kind in data.DIPS:
-        _keep_dips(datum, row, surface_dips.with_used(_dips(datum, row), group.rows[number], used))
+        surface_dips.keep(row, surface_dips.with_used(surface_dips.of_row(row), group.rows[number], used))
     else:
         observed_blocks.keep(rock, _switched(observed_blocks.of_rock(rock), group.rows[number], used))
     return datum._replace(used=used)
@@ -60,7 +59,7 @@ def move(scene, datum, place):
         places[group.rows[number]] = place
         observed_blocks.keep(rock, replace(observations, places=places))
     elif datum.kind in data.DIPS:
-        _keep_dips(datum, row, surface_dips.moved(_dips(datum, row), group.rows[number], place))
+        surface_dips.keep(row, surface_dips.moved(surface_dips.of_row(row), group.rows[number], place))
         place[2] = place[2] if group.places[number, 2] == group.places[number, 2] else np.nan
     elif group.used[number]:
         points = data.own_points(scene, row).copy()
@@ -83,15 +82,6 @@ def _rows(scene, datum):
     return rock, rock.surfaces[datum.name] if datum.kind in (data.POINT, data.DIP) else rock
 
 
-def _dips(datum, row):
-    """The Dips that a row stores, or the SpaceDips of that of a series."""
-    return (series_settings.dips_of if datum.kind == data.SERIES_DIP else surface_dips.of_row)(row)
-
-
-def _keep_dips(datum, row, dips):
-    (series_settings.keep_dips if datum.kind == data.SERIES_DIP else surface_dips.keep)(row, dips)
-
-
 def _switch_point(scene, row, place, used):
     off = borehole_points.left_out(row)
     if used:
@@ -108,12 +98,12 @@ def _switch_point(scene, row, place, used):
 def _keep_points(row, points, stays_of_file=False):
     """Stores the own points of a surface, beside its contacts. Moved ones are not those of its file any more,
     which the surface does not name then."""
-    contacts = stored_arrays.unpack(row.stored).get("contacts") if row.stored else None
+    contacts = row.stored.get("contacts")
     arrays = {"points": points}
     if contacts is not None:
         arrays = {"points": np.concatenate([points, contacts]), "contacts": contacts}
     with settings.filling():
-        row.stored = stored_arrays.pack(**arrays)
+        row.stored = arrays
         if row.filepath and not stays_of_file:
             row.source, row.filepath, row.stored_stamp = "POINTS_FILE", "", ""
             reading_text.fill(row, {})

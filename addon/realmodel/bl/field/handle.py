@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The active datum: an empty stands at its place, and where that is moved, the datum goes too."""
 
-import json
-
 import bpy
 import numpy as np
 
@@ -75,7 +73,7 @@ def show_misfit(context):
     if datum is not None:
         activate(context, datum)
     if row.place:
-        _look_at(context, project_settings.in_world(scene, json.loads(row.place))[0])
+        _look_at(context, project_settings.in_world(scene, row.place["values"])[0])
 
 
 def text_of(scene, datum):

@@ -7,11 +7,10 @@ import numpy as np
 from ...core import RealModelError
 from ...core.readers.tables.interval_values import IntervalValues
 from ..host import caches
-from ..objects import stored_arrays
 
-_known = caches.new(most=8)  # by text
+_known = caches.new(most=8)  # by digest
 _PLACES = ("begins", "ends", "depths")
-_COLUMN = "column:"
+_COLUMN = "column"  # and its number: names of properties are short
 
 
 def add(row, values):
@@ -22,24 +21,28 @@ def add(row, values):
         for name in known.columns.keys() - values.columns.keys():  # else it is of another table
             again &= ~known.has(name)
         values = IntervalValues.joined([known.some(~again), values])
-    columns = {f"{_COLUMN}{name}": array for name, array in values.columns.items()}
-    arrays = {name: getattr(values, name) for name in _PLACES}
-    row.interval_values = stored_arrays.pack(holes=values.holes.astype(str), **arrays, **columns)
+    row.interval_values = {
+        "holes": values.holes.astype(str),
+        **{name: getattr(values, name) for name in _PLACES},
+        "columns": np.array(list(values.columns), str),
+        **{f"{_COLUMN}{number}": array for number, array in enumerate(values.columns.values())},
+    }
 
 
 def of_rock(row):
-    """The stored IntervalValues; None where there are none, or damaged text."""
+    """The stored IntervalValues; None where there are none, or damaged arrays."""
     if not row.interval_values:
         return None
-    if row.interval_values not in _known:
-        _known[row.interval_values] = _read(row.interval_values)
-    return _known[row.interval_values]
+    digest = row.interval_values.digest
+    if digest not in _known:
+        _known[digest] = _read(row.interval_values)
+    return _known[digest]
 
 
-def _read(text):
+def _read(arrays):
     try:
-        arrays = stored_arrays.unpack(text)
-        columns = {name.removeprefix(_COLUMN): a for name, a in arrays.items() if name.startswith(_COLUMN)}
+        names = arrays["columns"].tolist()
+        columns = {name: arrays[f"{_COLUMN}{number}"] for number, name in enumerate(names)}
         return IntervalValues(arrays["holes"], *(arrays[name] for name in _PLACES), columns)
     except (RealModelError, KeyError):
         return None

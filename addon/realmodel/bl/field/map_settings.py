@@ -12,11 +12,11 @@ from ...core.readers import RASTER_ENDINGS, UnitNames
 from ...core.readers.maps.unit_polygons import read_unit_polygons
 from ...core.surfaces.map_data import DrapedMap, draped_map, map_on_ground, read_map, with_ground
 from ..host import caches
-from ..objects import stored_arrays, viewports
+from ..objects import viewports
 from ..project import method_settings, project_settings, settings
 from ..scene import data_objects
 
-_known = caches.new(most=8)  # by text
+_known = caches.new(most=8)  # by digest
 
 
 def read(scene, row, given, units):
@@ -69,23 +69,18 @@ def take_ground_of_project(scene, given):
 
 def keep(row, draped):
     """Stores a DrapedMap in the row of its rock mass, in place of the one there."""
-    row.map = stored_arrays.pack(
-        vertices=draped.vertices,
-        triangles=draped.triangles,
-        unit=draped.unit,
-        names=np.array(draped.names, str),
-    )
+    arrays = {key: getattr(draped, key) for key in ("vertices", "triangles", "unit")}
+    row.map = {**arrays, "names": np.array(draped.names, str)}
 
 
 def of_rock(row):
-    """The stored DrapedMap; None where there is none. Raises InputRefused for damaged text."""
+    """The stored DrapedMap; None where there is none. Raises InputRefused for damaged arrays."""
     if not row.map:
         return None
-    if row.map not in _known:
-        arrays = stored_arrays.unpack(row.map)
-        parts = (arrays[key] for key in ("vertices", "triangles", "unit"))
-        _known[row.map] = DrapedMap(*parts, arrays["names"].tolist(), [])
-    return _known[row.map]
+    digest = row.map.digest
+    if digest not in _known:
+        _known[digest] = DrapedMap(**{**row.map, "names": row.map["names"].tolist()}, warnings=[])
+    return _known[digest]
 
 
 def _begun(scene, row, given):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The list of data that the built model does not have as they say, and the way from each to its datum."""
 
-import json
-
 import numpy as np
 
 from ...core import RealModelError
@@ -13,20 +11,26 @@ from ..project import project_settings, settings
 from . import data
 
 MOST = 500  # rows of the list: the largest of each kind
-_found = caches.new(most=2)  # by the stamp of a model and the tolerances: its Misfits
+_of_model = caches.of_model(misfits)
 
 
 def shown(scene):
     """The core's Misfits of a scene's model; none where it has no model, or one without its project. Raises
     RealModelError."""
-    group = scene.realmodel
-    if not len(group.results):
+    if not len(scene.realmodel.results):
         return []
-    tolerance = group.view.misfit_tolerance or None
-    key = group.built_stamp, tolerance, group.view.dip_tolerance
-    if key not in _found:
-        _found[key] = misfits(shown_models.whole(scene, None), tolerance, group.view.dip_tolerance)
-    return _found[key]
+    return _asked(scene)(shown_models.whole(scene, None))
+
+
+def _asked(scene):
+    view = scene.realmodel.view
+    tolerances = view.misfit_tolerance or None, view.dip_tolerance
+    return lambda model: _of_model(model, *tolerances)
+
+
+def ahead(scene):
+    """What may be asked of a new model of a scene before it is shown: functions of it, for other threads."""
+    return [_asked(scene)] if scene.realmodel.view.show_misfits else []
 
 
 def fill(scene):
@@ -47,7 +51,7 @@ def fill(scene):
             row.depth = "" if each.depth is None else f"{round(each.depth, 2):g}"
             row.says, row.has = each.says, each.has
             row.by = "" if each.by is None else f"{each.by:.3g}{'°' if each.kind == 'dip' else ''}"
-            row.place = "" if each.place is None else json.dumps(list(each.place))
+            row.place = {} if each.place is None else {"values": each.place}
             row.hole = each.hole
 
 
@@ -55,7 +59,7 @@ def datum_of(scene, row):
     """The Datum that a row of the list speaks of; None where it has no place, or is not there any more."""
     if not row.place:
         return None
-    place = np.array(json.loads(row.place))
+    place = row.place["values"]
     wanted = {"dip": data.DIPS, "point": (data.POINT, data.INTERVAL, data.PLACE)}
     kinds = wanted.get(row.kind, (data.INTERVAL, data.PLACE))
     best = None

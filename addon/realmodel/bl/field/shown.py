@@ -38,6 +38,9 @@ def unregister():
     handle.stop()
 
 
+ahead = misfits.ahead
+
+
 def show(scene):
     """Shows what is wanted of the field data of a scene, in place of what is shown."""
     view = scene.realmodel.view
@@ -109,20 +112,19 @@ def _contacts(scene):
     for group in data.groups(scene):
         if group.kind in data.DIPS:
             continue
-        for number in range(min(len(group.places), _MOST)):
-            name = str(group.names[number])
-            is_used = bool(group.used[number])
-            material = material_of(name) if is_used else None
-            places.append(group.places[number])
-            materials.append(material or colors.plain_material(*_OFF))
-    kept, places = _near_cut(scene, np.array(places).reshape(-1, 3))
+        places.append(group.places[:_MOST])
+        materials += map(material_of, group.names[:_MOST].tolist(), group.used[:_MOST].tolist())
+    kept, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
     _add_points(scene, CONTACTS, "Contacts", places, [materials[n] for n in kept.tolist()], _LARGER)
 
 
 def _materials(scene):
-    """A function that gives the material of a name as of `_property_ids`; each is looked for once."""
+    """A function that gives the material of a name as of `_property_ids`, or of what is switched off; each is
+    looked for once."""
     of_block = _property_ids(scene)
-    return functools.cache(lambda name: colors.of_property(scene, of_block.get(name, 0)))
+    of_used = functools.cache(lambda name: colors.of_property(scene, of_block.get(name, 0)))
+    of_off = functools.cache(lambda: colors.plain_material(*_OFF))
+    return lambda name, is_used: of_used(name) if is_used else of_off()
 
 
 def _property_ids(scene):
@@ -157,18 +159,16 @@ def _dips(scene):
         at[:, 2] = heights.of_dips(scene, group.rock, names, at)
         places.append(at)
         normals.append(group.normals[:_MOST])
-        for name, used in zip(names.tolist(), group.used.tolist(), strict=False):
-            own = material_of(name)
-            upper = own if used else colors.plain_material(*_OFF)
-            materials.append([upper, *[colors.dark()] * (marks.DISC_FACES - 1)])
-    kept, places = _near_cut(scene, np.concatenate(places) if places else np.empty((0, 3)))
+        materials += map(material_of, names.tolist(), group.used[:_MOST].tolist())
+    kept, places = _near_cut(scene, np.concatenate([np.empty((0, 3)), *places]))
     if not len(kept):
         return
     places = places - project_settings.model_origin(scene)
     radius = _DISC * heights.extent(scene)
     shape = marks.discs(places, np.concatenate(normals)[kept], radius, exaggeration.factor(scene))
     item = bodies.add(scene, DIPS, "Dips", shape)
-    bodies.give_materials(item.data, [each for n in kept.tolist() for each in materials[n]], 1)
+    edges = [colors.dark()] * (marks.DISC_FACES - 1)
+    bodies.give_materials(item.data, [part for n in kept.tolist() for part in (materials[n], *edges)], 1)
 
 
 def _maps(scene):

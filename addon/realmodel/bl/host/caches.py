@@ -2,6 +2,10 @@
 """Caches in memory beside the scenes. Each module has its own; all are cleared here when another file is
 opened or the add-on is disabled."""
 
+import functools
+import weakref
+
+_MOST_ANSWERS = 32  # about one model, of one function
 _caches = []
 
 
@@ -21,11 +25,26 @@ class _Bounded(dict):
 
 
 def new(kind=dict, most=None, size_of=lambda _: 1):
-    """An empty cache, a dict or a list. most: entries that a dict holds, or their sizes together; None: any
-    number."""
+    """An empty cache, such as a dict or a list. most: entries that a dict holds, or their sizes together;
+    None: any number."""
     cache = kind() if most is None else _Bounded(most, size_of)
     _caches.append(cache)
     return cache
+
+
+def of_model(function):
+    """A function of a model, and of what else it takes, whose results stay as long as the model does: the
+    thread of a build may call it first."""
+    known = new(weakref.WeakKeyDictionary)
+
+    @functools.wraps(function)
+    def asked(model, *others):
+        results = known.setdefault(model, _Bounded(_MOST_ANSWERS, lambda _: 1))
+        if others not in results:
+            results[others] = function(model, *others)
+        return results[others]
+
+    return asked
 
 
 def clear():

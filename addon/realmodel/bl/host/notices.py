@@ -9,9 +9,10 @@ from ...core.base.errors import number_list
 from ...core.settings.schema import BODY, FAULT, ROCK, SERIES, SURFACE
 from ...core.settings.variogram import RANGE_BEYOND
 
-# By the keys of project files: settings that the panel shows, and the labels of those of several parts.
-_SETTINGS = {key: setting for each in (SERIES, BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}
-_LABELS = {key: setting.label for key, setting in _SETTINGS.items() if setting.label}
+# By the keys of project files: the labels of settings, and of those of several parts; and of their words.
+_SETTINGS = [pair for table in (SERIES, BODY, FAULT, ROCK, SURFACE) for pair in table.items()]
+_LABELS = {key: setting.label for key, setting in _SETTINGS if setting.label}
+_WORDS = {(key, word): texts[0] for key, setting in _SETTINGS for word, texts in setting.words.items()}
 _LABELS |= {"columns": "Columns", "where": "Filters", "ends_at": "Ends At", "rocks": "Rock Masses"}
 _KEY = "|".join(sorted(_LABELS, key=len, reverse=True))
 _GIVEN = re.compile(
@@ -51,7 +52,7 @@ def of_model(model):
 
 def shown(model):
     """The warnings of a model that say something about its blocks."""
-    return [warning for warning in model.warnings if not warning.text.startswith(RANGE_BEYOND)]
+    return [warning for warning in model.warnings if RANGE_BEYOND not in warning.text]
 
 
 def read(kept):
@@ -74,5 +75,4 @@ def _setting(found):
 
 def _value(key, value):
     value = value.strip('"[]{} ').replace('"', "")
-    words = _SETTINGS[key].words
-    return words[value][0] if value in words else value or "nothing"
+    return _WORDS.get((key, value), value or "nothing")

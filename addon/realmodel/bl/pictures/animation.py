@@ -88,7 +88,7 @@ def animate_stages(scene, frames):
     for point in versions.curves(scene).find(_STAGE).keyframe_points:
         point.interpolation = "CONSTANT"
     count = last + 1 - first
-    scene.render.use_lock_interface = True  # as for all animations that change meshes
+    scene.render.use_lock_interface = True  # the window must not draw meshes while a render changes them
     _set_range(scene, frames * count)
     scene.frame_set(scene.frame_end)  # the whole model, as it was
     return count

@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The picks of boreholes, stored in the row of their rock mass for display."""
 
-import json
+import numpy as np
 
 from ..host import caches
 from . import observed_blocks
 
-_paths = caches.new(most=8)  # by the texts that they are made from: viewports ask at each redraw
+_ARRAYS = ("holes", "surfaces", "places")
+_UNKNOWN = (np.nan, np.nan, np.nan)
+_paths = caches.new(most=8)  # by the digests of what they are made from: viewports ask at each redraw
 
 
 def keep(row, holes):
     """Adds holes, as realmodel.core's Picks.holes, to those that a rock mass has."""
-    if not holes:
-        return
-    known = of_rock(row)
-    for name, (collar, picks) in holes.items():
-        given = [[surface, [float(value) for value in place]] for surface, place in picks]
-        known[name] = [None if collar is None else [float(value) for value in collar], given]
-    row.hole_picks = json.dumps(known)
+    if holes:
+        store(row, of_rock(row) | holes)
 
 
 def rename(row, old, new):
@@ -26,8 +23,7 @@ def rename(row, old, new):
     for _, met in picks.values():
         for pick in met:
             pick[0] = new if pick[0] == old else pick[0]
-    if picks:
-        row.hole_picks = json.dumps(picks)
+    store(row, picks)
 
 
 def move(row, old, new):
@@ -39,7 +35,7 @@ def move(row, old, new):
     if there:
         for _, met in picks.values():
             met.sort(key=lambda pick: -pick[1][2])
-        row.hole_picks = json.dumps(picks)
+        store(row, picks)
 
 
 def remove_at(row, places):
@@ -50,7 +46,7 @@ def remove_at(row, places):
         for hole, (collar, met) in of_rock(row).items()
         if (kept := [pick for pick in met if tuple(pick[1]) not in removed])
     }
-    row.hole_picks = json.dumps(left) if left else ""
+    store(row, left)
 
 
 def paths(row):
@@ -61,7 +57,7 @@ def paths(row):
 
 def named_paths(row):
     """{hole: its line}, as of `paths`; not to be changed."""
-    key = row.hole_picks, row.hole_ends, row.observations
+    key = row.hole_picks.digest, row.hole_ends.digest, row.observations.digest
     if key not in _paths:
         _paths[key] = _paths_of(row)
     return _paths[key]
@@ -84,15 +80,37 @@ def _paths_of(row):
 def keep_ends(row, ends):
     """Adds the ends of holes, as realmodel.core's Picks.ends, to those that a rock mass has."""
     if ends:
-        known = {hole: [float(value) for value in place] for hole, place in ends.items()}
-        row.hole_ends = json.dumps(ends_of(row) | known)
+        known = ends_of(row) | ends
+        row.hole_ends = {"holes": list(known), "places": np.array(list(known.values()), np.float64)}
 
 
 def ends_of(row):
     """{hole: (x, y, z)} where holes end, as far as it is known, model coordinates."""
-    return json.loads(row.hole_ends) if row.hole_ends else {}
+    stored = row.hole_ends
+    return dict(zip(stored["holes"].tolist(), stored["places"].tolist(), strict=True)) if stored else {}
 
 
 def of_rock(row):
     """{hole: [collar or None, [[surface, place], ...]]} in model coordinates, the highest pick first."""
-    return json.loads(row.hole_picks) if row.hole_picks else {}
+    if not row.hole_picks:
+        return {}
+    found = {}
+    for hole, surface, place in zip(*(row.hole_picks[name].tolist() for name in _ARRAYS), strict=True):
+        if surface:
+            found[hole][1].append([surface, place])
+        else:
+            found[hole] = [None if np.isnan(place).any() else place, []]
+    return found
+
+
+def store(row, holes):
+    """Stores what `of_rock` gives: of each hole its collar, as a pick of "", before its picks."""
+    rows = [
+        (hole, surface, _UNKNOWN if place is None else place)
+        for hole, (collar, picks) in holes.items()
+        for surface, place in (("", collar), *picks)
+    ]
+    row.hole_picks = {}
+    if rows:
+        names, surfaces, places = zip(*rows, strict=True)
+        row.hole_picks = {"holes": names, "surfaces": surfaces, "places": np.array(places, np.float64)}

@@ -2,10 +2,9 @@
 """Converts settings, by their declarations (core/settings/setting.py), between the properties of a row and
 realmodel.core; also those of methods with their variograms."""
 
-import json
-
 import numpy as np
 
+from ...core.settings.method_options import surface
 from ...core.settings.methods import DEFAULT_OPTIONS, METHODS, OPTIONS, STRUCTURE
 from ...core.settings.setting import property_name, switch_name
 from .settings import number, rock_of, set_number
@@ -82,8 +81,7 @@ def dips_unused(row):
 def options_of(row):
     """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
     known = METHODS[row.method].options
-    others = json.loads(row.other_options) if row.other_options else {}
-    options = {key: given for key, given in others.items() if key in known}
+    options = {key: given for key, given in _other_options(row.other_options) if key in known}
     for key, setting in known.items():
         given = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
         if key not in options and given is not None and given != setting.default:
@@ -92,8 +90,8 @@ def options_of(row):
 
 
 def set_options(row, method, options):
-    """Sets a surface's method and its options from a project; options without a setting in the panel are
-    stored as text."""
+    """Sets a surface's method and its options from a project; arrays, which have no setting in the panel, are
+    stored."""
     if method is not None:
         row.method = method
         for key in DEFAULT_OPTIONS.keys() & METHODS[method].options.keys():  # of a row without a method
@@ -102,11 +100,21 @@ def set_options(row, method, options):
     for key, given in options.items():
         if key == "variogram" and given is not None:
             set_variogram(row, given)
-        elif key in OPTIONS and not (OPTIONS[key].kind == "surface" and np.ndim(given)):
+        elif OPTIONS[key].kind != "surface" or given is None or np.isscalar(given):
             set_value(row, key, OPTIONS, given)
-        else:  # heights or a triangulation
-            others[key] = [np.asarray(part).tolist() for part in given]
-    row.other_options = json.dumps(others) if others else ""
+        elif isinstance(heights := surface(key, given), tuple):
+            others[f"{key} vertices"], others[f"{key} triangles"] = heights
+        else:
+            others[key] = heights
+    row.other_options = others
+
+
+def _other_options(stored):
+    """(key, heights or a triangulation) of the options that `set_options` has stored."""
+    for name, array in stored.items():
+        key, _, part = name.partition(" ")
+        if part != "triangles":
+            yield key, (array, stored[f"{key} triangles"]) if part else array
 
 
 def _name_or_number(text):

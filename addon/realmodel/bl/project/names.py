@@ -5,7 +5,7 @@ updates them."""
 from ...core import Dips
 from ...core.settings.methods import OPTIONS
 from ...core.settings.setting import property_name
-from . import borehole_picks, observed_blocks, series_settings, settings, surface_dips
+from . import borehole_picks, observed_blocks, settings, surface_dips
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -30,7 +30,7 @@ def update_references(row):
         borehole_picks.rename(settings.rock_of(row), old, row.name)
         observed_blocks.rename(settings.rock_of(row), old, row.name)
         rock = settings.rock_of(row)
-        named = [series for series in rock.series if isinstance(series_settings.dips_of(series), Dips)]
+        named = [series for series in rock.series if isinstance(surface_dips.of_row(series), Dips)]
         for owner in (rock, *named):
             surface_dips.rename(owner, old, row.name)
     if kind == "body":

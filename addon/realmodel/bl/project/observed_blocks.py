@@ -9,18 +9,16 @@ import numpy as np
 from ...core import Observations, RealModelError, Rock, Surface
 from ...core.readers import UnitNames
 from ..host import caches
-from ..objects import stored_arrays
 from . import settings
 
-_shown = caches.new(most=8)  # by text
+_shown = caches.new(most=8)  # by digest
 NAMES = ("places", "blocks", "holes", "depths", "intervals", "used", "on", "height_errors")
 
 
 def keep(row, observations):
     """Stores realmodel.core.Observations, or None."""
-    row.observations = ""
-    if observations is not None and len(observations):
-        row.observations = stored_arrays.pack(**{name: getattr(observations, name) for name in NAMES})
+    has_some = observations is not None and len(observations)
+    row.observations = {name: getattr(observations, name) for name in NAMES} if has_some else {}
 
 
 def add(row, observations):
@@ -44,11 +42,8 @@ def add(row, observations):
 
 
 def of_rock(row):
-    """The stored Observations; None where there are none. Raises InputRefused for damaged text."""
-    if not row.observations:
-        return None
-    arrays = stored_arrays.unpack(row.observations)
-    return Observations(**{name: arrays[name] for name in NAMES if name in arrays})
+    """The stored Observations; None where there are none. Raises InputRefused for damaged arrays."""
+    return Observations(**row.observations) if row.observations else None
 
 
 def rename(row, old, new):
@@ -69,14 +64,15 @@ def places_of(row):
 
 def shown(row):
     """What is displayed of the observations of a rock mass: {hole: Observations} of its holes with intervals,
-    downward along each, and (N, 3) the other places. Damaged text, which a build refuses, has neither."""
-    if row.observations not in _shown:
+    downward along each, and (N, 3) the other places. Damaged arrays, which a build refuses, has neither."""
+    digest = row.observations.digest
+    if digest not in _shown:
         try:
             found = of_rock(row)
         except RealModelError:
             found = None
-        _shown[row.observations] = _divided(Observations.joined([]) if found is None else found)
-    return _shown[row.observations]
+        _shown[digest] = _divided(Observations.joined([]) if found is None else found)
+    return _shown[digest]
 
 
 def _divided(observations):

@@ -3,7 +3,6 @@
 be, where they are smaller, what lines and points the mesh must contain.
 """
 
-import json
 import math
 
 import numpy as np
@@ -12,7 +11,7 @@ from ...core import InputRefused
 from ...core.base.errors import naming
 from ...core.settings.mesh_sizes import AUTO
 from ...core.settings.schema import ROCK, SIZE
-from ..objects import shapes, stored_arrays
+from ..objects import shapes
 from . import method_settings, settings
 
 KINDS = (  # each with the number by which Blender stores it
@@ -84,14 +83,14 @@ def _sizes(entry, depsgraph, origin):
             raise InputRefused("a refinement has no object", advice=advice)
         places = [(line + origin[:2]).tolist() for line in shapes.plan_lines(entry.object, depsgraph)]
     elif entry.at == "STORED":
-        places = [json.loads(entry.stored or "[]")]
+        places = [entry.stored["values"].tolist() if entry.stored else []]
     else:
         places = [_WORDS[entry.at]]
     return [{"at": at, "length": length, "distance": distance} for at in places]
 
 
 def _constraints(row, depsgraph, origin):
-    found = list(stored_arrays.unpack(row.constraints_stored).values()) if row.constraints_stored else []
+    found = list(row.constraints_stored.values())
     for entry in row.constraints:
         if entry.object is not None:
             found += [line + origin[:2] for line in shapes.plan_lines(entry.object, depsgraph)]
@@ -114,25 +113,20 @@ def _fill_size(row, entry):
     at = entry["at"]
     row.at = next((key for key, word in _WORDS.items() if isinstance(at, str) and at == word), "STORED")
     if row.at == "STORED":
-        row.stored = json.dumps(np.asarray(at, np.float64).tolist())
+        row.stored = {"values": np.asarray(at, np.float64)}
     for key in SIZE:
         settings.set_number(row, key, entry[key])
 
 
 def add_constraints(row, lines):
     """Stores further lines (N, 2) and points (1, 2), in model coordinates."""
-    kept = list(stored_arrays.unpack(row.constraints_stored).values()) if row.constraints_stored else []
-    kept += [np.asarray(line, np.float64) for line in lines]
-    row.constraints_stored = (
-        stored_arrays.pack(**{f"constraint{n}": line for n, line in enumerate(kept)}) if kept else ""
-    )
+    kept = [*row.constraints_stored.values(), *(np.asarray(line, np.float64) for line in lines)]
+    row.constraints_stored = {f"constraint{n}": line for n, line in enumerate(kept)}
 
 
 def stored_constraints(row):
     """(lines, points): how many constraints are kept that are no objects."""
-    if not row.constraints_stored:
-        return 0, 0
-    sizes = [len(line) for line in stored_arrays.unpack(row.constraints_stored).values()]
+    sizes = [row.constraints_stored.count(name) for name in row.constraints_stored]
     return sum(size > 1 for size in sizes), sum(size == 1 for size in sizes)
 
 

@@ -182,7 +182,7 @@ def _plain_surface(row, fields):
     if row.source not in method_settings.READY_MESHES:
         surface.dips = surface_dips.of_row(row)
         if row.left_out:
-            surface.left_out = stored_arrays.unpack(row.left_out)["points"]
+            surface.left_out = row.left_out["points"]
     if surface.series in fields:
         return surface
     if method_settings.has_method(row):
@@ -223,8 +223,7 @@ def _stored_rings(source, composed, number, rock, row):
             return None
     if not row.region_stored:
         return None
-    arrays = stored_arrays.unpack(row.region_stored)
-    return [arrays[f"ring{n}"] for n in range(len(arrays))]
+    return list(row.region_stored.values())
 
 
 def is_of_ground(row):
@@ -336,34 +335,34 @@ def _stored_key(row):
 
 
 def stored_shape(row):
-    """The text in which the .blend stores the data of a row's file; "" where it has none."""
+    """The arrays that the .blend stores of a row's file."""
     return getattr(row, _stored_key(row))
 
 
-def keep_shape(row, text, stamp):
+def keep_shape(row, arrays, stamp):
     """Stores the shape of a row in the .blend, and the stamp of the file that it was read from."""
-    setattr(row, _stored_key(row), text)
+    setattr(row, _stored_key(row), arrays)
     row.stored_stamp = stamp
 
 
-def keep_ground(row, text, stamp):
+def keep_ground(row, arrays, stamp):
     """The same of the ground of a rock mass."""
-    row.ground_stored, row.ground_stamp = text, stamp
+    row.ground_stored, row.ground_stamp = arrays, stamp
 
 
 def forget_shape(row):
     """Discards the stored shape of a row's file."""
-    setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
+    setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", {})
     if hasattr(row, "stored_trace"):
-        row.stored_trace = ""
+        row.stored_trace = {}
     row.stored_stamp = ""
 
 
-def _take_stored(surface, text, row):
+def _take_stored(surface, arrays, row):
     if row.source == "TRACE_FILE":
-        structure_settings.set_stored_trace(surface, row, text)
+        structure_settings.set_stored_trace(surface, row)
         return
-    for key, array in stored_arrays.unpack(text).items():
+    for key, array in arrays.items():
         setattr(surface, key, array)
 
 
@@ -387,8 +386,7 @@ def _from_object(source, composed, place, surface, row):
         shapes.require_open(row.object)
     given, triangles = shapes.triangulation(row.object, source.depsgraph)
     composed.objects.add(place)
-    base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
-    _take_mesh(composed, surface, row.object, given, triangles, base)
+    _take_mesh(composed, surface, row.object, given, triangles, row.stored_mesh)
 
 
 def _lines_of_object(source, composed, fault, row):
@@ -406,7 +404,7 @@ def _made_of(scene, place, row):
     """The arrays, in full digits, that an interface was made from: stored ones, or those of the cached
     model."""
     if row.source == "MESH_FILE" and row.stored_mesh:
-        return stored_arrays.unpack(row.stored_mesh)
+        return row.stored_mesh
     model = built_models.current(scene)
     places = [place for place, _ in settings.interface_rows(scene)]
     if model is None or len(model.surface_names) != len(places):
@@ -460,21 +458,20 @@ def entry_at(project, place):
     return project.rocks[first].surfaces[number]
 
 
-def packed(surface):
-    """The text that a row keeps of the shape of a realmodel.core.Surface, Fault or Body with arrays."""
+def shape_arrays(surface):
+    """What a row stores of the shape of a realmodel.core.Surface, Fault or Body with arrays."""
     if getattr(surface, "traced", None) is not None:
-        return structure_settings.packed_trace(surface.traced)
+        return structure_settings.trace_arrays(surface.traced)
     if getattr(surface, "points", None) is not None:
         contacts = getattr(surface, "contacts", None)
         derived = {} if contacts is None else {"contacts": contacts}
-        return stored_arrays.pack(points=np.asarray(surface.points, np.float64), **derived)
-    return stored_arrays.pack_mesh(surface.vertices, surface.triangles)
+        return {"points": np.asarray(surface.points, np.float64), **derived}
+    return structure_settings.mesh_arrays(surface)
 
 
-def packed_region(rock):
-    """The text that a row keeps of the outlines of a realmodel.core.Rock with arrays."""
-    rings = rock.rings()
-    return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
+def region_arrays(rock):
+    """What a row stores of the outlines of a realmodel.core.Rock with arrays."""
+    return {f"ring{n}": ring for n, ring in enumerate(rock.rings())}
 
 
 def fill(scene, project):
@@ -511,7 +508,7 @@ def add_rock(group, rock):
         if rock.region_file is not None:
             row.region_file = str(rock.region_file)
         elif rock.region is not None:
-            row.region_stored = packed_region(rock)
+            row.region_stored = region_arrays(rock)
         for surface in rock.surfaces:
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)
@@ -534,7 +531,7 @@ def fill_surface(row, surface):
         method_settings.set_options(row, method, surface.options)
         surface_dips.keep(row, surface.own_dips())
         if surface.left_out is not None and len(surface.left_out):
-            row.left_out = stored_arrays.pack(points=np.asarray(surface.left_out, np.float64))
+            row.left_out = {"points": np.asarray(surface.left_out, np.float64)}
         has_points = surface.interpolated or surface.is_level_set
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if has_points else "MESH_FILE"
@@ -544,4 +541,4 @@ def fill_surface(row, surface):
             row.source = "NONE"
         else:
             row.source = "POINTS_FILE" if has_points else "MESH_FILE"
-            setattr(row, "stored" if has_points else "stored_mesh", packed(surface))
+            setattr(row, "stored" if has_points else "stored_mesh", shape_arrays(surface))

@@ -10,7 +10,6 @@ from ...core.project.region_rings import region_rings
 from ...core.readers import read_region
 from ...core.surfaces.planar_mesh import triangulate_rings
 from ..host import versions
-from ..objects import stored_arrays
 from . import project_settings, settings
 from .surface_statistics import plan_area
 
@@ -49,7 +48,7 @@ def measure(scene, row, depsgraph):
     try:
         rings = project_settings.region_rings(row, depsgraph, project_settings.model_origin(scene))
         if rings is None and row.region_stored:
-            rings = list(stored_arrays.unpack(row.region_stored).values())
+            rings = list(row.region_stored.values())
         path = project_settings.absolute(row.region_file)
         if rings is None and path is not None:
             rings, _ = read_region(path)

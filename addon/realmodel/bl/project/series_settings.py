@@ -3,13 +3,12 @@
 
 import numpy as np
 
-from ...core import Dips, InputRefused, Rock, Series, SpaceDips, Surface
+from ...core import InputRefused, Rock, Series, Surface
 from ...core.base.errors import naming
 from ...core.project.series_checks import check_level_set, check_series
 from ...core.settings.schema import ROCK, SERIES
 from ...core.settings.series import AUTO, FIELD
-from ..objects import stored_arrays
-from . import method_settings, settings
+from . import method_settings, settings, surface_dips
 
 _STANDS_FOR = np.zeros((3, 2))  # any region, where only whether there is one counts
 
@@ -24,49 +23,21 @@ def fill(rock, series):
         method_settings.set_value(row, "resolution", SERIES, resolution)
         for key in ("name", "kind", "thickness"):
             method_settings.set_value(row, key, SERIES, getattr(each, key))
-        keep_dips(row, each.dips)
+        surface_dips.keep(row, each.dips)
 
 
 def of_rock(rock):
-    """The Series of a rock mass. Raises InputRefused for damaged text."""
-    return [_series(row) for row in rock.series]
+    """The Series of a rock mass. Raises InputRefused for damaged arrays."""
+    return [_series(row, surface_dips.of_row) for row in rock.series]
 
 
-def _series(row):
+def _series(row, dips_of):
     given = {}  # what sheets do not have is kept, but has no effect
     if row.kind == FIELD:
         values = {key: method_settings.value(row, key, SERIES) for key in ("resolution", "thickness")}
         given = {key: value for key, value in values.items() if value is not None}
     with naming(f"series '{row.name}'"):
         return Series(row.name, row.kind, dips_of(row), **given)
-
-
-def keep_dips(row, dips):
-    """Stores SpaceDips, or Dips of sheets, in the row of a series, or None."""
-    row.dips = ""
-    if dips is not None and len(dips):
-        given = {key: each for key, each in vars(dips).items() if each is not None}
-        row.dips = stored_arrays.pack(**given)
-
-
-def dips_of(row):
-    """The stored SpaceDips of a series, or Dips of sheets; None where there are none. Raises InputRefused for
-    damaged text."""
-    if not row.dips:
-        return None
-    arrays = stored_arrays.unpack(row.dips)
-    return SpaceDips(**arrays) if "normals" in arrays else Dips(**arrays)
-
-
-def add_dips(row, dips):
-    """Adds SpaceDips, or Dips of sheets, to the dips that a series has. Raises InputRefused where sheets
-    would get a vertical or an overturned one."""
-    parts = [each for each in (dips_of(row), dips) if each is not None]
-    if any(isinstance(each, Dips) for each in parts):
-        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
-        keep_dips(row, Dips.joined(flat))
-    else:
-        keep_dips(row, SpaceDips.joined(parts))
 
 
 def active(rock):
@@ -114,7 +85,7 @@ def refusal(rock, row):
             surfaces,
             region=_STANDS_FOR if has_region else None,
             base_elevation=method_settings.value(rock, "base_elevation", ROCK),
-            series=[_series(row)],
+            series=[_series(row, surface_dips.outline_of)],
         )
         check_series(given)
         for number in members(rock, row) if row.kind == FIELD else ():

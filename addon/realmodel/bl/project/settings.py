@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The rows of `scene.realmodel`: the active one, valid pointers, names, numbers in full precision."""
 
-import json
 from contextlib import contextmanager
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from ... import preferences
 from ..host.versions import GREASE_PENCIL
 
-VERSION = 6  # of the settings in a .blend
+VERSION = 7  # of the settings in a .blend
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
@@ -210,9 +209,9 @@ def number(row, key):
     returned as the shortest decimal that the property stands for, so 0.1 is 0.1.
     """
     shown = np.float32(getattr(row, key))
-    exact = json.loads(row.exact).get(key) if row.exact else None
+    exact = row.exact.get(key)
     if exact is not None and np.float32(exact) == shown:
-        return exact
+        return float(exact)
     return plain(shown)
 
 
@@ -224,11 +223,10 @@ def plain(value):
 def set_number(row, key, value):
     """Sets a number of a row, and keeps all its digits."""
     setattr(row, key, value)
-    kept = json.loads(row.exact) if row.exact else {}
-    kept.pop(key, None)
-    if number(row, key) != float(value):
-        kept[key] = float(value)
-    row.exact = json.dumps(kept) if kept else ""
+    exact = {name: kept for name, kept in row.exact.items() if name != key}
+    if plain(getattr(row, key)) != float(value):
+        exact[key] = float(value)
+    row.exact = exact
 
 
 def copy_row(source, target):
@@ -241,3 +239,5 @@ def copy_row(source, target):
                     copy_row(entry, getattr(target, key).add())
             elif not prop.is_readonly and not prop.is_skip_save:  # derived from other properties
                 setattr(target, key, getattr(source, key))
+        for key in set(source.keys()) - set(source.bl_rna.properties.keys()):  # arrays
+            setattr(target, key, getattr(source, key))

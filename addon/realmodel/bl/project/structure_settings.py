@@ -7,7 +7,6 @@ from ...core import Body, Fault, Project
 from ...core.base import work
 from ...core.settings.schema import BODY, FAULT
 from ...core.structures.shapes.reading import read_structures
-from ..objects import stored_arrays
 from . import method_settings, reading_text, settings
 
 _FAULT_KEYS = ("youngest", "dies_out", "extend")
@@ -37,21 +36,25 @@ def set_trace(fault, row, trace):
         setattr(fault, key, method_settings.value(row, key, FAULT))
 
 
-def set_stored_trace(fault, row, text):
+def set_stored_trace(fault, row):
     """Sets the trace that a row has stored; the dip of its file counts where the row has none."""
-    arrays = stored_arrays.unpack(text)
+    arrays = row.stored_trace
     set_trace(fault, row, arrays["line"])
     for key in ("dip", "dip_direction"):
         if getattr(fault, key) is None and key in arrays:
             setattr(fault, key, arrays[key].item())
 
 
-def packed_trace(fault):
-    """The text that a row keeps of the trace of a realmodel.core.Fault that was read, with its dip."""
-    dips = {key: getattr(fault, key) for key in ("dip", "dip_direction")}
-    return stored_arrays.pack(
-        line=fault.trace, **{key: np.array(value) for key, value in dips.items() if value is not None}
-    )
+def trace_arrays(fault):
+    """What a row stores of the trace of a realmodel.core.Fault that was read, with its dip."""
+    arrays = {"line": fault.trace, "dip": fault.dip, "dip_direction": fault.dip_direction}
+    return {key: value for key, value in arrays.items() if value is not None}
+
+
+def mesh_arrays(entry):
+    """What a row stores of a triangulated realmodel.core.Surface, Fault or Body."""
+    vertices, triangles = entry.vertices, entry.triangles
+    return {"vertices": np.asarray(vertices, np.float64), "triangles": np.asarray(triangles, np.int32)}
 
 
 def clear_extension(entry):
@@ -103,10 +106,10 @@ def _fill_shape(row, entry, units):
     if entry.vertices is None:  # points or a trace from a script or a project file
         entry = work.run(lambda task: _read_fault(task, entry, units))
         if entry.vertices is None:
-            row.source, row.stored_trace = "TRACE_FILE", packed_trace(entry)
+            row.source, row.stored_trace = "TRACE_FILE", trace_arrays(entry)
             return
         forget_extension(row)
-    row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
+    row.stored_mesh = mesh_arrays(entry)
 
 
 def _read_fault(task, fault, units):

@@ -1,31 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dips of a surface or of a rock mass, stored in its row."""
+"""The dips of a surface, a series or a rock mass, stored in its row."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from ...core import Dips, SpaceDips
-from ..objects import stored_arrays
 
 
 def keep(row, dips):
-    """Stores realmodel.core.Dips, or None."""
-    row.dips = ""
-    if dips is not None and len(dips):
-        given = {key: each for key, each in vars(dips).items() if each is not None}
-        row.dips = stored_arrays.pack(**given)
+    """Stores realmodel.core.Dips, SpaceDips, or None."""
+    has_some = dips is not None and len(dips)
+    row.dips = {key: array for key, array in vars(dips).items() if array is not None} if has_some else {}
 
 
 def add(row, dips):
-    """Adds Dips to those that a row has."""
-    known = of_row(row)
-    keep(row, dips if known is None else Dips.joined([known, dips]))
+    """Adds Dips, or SpaceDips, to those that a row has; together with Dips all are of sheets. Raises
+    InputRefused where sheets would get a vertical or an overturned one."""
+    parts = [each for each in (of_row(row), dips) if each is not None]
+    if any(isinstance(each, Dips) for each in parts):
+        flat = [each if isinstance(each, Dips) else each.checked().of_sheets() for each in parts]
+        keep(row, Dips.joined(flat))
+    else:
+        keep(row, SpaceDips.joined(parts))
 
 
 def of_row(row):
-    """The stored Dips; None where there are none. Raises InputRefused for damaged text."""
-    return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
+    """The stored Dips, or SpaceDips; None where there are none. Raises InputRefused for damaged arrays."""
+    return _class(row)(**row.dips) if row.dips else None
+
+
+def outline_of(row):
+    """The same, but empty ones, without a look at the data."""
+    return _class(row)(np.empty((0, 3)), np.empty((0, 3))) if row.dips else None
+
+
+def _class(row):
+    return SpaceDips if "normals" in row.dips else Dips
 
 
 def with_used(dips, number, used):

@@ -6,7 +6,6 @@ import numpy as np
 
 from ...core import Surface
 from ...core.surfaces.age_order import age_order
-from ..objects import stored_arrays
 from ..project import library_rows, reading_text, settings
 from . import data_objects
 
@@ -67,8 +66,7 @@ def own_points(scene, row):
     found = data_objects.read_points(scene, row)
     if found is None:
         return np.empty((0, 3))
-    contacts = stored_arrays.unpack(row.stored).get("contacts") if row.stored else None
-    own = Surface(row.name, points=found, contacts=contacts).own_points()
+    own = Surface(row.name, points=found, contacts=row.stored.get("contacts")).own_points()
     return np.empty((0, 3)) if own is None else own
 
 
@@ -76,15 +74,15 @@ def keep_points(row, points):
     """Gives a surface points that are stored in the .blend."""
     row.source, row.filepath = "POINTS_FILE", ""
     reading_text.fill(row, {})
-    row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""
+    row.stored, row.stored_stamp = {"points": points}, ""
     row.interface_digest = ""
 
 
 def left_out(row):
-    """(Q, 3) the points of a surface that are switched off. Raises InputRefused for damaged text."""
-    return stored_arrays.unpack(row.left_out)["points"] if row.left_out else np.empty((0, 3))
+    """(Q, 3) the points of a surface that are switched off. Raises InputRefused for damaged arrays."""
+    return row.left_out.get("points", np.empty((0, 3)))
 
 
 def keep_left_out(row, places):
     """Stores the points of a surface that are switched off."""
-    row.left_out = stored_arrays.pack(points=places) if len(places) else ""
+    row.left_out = {"points": places} if len(places) else {}

@@ -3,17 +3,20 @@
 thread, and the main thread updates the scene. In between only the name of the scene is kept, no Blender data:
 undo may change everything else."""
 
+from contextlib import suppress
+
 import bpy
 
 from ... import preferences
 from ...core import BuildFailed, InputRefused, RealModelError, build
 from ...core.project.coarse import coarsened
 from ...core.project.project import surface_item
+from .. import display
 from ..host.thread_job import ThreadJob
 from ..host.threads import threads
 from ..objects import meshes
 from ..project import project_settings, settings
-from . import built_scene
+from . import built_scene, planned_holes
 
 
 class BuildJob(ThreadJob):
@@ -37,6 +40,7 @@ class BuildJob(ThreadJob):
         group = scene.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(scene)
         self._stage = group.stage if is_stage else None  # the stage that is shown afterwards
+        self._ahead = display.ahead(scene) + planned_holes.ahead(scene)
         self._slices = None
 
     def run(self, progress=None):
@@ -57,6 +61,9 @@ class BuildJob(ThreadJob):
 
     def _work(self, _):
         model = build(self.composed.project, cells=self.cells, threads=self._threads, memory=self._memory)
+        for ask in self._ahead:
+            with suppress(RealModelError):  # what shows it asks again, and tells
+                ask(model)
         return built_scene.prepare(model, self.composed, self._stage, self._threads)
 
     def hand_over(self, seconds):

@@ -53,9 +53,9 @@ class Prepared:
     """A model as Blender takes it: all that can be made without touching Blender.
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
-    PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
-    and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by place
-    the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    PolygonMesh or None; bounds: of them all. stored: by place the arrays that its row is to store of its
+    file, and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by
+    place the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
     `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 
@@ -95,13 +95,13 @@ def prepare(model, composed, stage=None, threads=0):
     prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
     for place, stamp in composed.read.items():
         if place[1] is None:
-            text = project_settings.packed_region(model.project.rocks[place[0]])
+            arrays = project_settings.region_arrays(model.project.rocks[place[0]])
         else:
-            text = project_settings.packed(project_settings.entry_at(model.project, place))
-        prepared.stored[place] = (text, stamp)
+            arrays = project_settings.shape_arrays(project_settings.entry_at(model.project, place))
+        prepared.stored[place] = (arrays, stamp)
     for place in composed.edited:  # the digits lost in Blender's 32 bits
         entry = project_settings.entry_at(model.project, place)
-        prepared.stored[place] = (project_settings.packed(entry), "")
+        prepared.stored[place] = (project_settings.shape_arrays(entry), "")
     prepared.figures = surface_statistics.of_model(model)
     prepared.compartments = compartments.of_model(model)
     if stage is not None:
@@ -247,14 +247,14 @@ def move_helpers(scene, moved):
 
 def _keep(scene, prepared):
     """Stores the data that were read from files in the rows, and the statistics of each surface."""
-    for place, (text, stamp) in prepared.stored.items():
+    for place, (arrays, stamp) in prepared.stored.items():
         row = settings.row_at(scene, place)
         if place[1] is None:
-            row.region_stored, row.region_stamp = text, stamp
+            row.region_stored, row.region_stamp = arrays, stamp
         elif stamp and settings.kind_of(row) == "surface" and project_settings.is_of_ground(row):
-            project_settings.keep_ground(settings.rock_of(row), text, stamp)
+            project_settings.keep_ground(settings.rock_of(row), arrays, stamp)
         else:
-            project_settings.keep_shape(row, text, stamp)
+            project_settings.keep_shape(row, arrays, stamp)
     scene.realmodel.view.compartments = prepared.compartments
     rows = [row for _, row in settings.interface_rows(scene)]
     for row, figures in zip(rows, prepared.figures, strict=True):

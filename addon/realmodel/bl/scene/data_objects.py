@@ -5,7 +5,6 @@ They stand in the collection "<project> Data" beside the model, cannot be select
 and not in renders. `update` makes them from the settings, so they follow whatever becomes of these.
 """
 
-import zlib
 from itertools import pairwise
 
 import bpy
@@ -96,7 +95,7 @@ def row_points(scene, row, depsgraph):
     if row.source == "POINTS_FILE":
         return read_points(scene, row)
     if row.stored_mesh:
-        return stored_arrays.unpack(row.stored_mesh)["vertices"]
+        return row.stored_mesh["vertices"]
     path = project_settings.absolute(row.filepath)
     if row.source != "MESH_FILE" or path is None:
         return None
@@ -108,8 +107,7 @@ def row_points(scene, row, depsgraph):
 def _ground_points(scene, rock):
     """row_points of the ground of the row of a rock mass."""
     if rock.ground_stored:
-        arrays = stored_arrays.unpack(rock.ground_stored)
-        return arrays["points" if "points" in arrays else "vertices"]
+        return rock.ground_stored["points" if "points" in rock.ground_stored else "vertices"]
     path, units = project_settings.absolute(rock.ground), scene.realmodel.units
     if is_mesh_file(path):
         return read_mesh(MeshFile(path)).in_model(MeshFile(path), units)[0]
@@ -120,7 +118,7 @@ def read_points(scene, row):
     """(P, 3) of a surface's file of points, or of the data stored in the .blend; None where there are
     neither."""
     if row.stored:
-        return stored_arrays.unpack(row.stored)["points"]
+        return row.stored["points"]
     path = project_settings.absolute(row.filepath)
     if path is None:
         return None
@@ -140,27 +138,27 @@ def _wanted(scene, read):
     found = {}
     for rock in scene.realmodel.rocks:
         if rock.region is None and (rock.region_stored or rock.region_file):
-            made_of = rock.region_file or _checksum(rock.region_stored)
+            made_of = rock.region_file or rock.region_stored.digest
             found[f"outline {rock.name} {made_of}"] = (
                 f"{rock.name} outline",
                 lambda rock=rock: _outline(scene, rock),
             )
         logs, outcrops = observed_blocks.shown(rock)
         if rock.hole_picks or logs:
-            found[f"boreholes {rock.name} {_checksum(rock.hole_picks + rock.observations)}"] = (
+            found[f"boreholes {rock.name} {rock.hole_picks.digest}{rock.observations.digest}"] = (
                 f"{rock.name} boreholes",
                 lambda rock=rock: _chains(borehole_picks.paths(rock)),
             )
         # A map lies on its ground, and has a color where it was observed: thousands of dots would hide it.
         ground = rock.surfaces[-1].name if rock.map and len(rock.surfaces) else None
         if len(outcrops) and not rock.map:
-            found[f"observations {rock.name} {_checksum(rock.observations)}"] = (
+            found[f"observations {rock.name} {rock.observations.digest}"] = (
                 f"{rock.name} observations",
                 lambda outcrops=outcrops: (outcrops, np.empty((0, 2), np.int32)),
             )
         for row in rock.surfaces:
             if row.name != ground and (key := _points_key(row)) is not None:
-                found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
+                found[f"points {rock.name} / {row.name} {key or row.stored.digest}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),
                 )
@@ -170,7 +168,7 @@ def _wanted(scene, read):
                 key = row.stored_stamp if row.stored_trace else file_key(row)
             except RealModelError:
                 continue
-            found[f"trace {row.name} {key or _checksum(row.stored_trace)}"] = (
+            found[f"trace {row.name} {key or row.stored_trace.digest}"] = (
                 f"{row.name} trace",
                 lambda row=row: _trace(scene, row),
             )
@@ -190,10 +188,6 @@ def _points_key(row):
         return file_key(row)
     except RealModelError:  # only some of the columns are set yet
         return None
-
-
-def _checksum(text):
-    return zlib.crc32(text.encode())
 
 
 def _cloud(scene, row, points):
@@ -219,7 +213,7 @@ def _chains(lines):
 def _outline(scene, rock):
     """The rings of a region that comes from a file, below the lowest point of the model's data."""
     if rock.region_stored:
-        rings = list(stored_arrays.unpack(rock.region_stored).values())
+        rings = list(rock.region_stored.values())
     else:
         rings, _ = read_region(project_settings.absolute(rock.region_file))
     starts = np.cumsum([0, *map(len, rings)])
@@ -232,7 +226,7 @@ def _outline(scene, rock):
 def _trace(scene, fault):
     """The lines of a fault's file, where they have no elevation at the height of the scene's zero."""
     if fault.stored_trace:
-        lines = [stored_arrays.unpack(fault.stored_trace)["line"]]
+        lines = [fault.stored_trace["line"]]
     else:
         given = PointFile(project_settings.absolute(fault.filepath), **reading_text.options(fault))
         lines = read_fault_trace(given, scene.realmodel.units).lines

@@ -10,7 +10,8 @@ import numpy as np
 from ...core import HoleAxis, HoleContact, HoleInterval, PlannedHole, RealModelError
 from .. import display
 from ..display import bodies, colors, explosion
-from ..objects import built_models, marks, stored_arrays
+from ..host import caches
+from ..objects import built_models, marks
 from ..project import project_settings, settings
 
 KIND = "planned"
@@ -22,11 +23,11 @@ _NOTHING = ("Planned hole", "#404040")
 
 def collar(row):
     """[x, y, z] of the collar of a hole, model coordinates."""
-    return json.loads(row.collar) if row.collar else [0.0, 0.0, 0.0]
+    return row.collar["values"].tolist() if row.collar else [0.0, 0.0, 0.0]
 
 
 def set_collar(row, place):
-    row.collar = json.dumps([float(value) for value in place])
+    row.collar = {"values": np.asarray(place, np.float64)}
 
 
 def move_collar(row, place):
@@ -39,6 +40,20 @@ def axis_of(row):
     """The core's HoleAxis of a row. Raises UsageError."""
     angles = (settings.number(row, key) for key in ("azimuth", "dip", "length"))
     return HoleAxis(tuple(collar(row)), *angles)
+
+
+@caches.of_model
+def _met(model, axis):
+    return model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length)
+
+
+def ahead(scene):
+    """As of `display.ahead`."""
+    try:
+        axes = [axis_of(row) for row in scene.realmodel.planned_holes]
+    except RealModelError:
+        return []  # their look-up tells
+    return [lambda model, axis=axis: _met(model, axis) for axis in axes]
 
 
 def update(scene, row):
@@ -66,13 +81,12 @@ def begin_on_ground(row):
 def _look_up(scene, row):
     if is_current(scene, row):
         return
-    row.result = row.shares = ""
+    row.result, row.shares = "", {}
     model = built_models.current(scene)
     if model is None:
         return
     try:
-        axis = axis_of(row)
-        keep(scene, row, model.planned_hole(axis.collar, axis.azimuth, axis.dip, axis.length))
+        keep(scene, row, _met(model, axis_of(row)))
     except RealModelError as error:
         scene.realmodel.view.message = str(error)
 
@@ -99,18 +113,16 @@ def keep(scene, row, hole):
             "contacts": [astuple(each) for each in hole.contacts],
         }
     )
-    row.shares = ""
-    if hole.probability is not None:
-        row.shares = stored_arrays.pack(depths=hole.depths, probability=hole.probability)
+    has_shares = hole.probability is not None
+    row.shares = {"depths": hole.depths, "probability": hole.probability} if has_shares else {}
 
 
 def kept(row):
     """The core's PlannedHole that a row keeps; None where it keeps none. Raises InputRefused for damaged
-    text."""
+    arrays."""
     if not row.result:
         return None
     found = json.loads(row.result)
-    arrays = stored_arrays.unpack(row.shares) if row.shares else {}
     return PlannedHole(
         axis_of(row),
         [HoleInterval(*each) for each in found["intervals"]],
@@ -119,7 +131,7 @@ def kept(row):
         found["properties"],
         found["unit"],
         tuple(found.get("remarks", ())),
-        **arrays,
+        **row.shares,
     )
 
 

@@ -183,6 +183,14 @@ class ModelData:
         return self.complex.cell_component
 
     @cached_property
+    def plan_boxes(self) -> np.ndarray:
+        """(F, 4) float64: the least x and y of each face, and the largest ones."""
+        corners, starts = self.vertices[self.face_vertices, :2], self.face_offsets[:-1]
+        if not len(starts):
+            return np.empty((0, 4))
+        return np.hstack([np.minimum.reduceat(corners, starts), np.maximum.reduceat(corners, starts)])
+
+    @cached_property
     def cell_volumes(self) -> np.ndarray:
         """(C,) float64: the volume of each cell, model units cubed."""
         return self.complex.cell_volumes(self.threads)

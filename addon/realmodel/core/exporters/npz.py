@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import io
 import zipfile
 from collections.abc import Callable, Iterable
 from typing import IO, BinaryIO
@@ -67,13 +66,9 @@ def write_npz(model: ModelData, file: BinaryIO, step: Callable[[float], None]) -
 
 
 def write_arrays(
-    arrays: dict[str, np.ndarray],
-    file: BinaryIO,
-    step: Callable[[float], None] | None = None,
-    level: int = 0,
+    arrays: dict[str, np.ndarray], file: BinaryIO, step: Callable[[float], None] | None = None
 ) -> None:
-    """Writes arrays as numpy.savez does, with a fixed date in place of the clock's. level: of compression,
-    0 to 9."""
+    """Writes arrays as numpy.savez does, with a fixed date in place of the clock's."""
     total = sum(array.nbytes for array in arrays.values()) or 1
     done = 0
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
@@ -82,13 +77,8 @@ def write_arrays(
             entry.create_system = 3
             entry.external_attr = 0o644 << 16
             entry.file_size = array.nbytes + _HEADER  # zipfile decides by it on 64-bit sizes
-            if level:
-                member = io.BytesIO()
-                _write_array(member, array)
-                archive.writestr(entry, member.getbuffer(), zipfile.ZIP_DEFLATED, level)
-            else:
-                with archive.open(entry, "w") as opened:
-                    _write_array(opened, array)
+            with archive.open(entry, "w") as opened:
+                _write_array(opened, array)
             done += array.nbytes
             if step is not None:
                 step(done / total)

@@ -68,31 +68,34 @@ def _merged(found: list[Interval]) -> list[Interval]:
 
 def _faces_at(model: ModelData, x: float, y: float) -> np.ndarray:
     """The faces over and under a position that are no walls: a ray to the right leaves them."""
-    offsets = model.face_offsets
-    corners = model.vertices[model.face_vertices, :2]
-    following = np.arange(1, len(corners) + 1)
-    following[offsets[1:] - 1] = offsets[:-1]
+    boxes = model.plan_boxes
+    near = np.flatnonzero(((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y))).all(axis=1))
+    near = near[model.face_surface[near] != _WALL]
+    corners, following, size = _outlines(model, near)
     at_edge = np.flatnonzero((corners[:, 1] <= y) != (corners[following, 1] <= y))
-    low, high = corners[at_edge], corners[following[at_edge]]
+    low, high = corners[at_edge, :2], corners[following[at_edge], :2]
     turned = low[:, 1] > high[:, 1]  # both faces at an edge see it the same way
     low[turned], high[turned] = high[turned], low[turned].copy()
     share = (y - low[:, 1]) / (high[:, 1] - low[:, 1])
     right = at_edge[low[:, 0] + share * (high[:, 0] - low[:, 0]) > x]
-    face, times = np.unique(np.searchsorted(offsets, right, "right") - 1, return_counts=True)
-    return face[(times % 2 == 1) & (model.face_surface[face] != _WALL)]
+    times = np.bincount(np.repeat(np.arange(len(near)), size)[right], minlength=len(near))
+    return near[times % 2 == 1]
+
+
+def _outlines(model: ModelData, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The corners of faces (K, 3), one face after another, which of them follows each, and how many each face
+    has."""
+    begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
+    step, here = ranks_in_runs(size), np.arange(size.sum())
+    following = np.where(step + 1 == np.repeat(size, size), here - step, here + 1)
+    return model.vertices[model.face_vertices[np.repeat(begin, size) + step]], following, size
 
 
 def _heights(model: ModelData, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
     """The heights of faces at a position, and whether each faces up out of its first cell."""
-    begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
-    first = np.repeat(begin, size)
-    step = ranks_in_runs(size)
-    here = model.vertices[model.face_vertices[first + step]]
-    origin = model.vertices[model.face_vertices[begin]]
+    here, following, size = _outlines(model, faces)
+    origin = here[np.cumsum(size) - size]
     here = here - np.repeat(origin, size, axis=0)
-    following = np.where(
-        step + 1 == np.repeat(size, size), np.arange(len(step)) - step, np.arange(1, len(step) + 1)
-    )
     doubled = np.cross(here, here[following]) if len(here) else np.empty((0, 3))
     normal = np.add.reduceat(doubled, np.cumsum(size) - size, axis=0) if len(faces) else np.empty((0, 3))
     slope = normal[:, 0] * (x - origin[:, 0]) + normal[:, 1] * (y - origin[:, 1])

@@ -43,7 +43,7 @@ NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 # A fit is not significant where neighbouring points differ as much as any, or its range exceeds the data.
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
-RANGE_BEYOND = "the range of the fitted variogram"  # begins the warning that concerns variances alone
+RANGE_BEYOND = "the range of the fitted variogram"  # in the warning that concerns variances alone
 NO_DEVIATION = "no standard deviation is given"  # begins the warning where data show no variogram
 # Of data, beyond the terms of a trend: two standard deviations of fewer hold less than 90 % of the errors
 # (Student's distribution), and two contacts of nearly equal height would seem certain.
