@@ -9,7 +9,7 @@ import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, exporters, mesh_region
 from realmodel.core.exporters.formats import FORMATS
 from realmodel.core.heights.methods import FUNCTIONS
-from realmodel.core.readers.meshes.mesh_file import read_mesh
+from realmodel.core.readers.mesh_input import read_mesh
 from realmodel.core.settings.meshers import MESHERS
 from realmodel.core.settings.methods import METHODS, OPTIONS
 from realmodel.core.settings.rules import RULES

@@ -15,7 +15,8 @@ from ..core.base.text import read_text
 from ..core.exporters import BOREHOLE, MODEL, PLANNED_HOLE, SECTION, Exporter
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.model.section import Section
-from ..core.readers import MESH_ENDINGS, read_mesh
+from ..core.readers import read_mesh
+from ..core.readers.formats import MESH, endings
 from ..core.results.model_boreholes import Interval
 from ..core.results.planned_holes import HoleAxis, HoleInterval
 from ..core.settings.point_file import MeshFile
@@ -236,10 +237,10 @@ def cut_request(text: str) -> CutRequest:
         if not block:
             raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
-    if Path(what).suffix.lower() not in MESH_ENDINGS and not Path(what).is_file():
+    if Path(what).suffix.lower() not in endings(MESH) and not Path(what).is_file():
         raise UsageError(
             f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
-            f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK or "
+            f"FILE{' or FILE'.join(endings(MESH))}, or a block PROJECT.toml:BLOCK or "
             "MODEL.npz:BLOCK (:BLOCK for one of the model's own)"
         )
     return CutRequest(Path(what), below, above)

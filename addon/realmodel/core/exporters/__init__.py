@@ -22,6 +22,7 @@ from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT
 from ..cells.model_data import ModelData
 from ..drawing import Drawing
+from ..results.samples import Probabilities, SectionSamples
 from ..results.sections.section_data import SectionData
 from ..results.sections.section_drawing import draw_section
 from ..simulation import PolyhedralMesh, VolumeMesh
@@ -29,7 +30,7 @@ from ..simulation.cleaned_cells import cleaned_cells
 from ..simulation.element_faces import ElementFaces
 from ..simulation.patches import solver_names
 from .formats import FORMATS
-from .samples import Asked, draw_probabilities
+from .samples import draw_probabilities
 from .shapes.parts import Part, model_parts, section_parts, surface_parts
 
 _EACH_PART = "{block}"  # in a file's name: a file for each
@@ -59,7 +60,7 @@ def _drawn(section: SectionData, options: dict) -> Drawing:
     return draw_section(section, options.pop("exaggeration", 1.0), hole_width=options.pop("hole_width", 0.0))
 
 
-def _drawn_samples(asked: Asked, options: dict) -> Drawing:
+def _drawn_samples(asked: tuple[SectionSamples, Probabilities], options: dict) -> Drawing:
     return draw_probabilities(*asked, options.pop("exaggeration", 1.0))
 
 
@@ -163,13 +164,13 @@ MESH = Exporter(
     {"elements": _as_it_is, "polyhedra": lambda mesh, _options: ElementFaces(mesh).polyhedral()},
 )
 POLYHEDRA = Exporter("{} files take prisms and tetrahedra, and no polyhedra", {"polyhedra": _as_it_is})
+_OF_SAMPLES = "the probabilities of a {kind} are not written as {{}}"
 SAMPLES = {
-    kind: Exporter(f"the probabilities of a {kind} are not written as {{}}", views)
-    for kind, views in (
-        ("section", {"section samples": _as_it_is, "drawing": _drawn_samples}),
-        ("borehole", {"hole samples": _as_it_is}),
-        ("grid", {"grid samples": _as_it_is}),
-    )
+    "section": Exporter(
+        _OF_SAMPLES.format(kind="section"), {"section samples": _as_it_is, "drawing": _drawn_samples}
+    ),
+    "borehole": Exporter(_OF_SAMPLES.format(kind="borehole"), {"hole samples": _as_it_is}),
+    "grid": Exporter(_OF_SAMPLES.format(kind="grid"), {"grid samples": _as_it_is}),
 }
 
 
