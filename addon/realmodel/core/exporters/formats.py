@@ -35,6 +35,7 @@ from .solvers.vtu_elements import write_vtu_elements
 from .surfaces import write_surfaces_npz, write_surfaces_vtu
 
 _ANY_SAMPLES = ("section samples", "hole samples", "grid samples")
+_CLEANED = ("tolerance", "cells")  # cells that are cleaned already
 _VTK = "VTK Unstructured Grid"
 
 FORMATS = (
@@ -46,7 +47,7 @@ FORMATS = (
         ("polyhedra",),
         "The polyhedral cells, for ParaView and simulation",
         write_vtu,
-        ("tolerance",),
+        _CLEANED,
     ),
     Format(
         ".vtu",
@@ -70,7 +71,7 @@ FORMATS = (
         ("polyhedra",),
         "A folder with the polyhedral cells as polyMesh, with zones of cells and patches",
         write_openfoam,
-        ("tolerance",),
+        _CLEANED,
         folder=POLY_MESH,
     ),
     Format(
@@ -79,7 +80,7 @@ FORMATS = (
         ("polyhedra", "elements"),
         "The cells, an element block for each block",
         write_exodus,
-        ("tolerance",),
+        _CLEANED,
     ),
     Format(
         ".disu",
@@ -87,7 +88,7 @@ FORMATS = (
         ("polyhedra",),
         "The polyhedral cells as an unstructured grid, and a table of the block of each",
         write_disu,
-        ("tolerance", "unit"),
+        (*_CLEANED, "unit"),
         has_files=True,
     ),
     Format(".msh", "Gmsh", ("elements",), "The elements, with physical groups, for Gmsh", write_msh),
