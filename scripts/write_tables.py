@@ -96,12 +96,12 @@ def _written_formats():
         "planned hole": exporters.PLANNED_HOLE,
         "fields": exporters.FIELDS,
         "report": exporters.REPORT,
-        **{f"probabilities of a {kind}": of for kind, of in exporters.SAMPLES.items()},
+        **{f"probabilities of a {kind}": exporter for kind, exporter in exporters.SAMPLES.items()},
     }
     rows = []
     for known in FORMATS:
-        of = [name for name, exporter in exported.items() if known in exporter.formats()]
-        rows.append([f"`{known.ending}`", known.label, ", ".join(of), known.tip])
+        names = [name for name, exporter in exported.items() if known in exporter.formats()]
+        rows.append([f"`{known.ending}`", known.label, ", ".join(names), known.tip])
     return _table(["extension", "format", "written of", ""], sorted(rows, key=lambda row: row[0]))
 
 

@@ -23,9 +23,8 @@ def test_each_method_that_chooses_no_other_has_its_function():
 
 
 def test_each_format_is_written_by_an_exporter_and_is_the_only_one_there():
-    every = [each for each in vars(exporters).values() if isinstance(each, exporters.Exporter)]
-    every += exporters.SAMPLES.values()
-    views = {view for exporter in every for view in exporter.views}
+    values = [*vars(exporters).values(), *exporters.SAMPLES.values()]
+    views = {view for value in values if isinstance(value, exporters.Exporter) for view in value.views}
     pairs = [(known.ending, content) for known in FORMATS for content in known.takes]
     assert {content for _, content in pairs} == views
     assert len(set(pairs)) == len(pairs)

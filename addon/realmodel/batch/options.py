@@ -90,15 +90,13 @@ class _Parser(argparse.ArgumentParser):
     def print_help(self, file=None):
         from ..core.exporters import BOREHOLE, MESH, MODEL, SECTION
 
-        named = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
-        endings = {name: [known.ending for known in of.formats()] for name, of in named.items()}
-        endings |= {
-            option: MODEL.endings(option)
-            for option in ("cell_size", "contour_interval", "tolerance", "origin")
-        }
-        words = {name: ", ".join(own) for name, own in endings.items()}
+        exporters = {"model": MODEL, "section": SECTION, "mesh": MESH, "borehole": BOREHOLE}
+        endings = {name: [f.ending for f in exporter.formats()] for name, exporter in exporters.items()}
+        for option in ("cell_size", "contour_interval", "tolerance", "origin"):
+            endings[option] = MODEL.endings(option)
+        texts = {name: ", ".join(listed) for name, listed in endings.items()}
         for action in self._actions:
-            action.help = action.help.format(**words)
+            action.help = action.help.format(**texts)
         super().print_help(file)
 
 

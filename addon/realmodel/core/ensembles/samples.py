@@ -146,7 +146,8 @@ def sample_writer(path: str | Path, kind: str, exaggeration: float = 1.0) -> Cal
     exporter = SAMPLES[kind]
     known = exporter.format(path)
 
-    def write(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
-        known.write(exporter.view(known, (samples, found), {"exaggeration": exaggeration}), file, no_step)
+    def write(samples: Samples, probabilities: Probabilities, file: BinaryIO) -> None:
+        content = exporter.view(known, (samples, probabilities), {"exaggeration": exaggeration})
+        known.write(content, file, no_step)
 
     return write

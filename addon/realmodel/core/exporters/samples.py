@@ -25,12 +25,12 @@ _SHADES = 64.0  # of each color: cells beside one another that have the same are
 Asked = tuple[Samples, Probabilities]
 
 
-def _named(found: Probabilities) -> list[tuple[str, np.ndarray]]:
+def _named(probabilities: Probabilities) -> list[tuple[str, np.ndarray]]:
     """Arrays of cells, by name."""
-    shares = zip(distinct_names(found.block_names), found.probability.T, strict=True)
+    shares = zip(distinct_names(probabilities.block_names), probabilities.probability.T, strict=True)
     return [
-        ("entropy", found.entropy().astype("<f8")),
-        ("block", found.likeliest().astype("<i4")),
+        ("entropy", probabilities.entropy().astype("<f8")),
+        ("block", probabilities.likeliest().astype("<i4")),
         *((f"probability {name}", np.ascontiguousarray(share, "<f8")) for name, share in shares),
     ]
 
@@ -38,9 +38,9 @@ def _named(found: Probabilities) -> list[tuple[str, np.ndarray]]:
 def write_samples_csv(asked: Asked, file: BinaryIO, _step: Step) -> None:
     """A row for each place where there may be rock: x, y, z, the distance along a section, the name of the
     likeliest block, entropy, and the probability of each block; the depth along a planned hole."""
-    samples, found = asked
-    kept = np.flatnonzero(found.probability.sum(axis=1) > 0)
-    names, columns = distinct_names(found.block_names), [samples.places[kept]]
+    samples, probabilities = asked
+    kept = np.flatnonzero(probabilities.probability.sum(axis=1) > 0)
+    names, columns = distinct_names(probabilities.block_names), [samples.places[kept]]
     headings = ["x", "y", "z"]
     if isinstance(samples, SectionSamples):
         headings.append("distance")
@@ -48,8 +48,12 @@ def write_samples_csv(asked: Asked, file: BinaryIO, _step: Step) -> None:
     if isinstance(samples, HoleSamples):
         headings.append("depth")
         columns.append(samples.depths[kept])
-    quoted = np.array([_cell(name) for name in [*found.block_names, ""]], object)
-    columns += [quoted[found.likeliest()[kept]], found.entropy()[kept], found.probability[kept]]
+    quoted = np.array([_cell(name) for name in [*probabilities.block_names, ""]], object)
+    columns += [
+        quoted[probabilities.likeliest()[kept]],
+        probabilities.entropy()[kept],
+        probabilities.probability[kept],
+    ]
     headings += ["block", "entropy", *(f"probability {name}" for name in names)]
     file.write((",".join(map(_cell, headings)) + "\n").encode())
     form = ",".join(["%r"] * (len(headings) - 2 - len(names)) + ["%s"] + ["%.9g"] * (1 + len(names)))
@@ -64,12 +68,12 @@ def _cell(text: str) -> str:
 
 
 def write_samples_npz(asked: Asked, file: BinaryIO, _step: Step) -> None:
-    samples, found = asked
+    samples, probabilities = asked
     arrays = {
-        "block_names": texts(found.block_names),
+        "block_names": texts(probabilities.block_names),
         "places": samples.places,
-        "probability": found.probability,
-        "entropy": found.entropy(),
+        "probability": probabilities.probability,
+        "entropy": probabilities.entropy(),
     }
     if isinstance(samples, SectionSamples):
         arrays |= {"corners": samples.corners, "distance": samples.distance}
@@ -81,7 +85,7 @@ def write_samples_npz(asked: Asked, file: BinaryIO, _step: Step) -> None:
 
 
 def write_samples_vtu(asked: tuple[SectionSamples, Probabilities], file: BinaryIO, _step: Step) -> None:
-    samples, found = asked
+    samples, probabilities = asked
     count = len(samples.places)
     arrays = [
         ("Points", "Points", samples.corners.reshape(-1, 3).astype("<f8")),
@@ -89,12 +93,12 @@ def write_samples_vtu(asked: tuple[SectionSamples, Probabilities], file: BinaryI
         ("Cells", "offsets", np.arange(4, 4 * count + 1, 4, dtype="<i8")),
         ("Cells", "types", np.full(count, _QUADRILATERAL, np.uint8)),
     ]
-    write_grid(file, [*arrays, *(("CellData", name, values) for name, values in _named(found))])
+    write_grid(file, [*arrays, *(("CellData", name, values) for name, values in _named(probabilities))])
 
 
 def write_samples_vti(asked: tuple[GridSamples, Probabilities], file: BinaryIO, _step: Step) -> None:
-    samples, found = asked
-    write_image(file, samples.origin, samples.size, samples.counts, _named(found))
+    samples, probabilities = asked
+    write_image(file, samples.origin, samples.size, samples.counts, _named(probabilities))
 
 
 def draw_probabilities(samples: SectionSamples, found: Probabilities, exaggeration: float = 1.0) -> Drawing:

@@ -26,12 +26,12 @@ def begins_as_geojson(head: bytes, _size: int = 0) -> bool:
     return head.removeprefix(BOM).lstrip()[:1] in (b"{", b"[", _RECORD_SEPARATOR)
 
 
-def read_geojson(given: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
+def read_geojson(layer: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """What a GeoJSON file holds; heights of positions are left out where they are not wanted.
 
     Raises InputRefused naming the file and the line, or the feature.
     """
-    file = Path(given.file)
+    file = Path(layer.file)
     try:
         text = file.read_bytes().decode("utf-8-sig")
     except OSError as error:
@@ -48,7 +48,7 @@ def read_geojson(given: MapLayer, _step: Step = no_step, heights: Heights | None
     except (RecursionError, ValueError) as error:
         what = "lists nested too deep" if isinstance(error, RecursionError) else "a number of too many digits"
         raise InputRefused(f"cannot be read: {what}", file=file) from error
-    walk = _Walk(file, given.where, heights)
+    walk = _Walk(file, layer.where, heights)
     walk.node(content, "")
     walk.selection.require_some()
     return walk.shapes

@@ -37,12 +37,12 @@ def is_geopackage(head: bytes, _size: int = 0) -> bool:
     return head.startswith(_MAGIC)
 
 
-def read_geopackage(given: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
+def read_geopackage(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """The shapes of one layer, of `layer` or of the only one. Raises InputRefused naming file and layer."""
-    file = Path(given.file)
+    file = Path(layer.file)
     try:
         with closing(connect(file)) as base:
-            return _read(file, base, given.layer, given.where, step, heights)
+            return _read(file, base, layer.layer, layer.where, step, heights)
     except UNREADABLE as error:
         changed = open_changes(file) is not None
         advice = "close it in the program that has it open, so that its last changes are in it"

@@ -37,11 +37,11 @@ def beside(file: Path) -> list[Path]:
     return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
 
 
-def read_shapefile(given: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
+def read_shapefile(layer: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
     write outlines and holes in the wrong directions.
     Raises InputRefused, and BuildFailed without pyshp."""
-    file, where = Path(given.file), given.where
+    file, where = Path(layer.file), layer.where
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
     files = {path.suffix.lower(): path for path in beside(file)}
     attribute = heights.attribute if heights else None

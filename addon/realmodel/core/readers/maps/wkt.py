@@ -40,14 +40,14 @@ def begins_as_wkt_file(head: bytes, _size: int = 0) -> bool:
     return begins_as_wkt(head.removeprefix(BOM).decode("latin-1"))
 
 
-def read_wkt(given: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
+def read_wkt(layer: MapLayer, _step: Step = no_step, heights: Heights | None = None) -> Shapes:
     """The shapes of a file. Raises InputRefused, also for a file of none of the formats of shapes."""
-    file = Path(given.file)
+    file = Path(layer.file)
     text = "" if b"\0" in read_bytes(file)[:_HEAD] else read_text(file)
     if not begins_as_wkt(text):
         what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
         raise InputRefused(what, file=file, advice="export it in one of these formats")
-    if given.where:
+    if layer.where:
         raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
     if heights and heights.attribute is not None:
         what = "well-known text has no attributes, so 'height' has no effect"

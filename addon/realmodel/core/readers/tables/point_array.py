@@ -27,15 +27,15 @@ def begins_as_array(head: bytes, _size: int = 0) -> bool:
 def read_point_array(file: Path, gather: JoinPieces) -> np.ndarray:
     """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
     try:
-        found = np.load(file, mmap_mode="r", allow_pickle=False)
-        if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iuf":
-            what = f"an array of shape {found.shape} of {found.dtype} is not one of points (x, y, z in a row)"
+        array = np.load(file, mmap_mode="r", allow_pickle=False)
+        if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iuf":
+            what = f"an array of shape {array.shape} of {array.dtype} is not one of points (x, y, z in a row)"
             raise InputRefused(what, file=file)
     except _DAMAGED_ARRAY as error:
         raise InputRefused(f"a damaged array: {error}", file=file) from error
 
     def known() -> Iterator[np.ndarray]:
-        for piece in in_pieces(found):
+        for piece in in_pieces(array):
             points = np.array(piece, np.float64)
             if not np.isfinite(points[:, :2]).all():
                 raise InputRefused("a place in plan is not finite", file=file)

@@ -43,7 +43,7 @@ def read_sticks(file: Path, step: Step = no_step) -> list[np.ndarray]:
             points = []
         else:
             points.append(point)
-    found = [np.array(stick) for stick in (*sticks, points) if stick]
-    if not found:
+    with_points = [np.array(stick) for stick in (*sticks, points) if stick]
+    if not with_points:
         raise InputRefused("there are no points in it", file=file)
-    return found
+    return with_points
