@@ -7,7 +7,7 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerPro
 from .bl import changes
 from .bl.objects.stored_arrays import ArraysProperty
 from .bl.project import choices, settings
-from .core.readers.meshes.mesh_file import MESH_FORMATS
+from .core.readers.formats import MESH, labels
 from .core.settings.methods import STRUCTURE
 from .core.settings.schema import READING, SURFACE
 from .props_schema import settings_of
@@ -19,7 +19,7 @@ SOURCES = (
     (
         "MESH_FILE",
         "Mesh File",
-        f"File with the triangles of the surface ({', '.join(known.name for known in MESH_FORMATS)})",
+        f"File with the triangles of the surface ({labels(MESH)})",
     ),
     ("NONE", "No Points", "For the methods that need no points: Constant and Parallel"),
 )

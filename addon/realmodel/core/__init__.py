@@ -13,7 +13,7 @@ from .base.errors import (
 )
 from .base.sheet import Triangulation
 from .cells.blocks import Block, BlockBoundary
-from .exporters.meshes import save_mesh
+from .exporters import save_mesh
 from .exporters.report import Report
 from .fields import Lattice, ScalarField
 from .filling import Strata, fill_with_strata

@@ -16,7 +16,7 @@ from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.named import NamedList, keyword_only, number_of
 from ..base.sheet import Triangulation
 from ..base.work import Cancel, Progress, Work, native_module, run
-from ..exporters.surfaces import save_surfaces
+from ..exporters import SURFACES
 from ..heights import Interpolation
 from ..notebook import ShortRepr
 from ..project.build_options import check_stage
@@ -89,7 +89,7 @@ class SurfaceSet(ShortRepr):
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        save_surfaces(self, path)
+        SURFACES.save(self, path)
 
 
 @keyword_only
