@@ -184,11 +184,11 @@ class ModelData:
 
     @cached_property
     def plan_boxes(self) -> np.ndarray:
-        """(F, 4) float64: the least x and y of each face, and the largest ones."""
-        corners, starts = self.vertices[self.face_vertices, :2], self.face_offsets[:-1]
+        """(4, F) float64: the least x and y of each face, and the largest ones."""
+        corners, starts = self.vertices[self.face_vertices, :2].T, self.face_offsets[:-1]
         if not len(starts):
-            return np.empty((0, 4))
-        return np.hstack([np.minimum.reduceat(corners, starts), np.maximum.reduceat(corners, starts)])
+            return np.empty((4, 0))
+        return np.vstack([end.reduceat(corners, starts, axis=1) for end in (np.minimum, np.maximum)])
 
     @cached_property
     def cell_volumes(self) -> np.ndarray:

@@ -68,8 +68,8 @@ def _merged(found: list[Interval]) -> list[Interval]:
 
 def _faces_at(model: ModelData, x: float, y: float) -> np.ndarray:
     """The faces over and under a position that are no walls: a ray to the right leaves them."""
-    boxes = model.plan_boxes
-    near = np.flatnonzero(((boxes[:, :2] <= (x, y)) & (boxes[:, 2:] >= (x, y))).all(axis=1))
+    west, south, east, north = model.plan_boxes
+    near = np.flatnonzero((west <= x) & (x <= east) & (south <= y) & (y <= north))
     near = near[model.face_surface[near] != _WALL]
     corners, following, size = _outlines(model, near)
     at_edge = np.flatnonzero((corners[:, 1] <= y) != (corners[following, 1] <= y))
