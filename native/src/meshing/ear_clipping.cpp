@@ -80,8 +80,7 @@ Triangles by_region(std::span<const Ring> rings, Progress* progress) {
     const std::vector<std::int32_t> first = first_equal(corners_of(rings));
     std::vector<std::int32_t> corner_of;  // of each vertex
     for (std::size_t i = 0; i < first.size(); ++i) {
-        const auto corner = static_cast<std::int32_t>(i);
-        if (first[i] == corner) corner_of.push_back(corner);
+        if (std::cmp_equal(first[i], i)) corner_of.push_back(first[i]);
     }
     for (auto& triangle : triangles)
         for (std::int32_t& c : triangle)

@@ -157,17 +157,12 @@ RingGraph ring_graph(std::span<const Ring> rings) {
     return graph;
 }
 
-/// Rings in a constrained Delaunay triangulation of their corners. They do not cross; some may
-/// share edges.
-struct ConstrainedRings {
-    RingGraph graph;
-    ConstrainedTriangulation triangulation;
-};
-
+/// Rings in a constrained Delaunay triangulation of their corners, of which it is not yet known
+/// which are inside. They do not cross; some may share edges.
 /// @throws InputError "no_outline", "not_finite", "outline_degenerate" and "outline_crosses" as
 /// triangulate_region does; Cancelled.
-ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress) {
-    ConstrainedRings out{ring_graph(rings), {}};
+RingTriangulation constrained_rings(std::span<const Ring> rings, Progress* progress) {
+    RingTriangulation out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
     try {
         out.triangulation = constrained_delaunay(graph.points, graph.segments, progress);
@@ -209,9 +204,8 @@ std::vector<std::int32_t> winding_numbers(const ConstrainedTriangulation& mesh,
 }
 
 RingTriangulation triangulate_region(std::span<const Ring> rings, Progress* progress) {
-    ConstrainedRings all = constrained_rings(rings, progress);
-    refuse_overlaps(all.graph, all.triangulation.covered);
-    RingTriangulation out{std::move(all.graph), std::move(all.triangulation), {}};
+    RingTriangulation out = constrained_rings(rings, progress);
+    refuse_overlaps(out.graph, out.triangulation.covered);
     const auto& constrained = out.triangulation.constrained;
     out.inside =
         inside_rings(out.triangulation, [&](std::int32_t t, int i) { return constrained[t][i]; });
@@ -377,7 +371,7 @@ std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* pr
     loops.reserve(rings.size());
     for (const RegionRing& ring : rings)
         loops.push_back(ring.corners);
-    const ConstrainedRings all = constrained_rings(loops, progress);
+    const RingTriangulation all = constrained_rings(loops, progress);
     const ConstrainedTriangulation& mesh = all.triangulation;
     const RingsOfEdges edges(all.graph, rings, mesh.covered);
     edges.require_apart();
