@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "base/algorithms.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "exact/orientation.hpp"
@@ -19,13 +19,6 @@
 namespace realmodel::arrangement {
 
 namespace {
-
-double twice_loop_area(const Loop& loop) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < loop.size(); ++i)
-        sum += twice_area(loop[0].at, loop[i].at, loop[i + 1].at);
-    return sum;
-}
 
 /// Loops joined into a ring of corners that ears are cut from.
 class EarClipping {
@@ -460,6 +453,13 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
 
 }  // namespace
 
+double twice_loop_area(const Loop& loop) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i)
+        sum += twice_area(loop[0].at, loop[i].at, loop[i + 1].at);
+    return sum;
+}
+
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
     return exact::orient2d(a.at, b.at, c.at);
 }
@@ -546,8 +546,7 @@ bool goes_there_and_back(const Loop& loop, std::size_t axis, const PlanePosition
 class Merger {
 public:
     Merger(const std::vector<std::array<LoopCorner, 3>>& triangles, const PlanePosition& rounding)
-        : rounding_(rounding), owner_(triangles.size()) {
-        std::iota(owner_.begin(), owner_.end(), 0);
+        : rounding_(rounding), merged_(triangles.size()) {
         for (const auto& t : triangles)
             polygons_.push_back({t.begin(), t.end()});
         for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -564,7 +563,7 @@ public:
             if (uses.size() != 2 || uses[0].forward == uses[1].forward) continue;
             const auto& ends = uses[0].ends;
             if (std::binary_search(slits.begin(), slits.end(), ends)) continue;
-            join(find(uses[0].triangle), find(uses[1].triangle), ends);
+            join(merged_.find(uses[0].triangle), merged_.find(uses[1].triangle), ends);
         }
     }
 
@@ -584,12 +583,6 @@ private:
         bool forward;
         auto operator<=>(const TriangleEdge&) const = default;
     };
-
-    std::int32_t find(std::int32_t i) {
-        while (owner_[index(i)] != i)
-            i = owner_[index(i)] = owner_[index(owner_[index(i)])];
-        return i;
-    }
 
     void join(std::int32_t one, std::int32_t two, const std::array<NodeId, 2>& edge) {
         if (one == two) return;
@@ -620,13 +613,13 @@ private:
                 if (merged[k].node == merged[l].node) return;
             }
         }
-        polygons_[index(one)] = std::move(merged);
-        polygons_[index(two)].clear();
-        owner_[index(two)] = one;
+        polygons_[index(std::min(one, two))] = std::move(merged);
+        polygons_[index(std::max(one, two))].clear();
+        merged_.join(one, two);
     }
 
     PlanePosition rounding_;
-    std::vector<std::int32_t> owner_;
+    DisjointSets merged_;  ///< of triangles; their polygon has the number of the least
     std::vector<Loop> polygons_;
     std::vector<TriangleEdge> edges_;
 };

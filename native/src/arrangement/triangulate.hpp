@@ -17,6 +17,9 @@ struct LoopCorner {
 };
 using Loop = std::vector<LoopCorner>;
 
+/// Twice the area of a loop; positive where it is counter-clockwise.
+double twice_loop_area(const Loop& loop);
+
 /// Which way corners turn: 1 left, -1 right, 0 straight on. By itself it tells that of the places
 /// in the view, exactly; others know better where the corners are than their rounded places say.
 class CornerTurns {

@@ -88,7 +88,7 @@ int PlanePoints::tetrahedron(NodeId a, NodeId b, NodeId c, NodeId d) const {
         return *sign;
     const exact::RationalPoint o = exact_point(a);
     const auto from_a = [&](NodeId node) { return exact::minus(exact_point(node), o); };
-    return sgn(exact::determinant(from_a(b), from_a(c), from_a(d)));
+    return sgn(exact::dot(from_a(b), exact::cross(from_a(c), from_a(d))));
 }
 
 /// A part of a triangle on one side of the plane. Its edges are those of the triangle, or the cut.

@@ -123,18 +123,10 @@ public:
     }
 
 private:
-    using Vector = std::array<Integer, 3>;
-
-    static Vector cross(const Vector& u, const Vector& v) {
-        return {Integer(u[1] * v[2] - u[2] * v[1]), Integer(u[2] * v[0] - u[0] * v[2]),
-                Integer(u[0] * v[1] - u[1] * v[0])};
-    }
-    static Integer dot(const Vector& u, const Vector& v) {
-        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-    }
     /// Where the line through p and q passes through the plane through o with this normal.
     static HomogeneousPoint divided(const HomogeneousPoint& p, const HomogeneousPoint& q,
-                                    const HomogeneousPoint& o, const Vector& normal) {
+                                    const HomogeneousPoint& o,
+                                    const std::array<Integer, 3>& normal) {
         const auto line = minus(q, p);
         const Integer from = dot(normal, minus(p, o)), change = times(dot(normal, line), o);
         HomogeneousPoint point;

@@ -212,7 +212,7 @@ SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePoint
     RationalPoint at = exact(p);
     const mpq_class normal = cross(u, v, axis);
     assert(normal != 0);
-    at[axis] -= determinant(u, v, minus(at, o)) / normal;
+    at[axis] -= dot(cross(u, v), minus(at, o)) / normal;
     return add(std::move(at));
 }
 

@@ -19,14 +19,21 @@ namespace realmodel::exact {
 /// A point of space, or the difference of two, in rational coordinates.
 using RationalPoint = std::array<mpq_class, 3>;
 
-inline RationalPoint minus(const RationalPoint& a, const RationalPoint& b) {
-    return {mpq_class(a[0] - b[0]), mpq_class(a[1] - b[1]), mpq_class(a[2] - b[2])};
-}
+// Vectors in space, of numbers of any kind. What GMP makes of an expression has to become a number
+// before what it refers to is gone.
 
-inline mpq_class determinant(const RationalPoint& u, const RationalPoint& v,
-                             const RationalPoint& w) {
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
+template <class Number>
+std::array<Number, 3> minus(const std::array<Number, 3>& u, const std::array<Number, 3>& v) {
+    return {Number(u[0] - v[0]), Number(u[1] - v[1]), Number(u[2] - v[2])};
+}
+template <class Number>
+Number dot(const std::array<Number, 3>& u, const std::array<Number, 3>& v) {
+    return Number(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
+}
+template <class Number>
+std::array<Number, 3> cross(const std::array<Number, 3>& u, const std::array<Number, 3>& v) {
+    return {Number(u[1] * v[2] - u[2] * v[1]), Number(u[2] * v[0] - u[0] * v[2]),
+            Number(u[0] * v[1] - u[1] * v[0])};
 }
 
 /// The component of a cross product along an axis.

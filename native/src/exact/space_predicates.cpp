@@ -92,9 +92,7 @@ std::optional<int> orient3d_by_intervals(const SpacePoints& points,
             from_first[i][k] = difference(interval(points, of[i + 1], k), first);
     }
     const auto& [u, v, w] = from_first;
-    return (w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-            w[2] * (u[0] * v[1] - u[1] * v[0]))
-        .sign();
+    return dot(w, cross(u, v)).sign();
 }
 
 std::optional<int> orient2d_by_intervals(const SpacePoints& points, std::size_t axis,
@@ -127,8 +125,7 @@ std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
         sign *= sign_of(at[i + 1].weight) * sign_of(at[0].weight);
     }
     const auto& [u, v, w] = from_first;
-    const Integer det = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-                        w[2] * (u[0] * v[1] - u[1] * v[0]);
+    const Integer det = dot(w, cross(u, v));
     if (!is_known(det)) return std::nullopt;
     return sign * sign_of(det);
 }

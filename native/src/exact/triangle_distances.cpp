@@ -9,27 +9,11 @@
 #include "exact/arithmetic.hpp"
 #include "exact/double_double_interval.hpp"
 #include "exact/orientation.hpp"
+#include "exact/space_points.hpp"
 
 namespace realmodel::exact {
 
 namespace {
-
-template <class Number>
-using Vector = std::array<Number, 3>;
-
-template <class Number>
-Vector<Number> minus(const Vector<Number>& u, const Vector<Number>& v) {
-    return {Number(u[0] - v[0]), Number(u[1] - v[1]), Number(u[2] - v[2])};
-}
-template <class Number>
-Number dot(const Vector<Number>& u, const Vector<Number>& v) {
-    return Number(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
-}
-template <class Number>
-Vector<Number> cross(const Vector<Number>& u, const Vector<Number>& v) {
-    return {Number(u[1] * v[2] - u[2] * v[1]), Number(u[2] * v[0] - u[0] * v[2]),
-            Number(u[0] * v[1] - u[1] * v[0])};
-}
 
 /// A point of a triangle that is nearest to the origin, but for rounding (C. Ericson, "Real-time
 /// collision detection", 2005, section 5.1.5). It is a mean of the corners in any case.
@@ -165,16 +149,16 @@ private:
             return sgn(x);
         }
     }
-    static NearestPoint<Number> at_corner(unsigned bit, const Vector<Number>& corner) {
+    static NearestPoint<Number> at_corner(unsigned bit, const std::array<Number, 3>& corner) {
         return {bit, {dot(corner, corner), Number(1)}};
     }
-    static NearestPoint<Number> on_edge(unsigned bits, const Vector<Number>& end,
-                                        const Vector<Number>& along) {
+    static NearestPoint<Number> on_edge(unsigned bits, const std::array<Number, 3>& end,
+                                        const std::array<Number, 3>& along) {
         const Number size = dot(along, along), share = dot(end, along);
         return {bits, {Number(dot(end, end) * size - share * share), size}};
     }
 
-    std::vector<std::array<Vector<Number>, 3>> corners_;
+    std::vector<std::array<std::array<Number, 3>, 3>> corners_;
     bool is_known_ = true;
 };
 

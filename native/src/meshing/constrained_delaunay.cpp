@@ -210,12 +210,15 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
 }
 
 ConstrainedTriangulation constrained_delaunay(std::span<const PlanPoint> points,
-                                              std::span<const Segment> segments) {
-    const Check never = [](double) {};
+                                              std::span<const Segment> segments,
+                                              const Progress* progress) {
+    const Check check = stopped_by(progress);
     Cdt cdt;
-    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, points, never);
-    insert_segments(cdt, vertices, segments, never);
-    return numbered_triangles(cdt);
+    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, points, check);
+    insert_segments(cdt, vertices, segments, check);
+    ConstrainedTriangulation out = numbered_triangles(cdt);
+    out.covered = covered_edges(cdt, vertices, segments);
+    return out;
 }
 
 }  // namespace realmodel::meshing

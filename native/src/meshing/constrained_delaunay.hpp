@@ -66,12 +66,7 @@ void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
                      std::span<const Segment> segments, const Check& check,
                      std::vector<std::size_t>* refused = nullptr);
 
-/// The edges that each segment consists of once all are inserted, sorted by their ends (lower
-/// number first), then by segment: an edge that comes twice belongs to two segments.
-struct CoveredEdge {
-    std::int32_t from, to, segment;
-    auto operator<=>(const CoveredEdge&) const = default;
-};
+/// ConstrainedTriangulation::covered, once all segments are inserted.
 std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
                                        std::span<const Segment> segments);
 

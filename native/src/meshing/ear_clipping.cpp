@@ -13,8 +13,6 @@
 #include "meshing/check.hpp"
 #include "meshing/flat_mesh.hpp"
 #include "meshing/plan_predicates.hpp"
-#include "meshing/ring_graph.hpp"
-#include "realmodel/meshing/rings.hpp"
 
 namespace realmodel::meshing {
 
@@ -39,9 +37,7 @@ std::optional<Triangles> by_ears(std::span<const Ring> rings, Progress* progress
         arrangement::Loop& loop = loops.emplace_back();
         loop.reserve(ring.size());
         const std::size_t begin = numbers.size();
-        double area = 0;
         for (const PlanPoint& p : ring) {
-            area += loop.empty() ? 0 : twice_area(ring[0], loop.back().at, p);
             const std::int32_t number = corner++;
             if (!loop.empty() && loop.back().at == p) continue;
             loop.push_back({number, p});
@@ -51,6 +47,7 @@ std::optional<Triangles> by_ears(std::span<const Ring> rings, Progress* progress
             loop.pop_back();
             numbers.pop_back();
         }
+        const double area = arrangement::twice_loop_area(loop);
         if (loops.size() == 1 ? area < 0 : area > 0) {
             std::ranges::reverse(loop);
             std::reverse(numbers.begin() + static_cast<std::ptrdiff_t>(begin), numbers.end());
@@ -79,20 +76,15 @@ std::optional<Triangles> by_ears(std::span<const Ring> rings, Progress* progress
 
 /// The same by constrained Delaunay triangulation, corners named by their first appearance.
 Triangles by_region(std::span<const Ring> rings, Progress* progress) {
-    const std::vector<PlanPoint> corners = corners_of(rings);
-    const RingTriangulation region = triangulate_region(rings, progress);
-    const std::vector<std::int32_t> first = first_equal(corners);
-    std::vector<std::int32_t> corner_of;  // of each point of the region
+    Triangles triangles = triangulate_rings(rings, progress).triangles;
+    const std::vector<std::int32_t> first = first_equal(corners_of(rings));
+    std::vector<std::int32_t> corner_of;  // of each vertex
     for (std::size_t i = 0; i < first.size(); ++i) {
-        const auto corner = static_cast<std::int32_t>(i);
-        if (first[i] == corner) corner_of.push_back(corner);
+        if (std::cmp_equal(first[i], i)) corner_of.push_back(first[i]);
     }
-    Triangles triangles;
-    for (std::size_t t = 0; t < region.inside.size(); ++t) {
-        if (!region.inside[t]) continue;
-        const auto& [a, b, c] = region.triangulation.triangles[t];
-        triangles.push_back({corner_of[a], corner_of[b], corner_of[c]});
-    }
+    for (auto& triangle : triangles)
+        for (std::int32_t& c : triangle)
+            c = corner_of[c];
     return triangles;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "meshing/plan_predicates.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <numeric>
 
+#include "base/algorithms.hpp"
 #include "exact/cgal_kernel.hpp"
 
 namespace realmodel::meshing {
@@ -16,12 +19,6 @@ Point exact_point(const PlanPoint& p) {
 }
 
 }  // namespace
-
-int orient2d_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
-    // The commonest cases by far, that need no arithmetic: p is an end, or all lie along an axis.
-    if ((a[0] == p[0] || b[1] == p[1]) && (a[1] == p[1] || b[0] == p[0])) return 0;
-    return static_cast<int>(CGAL::orientation(exact_point(a), exact_point(b), exact_point(p)));
-}
 
 int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                       const PlanPoint& p) {
@@ -40,6 +37,18 @@ PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint
     const double across = cross(u, v);
     if (across == 0) return c;  // parallel up to rounding: any of the ends tells where
     return moved(a, cross(minus(c, a), v) / across, u);
+}
+
+std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places) {
+    std::vector<std::int32_t> order(places.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, {}, [&](std::int32_t i) { return std::pair(places[i], i); });
+    std::vector<std::int32_t> first(places.size());
+    for (const auto equal : groups_of(order, [&](std::int32_t i) { return places[i]; })) {
+        for (const std::int32_t i : equal)
+            first[i] = equal[0];
+    }
+    return first;
 }
 
 std::string text_of(const PlanPoint& place) {

@@ -3,38 +3,25 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/vectors.hpp"
+#include "exact/orientation.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::meshing {
 
-// Half a unit in the last place of 1, and what kUnderflow may add to a determinant.
-inline constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
-inline constexpr double kUnderflow = 1e-290;
+using exact::orient2d;
 
-int orient2d_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p);
 int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                       const PlanPoint& p);
 
-/// Side of the line from a to b on which p lies: 1 left, -1 right, 0 on it. Exact; the error bound
-/// that spares most calls the exact arithmetic is that of Shewchuk 1997, "Adaptive precision
-/// floating-point arithmetic and fast robust geometric predicates", section 4.
-[[gnu::always_inline]] inline int orient2d(const PlanPoint& a, const PlanPoint& b,
-                                           const PlanPoint& p) {
-    const double left = (a[0] - p[0]) * (b[1] - p[1]), right = (a[1] - p[1]) * (b[0] - p[0]);
-    const double det = left - right;
-    const double bound =
-        (3 + 16 * kHalfUlp) * kHalfUlp * (std::abs(left) + std::abs(right)) + kUnderflow;
-    if (det > bound) return 1;
-    if (-det > bound) return -1;
-    return orient2d_exactly(a, b, p);
-}
-
 /// 1 where p lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
-/// Exact, with the error bound of the same paper.
+/// Exact; the error bound that spares most calls the exact arithmetic is that of Shewchuk 1997,
+/// "Adaptive precision floating-point arithmetic and fast robust geometric predicates", section 4.
 [[gnu::always_inline]] inline int in_circle(const PlanPoint& a, const PlanPoint& b,
                                             const PlanPoint& c, const PlanPoint& p) {
     const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1],
@@ -46,7 +33,8 @@ int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c
     const double permanent = (std::abs(bxcy) + std::abs(cxby)) * a2 +
                              (std::abs(cxay) + std::abs(axcy)) * b2 +
                              (std::abs(axby) + std::abs(bxay)) * c2;
-    const double bound = (10 + 96 * kHalfUlp) * kHalfUlp * permanent + kUnderflow;
+    const double bound =
+        (10 + 96 * exact::kUnitRoundoff) * exact::kUnitRoundoff * permanent + exact::kTermUnderflow;
     if (det > bound) return 1;
     if (-det > bound) return -1;
     return in_circle_exactly(a, b, c, p);
@@ -62,6 +50,9 @@ PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint
 inline PlanPoint middle(const PlanPoint& a, const PlanPoint& b) {
     return moved(a, 0.5, minus(b, a));
 }
+
+/// The first of the places that is equal to each.
+std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places);
 
 /// "(x, y)" with as many digits as tell it from its neighbors on a map.
 std::string text_of(const PlanPoint& place);

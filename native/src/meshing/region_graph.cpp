@@ -10,8 +10,9 @@
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/edge_cutting.hpp"
 #include "meshing/plan_predicates.hpp"
-#include "meshing/ring_graph.hpp"
+#include "meshing/winding.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/meshing/rings.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::meshing {

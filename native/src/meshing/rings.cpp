@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <string>
 
 #include "base/algorithms.hpp"
-#include "meshing/constrained_delaunay.hpp"
+#include "base/index.hpp"
 #include "meshing/plan_predicates.hpp"
-#include "meshing/ring_graph.hpp"
+#include "meshing/winding.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/region_check.hpp"
 
@@ -80,11 +80,14 @@ std::vector<std::int32_t> number_places(const std::vector<PlanPoint>& corners,
     return number;
 }
 
+std::array<std::int32_t, 2> ends_of(const CoveredEdge& edge) {
+    return {edge.from, edge.to};
+}
+
 /// Calls visit(one, next) for segments that run along the same edge.
 template <class Visit>
 void for_overlaps(const std::vector<CoveredEdge>& edges, const Visit& visit) {
-    const auto ends = [](const CoveredEdge& edge) { return std::array{edge.from, edge.to}; };
-    for (const auto along : groups_of(edges, ends)) {
+    for (const auto along : groups_of(edges, ends_of)) {
         for (std::size_t i = 1; i < along.size(); ++i)
             visit(along[i - 1], along[i]);
     }
@@ -95,13 +98,6 @@ using Overlap = std::array<const CoveredEdge*, 2>;
 
 void keep_first(Overlap& overlap, const CoveredEdge& a, const CoveredEdge& b) {
     if (overlap[1] == nullptr || b.segment < overlap[1]->segment) overlap = {&a, &b};
-}
-
-void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
-    Overlap first{};
-    for_overlaps(edges,
-                 [&](const CoveredEdge& a, const CoveredEdge& b) { keep_first(first, a, b); });
-    if (first[1] != nullptr) refuse_overlap(graph, *first[0], *first[1]);
 }
 
 /// Refuses two edges of the graph, given by their segments.
@@ -119,6 +115,20 @@ void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edg
                          edge(second_ring, second_corner) + " at " + text_of(place),
                      -1, {first_ring, first_corner, second_ring, second_corner},
                      std::array{place[0], place[1], 0.0});
+}
+
+/// Refuses two segments that run along one edge.
+[[noreturn]] void refuse_overlap(const RingGraph& graph, const CoveredEdge& first,
+                                 const CoveredEdge& second) {
+    refuse_edges(graph, first.segment, second.segment, "outline_overlaps", "runs along",
+                 middle(graph.points[first.from], graph.points[first.to]));
+}
+
+void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
+    Overlap first{};
+    for_overlaps(edges,
+                 [&](const CoveredEdge& a, const CoveredEdge& b) { keep_first(first, a, b); });
+    if (first[1] != nullptr) refuse_overlap(graph, *first[0], *first[1]);
 }
 
 /// Rings as points and segments.
@@ -147,55 +157,63 @@ RingGraph ring_graph(std::span<const Ring> rings) {
     return graph;
 }
 
-}  // namespace
-
-std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places) {
-    std::vector<std::int32_t> order(places.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::sort(order, {}, [&](std::int32_t i) { return std::pair(places[i], i); });
-    std::vector<std::int32_t> first(places.size());
-    for (const auto equal : groups_of(order, [&](std::int32_t i) { return places[i]; })) {
-        for (const std::int32_t i : equal)
-            first[i] = equal[0];
-    }
-    return first;
-}
-
-void refuse_overlap(const RingGraph& graph, const CoveredEdge& first, const CoveredEdge& second) {
-    refuse_edges(graph, first.segment, second.segment, "outline_overlaps", "runs along",
-                 middle(graph.points[first.from], graph.points[first.to]));
-}
-
-ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress) {
-    ConstrainedRings out{ring_graph(rings), {}, {}};
+/// Rings in a constrained Delaunay triangulation of their corners, of which it is not yet known
+/// which are inside. They do not cross; some may share edges.
+/// @throws InputError "no_outline", "not_finite", "outline_degenerate" and "outline_crosses" as
+/// triangulate_region does; Cancelled.
+RingTriangulation constrained_rings(std::span<const Ring> rings, Progress* progress) {
+    RingTriangulation out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
-    const Check check = stopped_by(progress);
-    Cdt cdt;
-    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, graph.points, check);
     try {
-        insert_segments(cdt, vertices, graph.segments, check);
+        out.triangulation = constrained_delaunay(graph.points, graph.segments, progress);
     } catch (const InputError& error) {
         if (error.kind != "crossing") throw;
         refuse_edges(graph, error.items[0], error.items[1], "outline_crosses", "crosses",
                      {(*error.place)[0], (*error.place)[1]});
     }
-    out.edges = covered_edges(cdt, vertices, graph.segments);
-    out.triangulation = numbered_triangles(cdt);
     return out;
 }
 
+}  // namespace
+
+std::vector<std::int32_t> winding_numbers(const ConstrainedTriangulation& mesh,
+                                          std::span<const PlanPoint> points,
+                                          std::span<const std::array<std::int32_t, 2>> segments,
+                                          std::span<const std::int32_t> weights) {
+    using Ends = std::array<std::int32_t, 2>;
+    // of edges: how much more often the left than the right is wound around, seen from the first
+    // end
+    std::vector<std::pair<Ends, std::int32_t>> rises;
+    for (const auto along : groups_of(mesh.covered, ends_of)) {
+        std::int32_t rise = 0;
+        for (const auto& [from, to, segment] : along) {
+            const auto [start, end] = segments[segment];
+            // points of a line are in the order of their coordinates, or against it
+            const bool is_ahead = (points[start] < points[end]) == (points[from] < points[to]);
+            rise += is_ahead ? weights[segment] : -weights[segment];
+        }
+        rises.emplace_back(ends_of(along[0]), rise);
+    }
+    return spread_inward<std::int32_t>(mesh, 0, [&](std::int32_t t, int i, std::int32_t before) {
+        if (!mesh.constrained[t][i]) return before;
+        const std::int32_t from = mesh.triangles[t][i], to = mesh.triangles[t][(i + 1) % 3];
+        const auto edge = std::ranges::lower_bound(rises, unordered(from, to), {},
+                                                   &std::pair<Ends, std::int32_t>::first);
+        return from < to ? before - edge->second : before + edge->second;
+    });
+}
+
 RingTriangulation triangulate_region(std::span<const Ring> rings, Progress* progress) {
-    ConstrainedRings all = constrained_rings(rings, progress);
-    refuse_overlaps(all.graph, all.edges);
-    RingTriangulation out{std::move(all.graph), std::move(all.triangulation), {}};
+    RingTriangulation out = constrained_rings(rings, progress);
+    refuse_overlaps(out.graph, out.triangulation.covered);
     const auto& constrained = out.triangulation.constrained;
     out.inside =
         inside_rings(out.triangulation, [&](std::int32_t t, int i) { return constrained[t][i]; });
     return out;
 }
 
-PlanarMesh triangulate_rings(std::span<const Ring> rings) {
-    RingTriangulation region = triangulate_region(rings);
+PlanarMesh triangulate_rings(std::span<const Ring> rings, Progress* progress) {
+    RingTriangulation region = triangulate_region(rings, progress);
     PlanarMesh mesh;
     mesh.vertices = std::move(region.graph.points);
     for (std::size_t t = 0; t < region.inside.size(); ++t) {
@@ -212,8 +230,8 @@ constexpr std::int32_t kNone = -1;
 class RingsOfEdges {
 public:
     RingsOfEdges(const RingGraph& graph, std::span<const RegionRing> rings,
-                 std::vector<CoveredEdge> edges)
-        : graph_(graph), edges_(std::move(edges)) {
+                 const std::vector<CoveredEdge>& edges)
+        : graph_(graph), edges_(edges) {
         for_overlaps(edges_, [&](const CoveredEdge& a, const CoveredEdge& b) {
             shared_ = true;
             if (rings[ring_of(a)].polygon == rings[ring_of(b)].polygon) keep_first(same_, a, b);
@@ -245,7 +263,7 @@ private:
     }
 
     const RingGraph& graph_;
-    std::vector<CoveredEdge> edges_;
+    const std::vector<CoveredEdge>& edges_;
     bool shared_ = false;
     Overlap same_{};  ///< of one polygon
 };
@@ -353,9 +371,9 @@ std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* pr
     loops.reserve(rings.size());
     for (const RegionRing& ring : rings)
         loops.push_back(ring.corners);
-    const ConstrainedRings all = constrained_rings(loops, progress);
+    const RingTriangulation all = constrained_rings(loops, progress);
     const ConstrainedTriangulation& mesh = all.triangulation;
-    const RingsOfEdges edges(all.graph, rings, all.edges);
+    const RingsOfEdges edges(all.graph, rings, mesh.covered);
     edges.require_apart();
     require_holes_inside(rings, Nesting(mesh, edges, rings.size()));
     const std::vector<bool> inside = inside_rings(mesh, [&](std::int32_t t, int i) {

@@ -11,9 +11,9 @@
 #include "base/key_table.hpp"
 #include "cutting/nearest_side.hpp"
 #include "exact/orientation.hpp"
+#include "meshing/winding.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::structures {
 
@@ -79,39 +79,18 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
     } catch (const InputError&) {
         return std::nullopt;  // edges that cross, or points that are equal
     }
-    std::map<std::array<std::int32_t, 2>, std::int32_t> rises;  // across edges, to their left
-    for (const auto& [from, to] : edges) {
-        ++rises[{from, to}];
-        --rises[{to, from}];
-    }
-    std::vector<std::int32_t> depth(mesh.triangles.size(), -1), open;
-    std::size_t passed = 0;
-    const auto reach = [&](std::size_t t, std::int32_t value) {
-        if (depth[t] == value) return true;
-        if (depth[t] >= 0 || value < 0 || value > 1) return false;
-        depth[t] = value;
-        open.push_back(static_cast<std::int32_t>(t));
-        return true;
-    };
-    for (std::size_t t = 0; t < depth.size(); ++t) {
-        if (std::ranges::find(mesh.neighbors[t], -1) != mesh.neighbors[t].end() && !reach(t, 0))
-            return std::nullopt;
-    }
-    while (!open.empty()) {
-        const std::size_t t = index(open.back());
-        open.pop_back();
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t next = mesh.neighbors[t][i];
-            const auto across = rises.find({mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]});
-            if (across != rises.end()) ++passed;
-            if (next < 0) continue;
-            const std::int32_t rise = across == rises.end() ? 0 : across->second;
-            if (!reach(index(next), depth[t] - rise)) return std::nullopt;
-        }
-    }
     // an edge through another point is in two parts, and gapes there
-    if (passed != rises.size()) return std::nullopt;
-    assert(std::ranges::find(depth, -1) == depth.end());
+    if (mesh.covered.size() != edges.size()) return std::nullopt;
+    std::vector<std::int32_t> ends(points.size());  // of edges, less those that begin there
+    for (const auto& [from, to] : edges) {
+        --ends[index(from)];
+        ++ends[index(to)];
+    }
+    if (std::ranges::any_of(ends, [](std::int32_t n) { return n != 0; })) return std::nullopt;
+    const std::vector<std::int32_t> once(edges.size(), 1);
+    const auto depth = meshing::winding_numbers(mesh, points, edges, once);
+    if (std::ranges::any_of(depth, [](std::int32_t n) { return n < 0 || n > 1; }))
+        return std::nullopt;
     std::vector<std::array<std::int32_t, 3>> outer;
     for (std::size_t t = 0; t < depth.size(); ++t) {
         if (depth[t] == 0) outer.push_back(mesh.triangles[t]);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 #include <set>
 
+#include "meshing/winding.hpp"
 #include "plan_mesh_checks.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
@@ -59,6 +61,28 @@ TEST(ConstrainedDelaunay, SegmentsMayTouchAndOverlap) {
     expect_consistent(mesh);
     EXPECT_EQ(constrained_edges(mesh),
               (std::set<std::pair<int, int>>{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {2, 5}}));
+}
+
+TEST(ConstrainedDelaunay, TellsWhichEdgesASegmentHas) {
+    const std::vector<PlanPoint> points{{4, 0}, {2, 0}, {0, 0}, {2, 3}};
+    const auto mesh = constrained_delaunay(points, Segments{{0, 2}, {1, 2}});
+    EXPECT_EQ(mesh.covered, (std::vector<CoveredEdge>{{0, 1, 0}, {1, 2, 0}, {1, 2, 1}}));
+}
+
+TEST(WindingNumbers, ChainsCountByTheirWeights) {
+    // a square within a square, one side of which passes through a point, and around both a frame
+    const std::vector<PlanPoint> points{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}, {0, 0}, {4, 0}, {4, 4},
+                                        {0, 4},   {2, 0},  {1, 1}, {1, 3},  {3, 3}, {3, 1}};
+    const Segments segments{{4, 5}, {5, 6}, {6, 7}, {7, 4}, {9, 10}, {10, 11}, {11, 12}, {12, 9}};
+    const std::vector<std::int32_t> weights{2, 2, 2, 2, 3, 3, 3, 3};
+    const auto mesh = constrained_delaunay(points, segments);
+    const auto winding = winding_numbers(mesh, points, segments, weights);
+    std::map<std::int32_t, double> areas;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        areas[winding[t]] += 0.5 * twice_area(points[a], points[b], points[c]);
+    }
+    EXPECT_EQ(areas, (std::map<std::int32_t, double>{{0, 324 - 16}, {2, 16 - 4}, {2 - 3, 4}}));
 }
 
 TEST(ConstrainedDelaunay, RefusesACrossingWithItsPlace) {

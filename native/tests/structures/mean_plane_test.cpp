@@ -71,5 +71,21 @@ TEST(MeanPlane, ABorderThatCrossesItselfHasNoContinuation) {
     EXPECT_FALSE(continued_in_mean_plane(square(0), crossing, std::vector<double>{10}));
 }
 
+TEST(MeanPlane, ABorderThatGapesHasNoContinuation) {
+    const Border open{{0, 1}, {1, 2}, {2, 3}};
+    EXPECT_FALSE(continued_in_mean_plane(square(0), open, std::vector<double>{10}));
+    CutterSurface passed = square(0);  // a side through a vertex of another part
+    passed.vertices.insert(passed.vertices.end(), {{0.5, 0, 0}, {0.4, -1, 0}, {0.6, -1, 0}});
+    passed.triangles.push_back({5, 6, 4});
+    Border through = kAround;
+    through.insert(through.end(), {{5, 6}, {6, 4}, {4, 5}});
+    EXPECT_FALSE(continued_in_mean_plane(passed, through, std::vector<double>{10}));
+}
+
+TEST(MeanPlane, ABorderTheWrongWayHasNoContinuation) {
+    const Border backward{{1, 0}, {2, 1}, {3, 2}, {0, 3}};
+    EXPECT_FALSE(continued_in_mean_plane(square(0), backward, std::vector<double>{10}));
+}
+
 }  // namespace
 }  // namespace realmodel::structures

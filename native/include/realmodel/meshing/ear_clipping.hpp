@@ -8,10 +8,6 @@
 
 #include "realmodel/meshing/triangulation.hpp"
 
-namespace realmodel {
-class Progress;
-}
-
 namespace realmodel::meshing {
 
 /// Divides a polygon, an outline and holes in it, into triangles of its corners, and swaps edges

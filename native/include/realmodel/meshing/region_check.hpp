@@ -7,10 +7,6 @@
 
 #include "realmodel/meshing/triangulation.hpp"
 
-namespace realmodel {
-class Progress;
-}
-
 namespace realmodel::meshing {
 
 /// A ring of a region, and what it is said to be.

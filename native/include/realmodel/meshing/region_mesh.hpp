@@ -8,10 +8,6 @@
 
 #include "realmodel/meshing/triangulation.hpp"
 
-namespace realmodel {
-class Progress;
-}
-
 namespace realmodel::meshing {
 
 enum class Mesher : std::uint8_t {

@@ -8,10 +8,6 @@
 
 #include "realmodel/meshing/triangulation.hpp"
 
-namespace realmodel {
-class Progress;
-}
-
 namespace realmodel::meshing {
 
 /// The rings of a region as points and straight segments between them: corners that repeat one

@@ -2,9 +2,14 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+namespace realmodel {
+class Progress;
+}
 
 namespace realmodel::meshing {
 
@@ -21,6 +26,12 @@ struct PlanarMesh {
     std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
+/// An edge of a triangulation, the lesser end first, that a segment runs along.
+struct CoveredEdge {
+    std::int32_t from, to, segment;
+    auto operator<=>(const CoveredEdge&) const = default;
+};
+
 /// A constrained Delaunay triangulation of given points; edge i of a triangle goes from its corner
 /// i to its corner (i + 1) % 3.
 struct ConstrainedTriangulation {
@@ -29,6 +40,8 @@ struct ConstrainedTriangulation {
     std::vector<std::array<std::int32_t, 3>>
         neighbors;                                 ///< triangle across edge i, -1 outside the hull
     std::vector<std::array<bool, 3>> constrained;  ///< edge i lies on a segment
+    /// The edges that each segment consists of, sorted: one that comes twice belongs to two.
+    std::vector<CoveredEdge> covered;
 };
 
 /// Triangulates the convex hull of `points` so that every segment is a chain of edges, and every
@@ -40,13 +53,15 @@ struct ConstrainedTriangulation {
 /// one line. The order of the result depends on the numbers of the points alone.
 ///
 /// @throws InputError of kind "crossing" (items: the two segments; place), "repeated_point" (items:
-/// the two points), "not_finite" (items: the point), "bad_index" (items: the segment).
-ConstrainedTriangulation constrained_delaunay(
-    std::span<const PlanPoint> points, std::span<const std::array<std::int32_t, 2>> segments);
+/// the two points), "not_finite" (items: the point), "bad_index" (items: the segment); Cancelled.
+ConstrainedTriangulation constrained_delaunay(std::span<const PlanPoint> points,
+                                              std::span<const std::array<std::int32_t, 2>> segments,
+                                              const Progress* progress = nullptr);
 
 /// Triangulates what lies inside an odd number of rings (outlines, holes, islands in holes alike)
 /// without adding a vertex. Vertices: the distinct corners in order of appearance. Rings may touch
-/// in points, themselves too. @throws InputError as triangulate_region does (see rings.hpp).
-PlanarMesh triangulate_rings(std::span<const Ring> rings);
+/// in points, themselves too. @throws InputError as triangulate_region does (see rings.hpp);
+/// Cancelled.
+PlanarMesh triangulate_rings(std::span<const Ring> rings, Progress* progress = nullptr);
 
 }  // namespace realmodel::meshing

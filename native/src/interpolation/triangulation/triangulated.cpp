@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/interpolation/triangulated.hpp"
 
-#include "exact/cgal_kernel.hpp"
-// CGAL
-#include <CGAL/Delaunay_triangulation_2.h>
-#include <CGAL/Spatial_sort_traits_adapter_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-#include <CGAL/property_map.h>
-#include <CGAL/spatial_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,6 +15,7 @@
 #include "base/vectors.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
+#include "meshing/constrained_delaunay.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/convex_hull.hpp"
@@ -60,10 +52,7 @@ private:
 /// of their points. Several threads may ask at once.
 class PointTriangulation {
 public:
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-    using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
-    using Delaunay =
-        CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
+    using Delaunay = meshing::Cdt;
     using Face = Delaunay::Face_handle;
 
     PointTriangulation(const DataPoints& data, Progress* progress);
@@ -97,39 +86,25 @@ private:
 };
 
 PointTriangulation::PointTriangulation(const DataPoints& data, Progress* progress)
-    : data_(data), tree_(data.local), vertices_(data.local.size()) {
-    std::vector<Kernel::Point_2> points;
-    for (const auto& [x, y] : data.local)
-        points.emplace_back(x, y);
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    using PointOf = CGAL::Pointer_property_map<Kernel::Point_2>::const_type;
-    CGAL::spatial_sort(order.begin(), order.end(),
-                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PointOf>(points.data()));
-    Face last;
-    std::size_t inserted = 0;
-    for (const std::size_t point : order) {
-        if (++inserted % 1024 == 0 && progress != nullptr) progress->check();
-        const Delaunay::Vertex_handle vertex = delaunay_.insert(points[point], last);
-        vertex->info() = static_cast<std::int32_t>(point);
-        vertices_[point] = vertex;
-        last = vertex->face();
-    }
+    : data_(data),
+      tree_(data.local),
+      vertices_(meshing::insert_points(delaunay_, data.local, meshing::stopped_by(progress),
+                                       meshing::Repeated::kJoin)) {
     if (delaunay_.dimension() == 2) {
         auto face = delaunay_.incident_faces(delaunay_.infinite_vertex());
         const auto first = face;
         do {
             const int i = face->index(delaunay_.infinite_vertex());
-            add_border(face->vertex(Delaunay::cw(i))->info(),
-                       face->vertex(Delaunay::ccw(i))->info());
+            add_border(face->vertex(Delaunay::cw(i))->number,
+                       face->vertex(Delaunay::ccw(i))->number);
         } while (++face != first);
     } else if (delaunay_.dimension() == 1) {
         for (auto edge = delaunay_.finite_edges_begin(); edge != delaunay_.finite_edges_end();
              ++edge) {
-            add_border(edge->first->vertex(0)->info(), edge->first->vertex(1)->info());
+            add_border(edge->first->vertex(0)->number, edge->first->vertex(1)->number);
         }
     } else {
-        const std::int32_t only = delaunay_.finite_vertices_begin()->info();
+        const std::int32_t only = delaunay_.finite_vertices_begin()->number;
         add_border(only, only);
     }
 }
@@ -144,7 +119,7 @@ PointTriangulation::Face PointTriangulation::near(const Position& position,
 std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
     std::array<std::int32_t, 3> out{};
     for (int k = 0; k < 3; ++k)
-        out[k] = face->vertex(k)->info();
+        out[k] = face->vertex(k)->number;
     std::rotate(out.begin(), std::min_element(out.begin(), out.end()), out.end());
     return out;
 }
@@ -298,7 +273,7 @@ bool PartCheck::has_all_in_circle(const Position& p, const Position& a, const Po
 using Face = PointTriangulation::Face;
 using Delaunay = PointTriangulation::Delaunay;
 using Edge = Delaunay::Edge;
-using Kernel = PointTriangulation::Kernel;
+using meshing::Kernel;
 using Point = Kernel::Point_2;
 
 // Of the distances to the neighbors: where their weighted mean misses the node by more, the areas
@@ -314,7 +289,7 @@ struct ValueSource {
 
     const Delaunay& delaunay() const { return triangulation.delaunay(); }
     std::int32_t number(const Edge& edge, int turned) const {
-        return edge.first->vertex((edge.second + turned) % 3)->info();
+        return edge.first->vertex((edge.second + turned) % 3)->number;
     }
     bool circle_suffices(const Position& p, std::int32_t a, std::int32_t b) const {
         return check == nullptr || check->has_all_in_circle(p, data.local[a], data.local[b]);
@@ -341,7 +316,7 @@ NodeLocation place_of(const Delaunay& delaunay, Delaunay::Locate_type kind, Face
     if (kind == Delaunay::FACE) return place;
     place.is_on_edge = true;
     place.other = face->neighbor(at);
-    const auto number = [](Face f, int i) { return f->vertex(i)->info(); };
+    const auto number = [](Face f, int i) { return f->vertex(i)->number; };
     place.from = std::min(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
     place.to = std::max(number(face, Delaunay::cw(at)), number(face, Delaunay::ccw(at)));
     place.is_on_hull = delaunay.is_infinite(face) || delaunay.is_infinite(place.other);
@@ -402,7 +377,7 @@ PartValues on_triangulation(std::span<const std::array<double, 3>> points,
                 face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
             }
             if (kind == Delaunay::VERTEX) {
-                out.z[i] = data.values[face->vertex(at)->info()];
+                out.z[i] = data.values[face->vertex(at)->number];
             } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
                 const NodeLocation place = place_of(triangulation.delaunay(), kind, face, at);
                 const PartValue here = value(source, node, place);
@@ -481,7 +456,7 @@ bool add_weights(const ValueSource& source, const Point& node, std::vector<Edge>
             last = next;
         }
         area += area_of(first, last, center(before->point(), current->point(), node));
-        if (area > 0) weights.emplace_back(current->info(), area);
+        if (area > 0) weights.emplace_back(current->number, area);
         before = current;
     }
     return true;

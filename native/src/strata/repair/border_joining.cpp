@@ -29,44 +29,36 @@ PlanEdge edge_between(const PlanPosition& a, const PlanPosition& b) {
     return a < b ? PlanEdge{a, b} : PlanEdge{b, a};
 }
 
-/// One mesh of the input, of a surface (three columns) or a region (two), with snapped positions.
-struct Mesh {
-    std::span<const double> vertices;
-    std::span<const std::int32_t> triangles;
-    std::size_t columns;
-    const PlanSnapping* snapping;
+/// A mesh with snapped positions.
+struct SnappedMesh {
+    PlanMesh mesh;
+    const PlanSnapping& snapping;
 
-    std::size_t size() const { return triangles.size() / 3; }
     PlanPosition position(std::int32_t v) const {
-        const double* row = &vertices[static_cast<std::size_t>(v) * columns];
-        return {snapping->x(row[0]), snapping->y(row[1])};
+        const auto [x, y] = mesh.position(index(v));
+        return {snapping.x(x), snapping.y(y)};
     }
     /// The corners' numbers; none where they are refused later or the triangle has no area.
     std::optional<std::array<std::int32_t, 3>> corners(std::size_t t) const {
-        const std::array<std::int32_t, 3> v{triangles[3 * t], triangles[3 * t + 1],
-                                            triangles[3 * t + 2]};
-        std::array<PlanPosition, 3> p;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (v[i] < 0 || (static_cast<std::size_t>(v[i]) + 1) * columns > vertices.size())
-                return {};
-            p[i] = position(v[i]);
-            if (!std::isfinite(p[i][0]) || !std::isfinite(p[i][1])) return {};
-        }
-        if (exact::orient2d(p[0], p[1], p[2]) == 0) return {};
+        const auto v = mesh.corners(t);
+        if (v && exact::orient2d(position((*v)[0]), position((*v)[1]), position((*v)[2])) == 0)
+            return std::nullopt;
         return v;
     }
 };
 
 /// The edges that one triangle only has, by vertex numbers, the lower first.
-std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, Progress* progress) {
-    check_triangle_count(mesh.size());
+std::vector<std::array<std::int32_t, 2>> single_edges(const SnappedMesh& snapped,
+                                                      Progress* progress) {
+    const std::size_t count = snapped.mesh.view.triangle_count();
+    check_triangle_count(count);
     std::vector<std::array<std::int32_t, 3>> triangles;
-    triangles.reserve(mesh.size());
-    for (std::size_t t = 0; t < mesh.size(); ++t) {
+    triangles.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) {
         poll(progress, t);
-        if (const auto v = mesh.corners(t)) triangles.push_back(*v);
+        if (const auto v = snapped.corners(t)) triangles.push_back(*v);
     }
-    const std::size_t vertices = mesh.vertices.size() / mesh.columns;
+    const std::size_t vertices = snapped.mesh.vertex_count();
     const auto higher = bucketize<std::int32_t>(vertices, [&](const auto& put) {
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             poll(progress, t);
@@ -90,7 +82,7 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, Progress
 }
 
 /// The edges that one triangle only has in plan, ascending.
-std::vector<PlanEdge> border_of(const Mesh& mesh, Progress* progress) {
+std::vector<PlanEdge> border_of(const SnappedMesh& mesh, Progress* progress) {
     // first by number, which leaves few; then by position, for vertices that are given several
     // times
     const auto once = single_edges(mesh, progress);
@@ -137,15 +129,17 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
 /// A mesh with the divided triangles' parts.
 class DividedMesh {
 public:
-    DividedMesh(const Mesh& mesh, const BorderChains& chains, Progress* progress) : mesh_(mesh) {
-        vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
-        for (std::size_t row = 0; row + mesh.columns <= vertices.size(); row += mesh.columns) {
-            vertices[row] = mesh.snapping->x(vertices[row]);
-            vertices[row + 1] = mesh.snapping->y(vertices[row + 1]);
+    DividedMesh(const SnappedMesh& snapped, const BorderChains& chains, Progress* progress)
+        : columns_(snapped.mesh.columns) {
+        const auto& [input_vertices, input_triangles] = snapped.mesh.view;
+        vertices.assign(input_vertices.begin(), input_vertices.end());
+        for (std::size_t row = 0; row + columns_ <= vertices.size(); row += columns_) {
+            vertices[row] = snapped.snapping.x(vertices[row]);
+            vertices[row + 1] = snapped.snapping.y(vertices[row + 1]);
         }
-        triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+        triangles.assign(input_triangles.begin(), input_triangles.end());
         if (chains.empty()) return;
-        find_divisions(chains, progress);
+        find_divisions(snapped, chains, progress);
         for (const Division& division : divisions_)
             divide(division);
     }
@@ -167,10 +161,11 @@ private:
 
     /// An edge is divided in all triangles that have it or in none: else one would reach over what
     /// the other still has.
-    void find_divisions(const BorderChains& chains, Progress* progress) {
-        for (std::size_t t = 0; t < mesh_.size(); ++t) {
+    void find_divisions(const SnappedMesh& snapped, const BorderChains& chains,
+                        Progress* progress) {
+        for (std::size_t t = 0; t < snapped.mesh.view.triangle_count(); ++t) {
             poll(progress, t);
-            const auto corners = mesh_.corners(t);
+            const auto corners = snapped.corners(t);
             if (!corners) continue;
             Division division{t, *corners, {}};
             for (std::size_t i = 0; i < 3; ++i) {
@@ -258,30 +253,28 @@ private:
 
     /// A new vertex on the edge from a to b; its height is the same whichever triangle asks.
     std::int32_t insert(const PlanPosition& p, std::int32_t a, std::int32_t b) {
-        const auto row = [&](std::int32_t v) {
-            return static_cast<std::size_t>(v) * mesh_.columns;
-        };
+        const auto row = [&](std::int32_t v) { return static_cast<std::size_t>(v) * columns_; };
         const PlanPosition from = position(a), to = position(b);
         vertices.push_back(p[0]);
         vertices.push_back(p[1]);
-        if (mesh_.columns == 3) {
+        if (columns_ == 3) {
             const PlanPosition way = minus(to, from);
             const double share = dot(minus(p, from), way) / dot(way, way);
             const double za = vertices[row(a) + 2], zb = vertices[row(b) + 2];
             vertices.push_back(za + share * (zb - za));
         }
-        return static_cast<std::int32_t>(vertices.size() / mesh_.columns) - 1;
+        return static_cast<std::int32_t>(vertices.size() / columns_) - 1;
     }
 
     PlanPosition position(std::int32_t v) const {
-        const std::size_t row = static_cast<std::size_t>(v) * mesh_.columns;
+        const std::size_t row = static_cast<std::size_t>(v) * columns_;
         return {vertices[row], vertices[row + 1]};
     }
     int turn_of(const Corners& c) const {
         return exact::orient2d(position(c[0]), position(c[1]), position(c[2]));
     }
 
-    const Mesh& mesh_;
+    std::size_t columns_;
     std::vector<Division> divisions_;
 };
 
@@ -289,16 +282,11 @@ private:
 
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                          const Execution& execution) {
-    std::vector<Mesh> meshes;
-    for (const StackInput& rock : rocks) {
-        for (const TriangleView& s : rock.surfaces)
-            meshes.push_back({s.vertices, s.triangles, 3, &snapping});
-        if (rock.region)
-            meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
-    }
+    const std::vector<PlanMesh> meshes = meshes_of(rocks);
     std::vector<std::vector<PlanEdge>> borders(meshes.size());
-    parallel_chunks(meshes.size(), execution,
-                    [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
+    parallel_chunks(meshes.size(), execution, [&](std::size_t m) {
+        borders[m] = border_of({meshes[m], snapping}, execution.progress);
+    });
     std::vector<PlanEdge> edges = concatenated(borders);
     sort_unique(edges);
     BorderChains chains;
@@ -323,11 +311,9 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
     return chains;
 }
 
-JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
-                       std::size_t columns, const PlanSnapping& snapping,
+JoinedMesh joined_mesh(const PlanMesh& mesh, const PlanSnapping& snapping,
                        const BorderChains& chains, Progress* progress) {
-    const Mesh mesh{vertices, triangles, columns, &snapping};
-    DividedMesh parts(mesh, chains, progress);
+    DividedMesh parts({mesh, snapping}, chains, progress);
     return {std::move(parts.vertices), std::move(parts.triangles)};
 }
 
@@ -335,8 +321,8 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
                            const BorderChains& chains, Progress* progress) {
     JoinedBorders joined;
     const auto replace = [&](auto& view, std::size_t columns) {
-        const JoinedMesh& mesh = joined.meshes.emplace_back(
-            joined_mesh(view.vertices, view.triangles, columns, snapping, chains, progress));
+        const JoinedMesh& mesh =
+            joined.meshes.emplace_back(joined_mesh({view, columns}, snapping, chains, progress));
         view = {mesh.vertices, mesh.triangles};
     };
     for (const StackInput& rock : rocks) {

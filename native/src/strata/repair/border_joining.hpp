@@ -34,13 +34,12 @@ using BorderChains = std::map<std::pair<spatial::PlanPosition, spatial::PlanPosi
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                          const Execution& execution = {});
 
-/// A mesh of a surface (three columns) or a region (two) with snapped coordinates, its edges
-/// divided, but for those of a triangle of which a part would turn over. The numbers of triangles
-/// that were not divided stay; the first part of a divided one has its number, the others come
-/// after all. Passes over what the builder refuses later.
+/// A mesh with snapped coordinates, its edges divided, but for those of a triangle of which a part
+/// would turn over. The numbers of triangles that were not divided stay; the first part of a
+/// divided one has its number, the others come after all. Passes over what the builder refuses
+/// later.
 /// @throws Cancelled
-JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
-                       std::size_t columns, const PlanSnapping& snapping,
+JoinedMesh joined_mesh(const PlanMesh& mesh, const PlanSnapping& snapping,
                        const BorderChains& chains, Progress* progress = nullptr);
 
 /// Input with its edges divided.

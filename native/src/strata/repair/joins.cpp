@@ -16,8 +16,7 @@ struct Joins::Found {
     std::optional<JoinedMesh> mesh(const TriangleView& surface, std::size_t columns,
                                    const Execution& execution) const {
         begin_step(execution.progress, 0.0, 1.0, "joining the borders");
-        JoinedMesh joined = joined_mesh(surface.vertices, surface.triangles, columns, snapping,
-                                        chains, execution.progress);
+        JoinedMesh joined = joined_mesh({surface, columns}, snapping, chains, execution.progress);
         if (!is_single_valued({joined.vertices, joined.triangles}, columns, execution)) return {};
         return joined;
     }
@@ -44,7 +43,7 @@ const Warning& Joins::warning() const {
 }
 
 std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t columns) const {
-    return joined_mesh(vertices, {}, columns, joining_->snapping, {}).vertices;
+    return joined_mesh({{vertices, {}}, columns}, joining_->snapping, {}).vertices;
 }
 
 std::optional<JoinedMesh> Joins::mesh(const TriangleView& mesh, std::size_t columns,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/algorithms.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "exact/orientation.hpp"
 
@@ -20,32 +21,6 @@ namespace {
 
 using PlanPosition = std::array<double, 2>;
 using SpacePosition = std::array<double, 3>;
-
-/// One mesh of the input, of a surface (three columns) or a region (two).
-struct PlanMesh {
-    std::span<const double> vertices;
-    std::size_t columns;
-    std::span<const std::int32_t> triangles;
-
-    std::size_t size() const { return vertices.size() / columns; }
-    PlanPosition position(std::size_t v) const {
-        return {vertices[v * columns], vertices[v * columns + 1]};
-    }
-    SpacePosition corner(std::size_t v) const {
-        return {vertices[v * columns], vertices[v * columns + 1],
-                columns < 3 ? 0.0 : vertices[v * columns + 2]};
-    }
-};
-
-std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
-    std::vector<PlanMesh> meshes;
-    for (const StackInput& rock : rocks) {
-        for (const TriangleView& s : rock.surfaces)
-            meshes.push_back({s.vertices, 3, s.triangles});
-        if (rock.region) meshes.push_back({rock.region->vertices, 2, rock.region->triangles});
-    }
-    return meshes;
-}
 
 template <class Position>
 bool is_finite(const Position& p) {
@@ -64,7 +39,7 @@ int orientation(const std::array<SpacePosition, 3>& p) {
 template <class Visit>
 void for_each_vertex(std::span<const StackInput> rocks, Progress* progress, const Visit& visit) {
     for (const PlanMesh& mesh : meshes_of(rocks)) {
-        for (std::size_t v = 0; v < mesh.size(); ++v) {
+        for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
             poll(progress, v);
             const PlanPosition p = mesh.position(v);
             if (is_finite(p)) visit(p);
@@ -76,18 +51,11 @@ void for_each_vertex(std::span<const StackInput> rocks, Progress* progress, cons
 template <class Visit>
 void for_each_triangle(std::span<const StackInput> rocks, Progress* progress, const Visit& visit) {
     for (const PlanMesh& mesh : meshes_of(rocks)) {
-        for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+        for (std::size_t t = 0; t < mesh.view.triangle_count(); ++t) {
             poll(progress, t);
-            std::array<SpacePosition, 3> corners;
-            bool sound = true;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const std::int32_t v = mesh.triangles[t + i];
-                sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.size();
-                if (!sound) break;
-                corners[i] = mesh.corner(static_cast<std::size_t>(v));
-                sound = is_finite(corners[i]);
-            }
-            if (sound) visit(corners);
+            if (const auto v = mesh.corners(t))
+                visit(std::array{mesh.corner(index((*v)[0])), mesh.corner(index((*v)[1])),
+                                 mesh.corner(index((*v)[2]))});
         }
     }
 }
@@ -283,12 +251,33 @@ std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks,
 
 }  // namespace
 
+std::optional<std::array<std::int32_t, 3>> PlanMesh::corners(std::size_t t) const {
+    std::array<std::int32_t, 3> numbers{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        numbers[i] = view.triangles[3 * t + i];
+        if (numbers[i] < 0 || index(numbers[i]) >= vertex_count() ||
+            !is_finite(corner(index(numbers[i]))))
+            return std::nullopt;
+    }
+    return numbers;
+}
+
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
+    std::vector<PlanMesh> meshes;
+    for (const StackInput& rock : rocks) {
+        for (const TriangleView& s : rock.surfaces)
+            meshes.push_back({s, 3});
+        if (rock.region) meshes.push_back({*rock.region, 2});
+    }
+    return meshes;
+}
+
 bool share_one_plan(std::span<const StackInput> rocks) {
     const std::vector<PlanMesh> meshes = meshes_of(rocks);
     return std::all_of(meshes.begin(), meshes.end(), [&](const PlanMesh& mesh) {
         const PlanMesh& first = meshes.front();
-        if (first.size() != mesh.size()) return false;
-        for (std::size_t v = 0; v < mesh.size(); ++v) {
+        if (first.vertex_count() != mesh.vertex_count()) return false;
+        for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
             if (first.position(v) != mesh.position(v)) return false;
         }
         return true;

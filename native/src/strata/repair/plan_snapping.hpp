@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +12,25 @@
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {
+
+/// One mesh of the input, of a surface (three columns) or a region (two).
+struct PlanMesh {
+    TriangleView view;
+    std::size_t columns;
+
+    std::size_t vertex_count() const { return view.vertices.size() / columns; }
+    std::array<double, 2> position(std::size_t v) const {
+        return {view.vertices[v * columns], view.vertices[v * columns + 1]};
+    }
+    std::array<double, 3> corner(std::size_t v) const {
+        const auto [x, y] = position(v);
+        return {x, y, columns < 3 ? 0.0 : view.vertices[v * columns + 2]};
+    }
+    /// The numbers of a triangle's corners; none where the builder refuses them later.
+    std::optional<std::array<std::int32_t, 3>> corners(std::size_t t) const;
+};
+
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks);
 
 /// Values of one coordinate that stand for others: from -> to, ascending.
 class AxisSnapping {

@@ -2,15 +2,12 @@
 #include "strata/tiling/plan_links.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <tuple>
 
 #include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
-#include "exact/orientation.hpp"
+#include "meshing/winding.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::strata {
 
@@ -97,83 +94,6 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* prog
 
 namespace {
 
-/// The sums of `net` over all border edges that run along each edge of the triangulation.
-class NetAlongEdges {
-public:
-    NetAlongEdges(const meshing::ConstrainedTriangulation& mesh,
-                  const std::vector<meshing::PlanPoint>& points,
-                  const std::vector<std::array<std::int32_t, 2>>& segments,
-                  std::span<const BorderEdge> border)
-        : points_(points) {
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (!mesh.constrained[t][i]) continue;
-                const std::int32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
-                edges_.push_back({std::min(a, b), std::max(a, b), 0});
-                edges_.push_back({std::max(a, b), std::min(a, b), 0});
-            }
-        }
-        std::sort(edges_.begin(), edges_.end(), before);
-        edges_.erase(std::unique(edges_.begin(), edges_.end(),
-                                 [](const CoverageEdge& a, const CoverageEdge& b) {
-                                     return a.from == b.from && a.to == b.to;
-                                 }),
-                     edges_.end());
-        for (std::size_t s = 0; s < segments.size(); ++s)
-            add_along(segments[s][0], segments[s][1], border[s].net);
-    }
-
-    /// How much more often the left side of the edge is covered than the right one.
-    std::int32_t operator()(std::int32_t from, std::int32_t to) const {
-        return std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before)
-            ->net;
-    }
-
-private:
-    struct CoverageEdge {
-        std::int32_t from, to, net;
-    };
-    static bool before(const CoverageEdge& a, const CoverageEdge& b) {
-        return std::tie(a.from, a.to) < std::tie(b.from, b.to);
-    }
-    std::int32_t& net(std::int32_t from, std::int32_t to) {
-        return std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before)
-            ->net;
-    }
-
-    void add_along(std::int32_t from, std::int32_t to, std::int32_t value) {
-        while (from != to) {
-            const std::int32_t next = next_towards(from, to);
-            net(from, next) += value;
-            net(next, from) -= value;
-            from = next;
-        }
-    }
-    /// The far end of the edge that leaves `from` straight towards `to`.
-    std::int32_t next_towards(std::int32_t from, std::int32_t to) const {
-        auto edge =
-            std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, to, 0}, before);
-        if (edge != edges_.end() && edge->from == from && edge->to == to) return to;
-        const auto& p = at(from);
-        const auto& q = at(to);
-        for (edge =
-                 std::lower_bound(edges_.begin(), edges_.end(), CoverageEdge{from, -1, 0}, before);
-             edge != edges_.end() && edge->from == from; ++edge) {
-            const auto& r = at(edge->to);
-            const bool ahead = (q[0] > p[0]) == (r[0] > p[0]) && (q[0] < p[0]) == (r[0] < p[0]) &&
-                               (q[1] > p[1]) == (r[1] > p[1]) && (q[1] < p[1]) == (r[1] < p[1]);
-            if (ahead && exact::orient2d(p, q, r) == 0) return edge->to;
-        }
-        return to;  // not reached: every segment is a chain of edges
-    }
-    const meshing::PlanPoint& at(std::int32_t i) const {
-        return points_[static_cast<std::size_t>(i)];
-    }
-
-    const std::vector<meshing::PlanPoint>& points_;
-    std::vector<CoverageEdge> edges_;
-};
-
 /// Nothing where segments cross.
 std::optional<meshing::ConstrainedTriangulation> triangulate(
     const std::vector<meshing::PlanPoint>& points,
@@ -211,34 +131,9 @@ std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
     const auto triangulation = triangulate(points, segments);
     if (!triangulation) return std::nullopt;
     const auto& mesh = *triangulation;
-    const NetAlongEdges net(mesh, points, segments, border);
-
-    // Whatever has a corner of the frame lies outside of everything.
-    constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
-    FrameTriangles result;
-    result.covered.assign(mesh.triangles.size(), kUnknown);
-    std::vector<std::size_t> to_visit;
-    const std::int32_t corner = local(frame[0]);
-    for (std::size_t t = 0; t < mesh.triangles.size() && to_visit.empty(); ++t) {
-        const auto& v = mesh.triangles[t];
-        if (v[0] != corner && v[1] != corner && v[2] != corner) continue;
-        result.covered[t] = 0;
-        to_visit.push_back(t);
-    }
-    while (!to_visit.empty()) {
-        const std::size_t t = to_visit.back();
-        to_visit.pop_back();
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (mesh.neighbors[t][i] < 0) continue;
-            const auto n = static_cast<std::size_t>(mesh.neighbors[t][i]);
-            if (result.covered[n] != kUnknown) continue;
-            const std::int32_t step =
-                mesh.constrained[t][i] ? net(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])
-                                       : 0;
-            result.covered[n] = result.covered[t] - step;
-            to_visit.push_back(n);
-        }
-    }
+    // whatever is at the hull, that is the frame, lies outside of everything
+    const auto nets = transformed(border, [](const BorderEdge& edge) { return edge.net; });
+    FrameTriangles result{{}, meshing::winding_numbers(mesh, points, segments, nets)};
     for (const auto& triangle : mesh.triangles) {
         PlanTriangle v;
         for (std::size_t i = 0; i < 3; ++i)

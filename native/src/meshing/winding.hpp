@@ -1,42 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rings as a graph, and the refusal of two of its edges.
+// What lies inside of segments of a triangulation, found by walking over its triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
-#include "meshing/constrained_delaunay.hpp"
-#include "realmodel/meshing/rings.hpp"
+#include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::meshing {
 
-/// Rings in a constrained Delaunay triangulation of their corners. They do not cross; some may
-/// share edges.
-struct ConstrainedRings {
-    RingGraph graph;
-    std::vector<CoveredEdge> edges;  ///< of the triangulation, by the segments that run along them
-    ConstrainedTriangulation triangulation;
-};
-
-/// @throws InputError "no_outline", "not_finite", "outline_degenerate" and "outline_crosses" as
-/// triangulate_region does; Cancelled.
-ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress);
-
-/// Refuses two segments that run along one edge, as "outline_overlaps".
-[[noreturn]] void refuse_overlap(const RingGraph& graph, const CoveredEdge& first,
-                                 const CoveredEdge& second);
-
-/// The first of the places that is equal to each.
-std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places);
-
 /// A value of each triangle, found by walking over the triangles from outside the hull, where it is
 /// `outside`: cross(triangle, side, value) gives it beyond a side that is walked over, of the
-/// triangle before, or at the hull of the first one. No value is -2.
+/// triangle before, or at the hull of the first one. No value is the least of its type.
 template <class Value, class Cross>
 std::vector<Value> spread_inward(const ConstrainedTriangulation& mesh, Value outside,
                                  const Cross& cross) {
-    constexpr Value kUnknown = -2;
+    constexpr Value kUnknown = std::numeric_limits<Value>::min();
     std::vector<Value> values(mesh.triangles.size(), kUnknown);
     std::vector<std::int32_t> open;
     const auto reach = [&](std::int32_t to, std::int32_t from, int side, Value value) {
@@ -71,5 +53,12 @@ std::vector<bool> inside_rings(const ConstrainedTriangulation& mesh, const IsRin
         });
     return {parity.begin(), parity.end()};
 }
+
+/// How often closed chains of directed segments, none of which is at the hull, wind around each
+/// triangle: each counts as often as its weight says, for what lies on its left.
+std::vector<std::int32_t> winding_numbers(const ConstrainedTriangulation& mesh,
+                                          std::span<const PlanPoint> points,
+                                          std::span<const std::array<std::int32_t, 2>> segments,
+                                          std::span<const std::int32_t> weights);
 
 }  // namespace realmodel::meshing
