@@ -16,6 +16,8 @@
 #include "base/vectors.hpp"
 #include "exact/orientation.hpp"
 #include "spatial/plan_tiles.hpp"
+#include "strata/repair/plan_context.hpp"
+#include "strata/steps.hpp"
 #include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {
@@ -29,11 +31,8 @@ PlanEdge edge_between(const PlanPosition& a, const PlanPosition& b) {
     return a < b ? PlanEdge{a, b} : PlanEdge{b, a};
 }
 
-/// One mesh of the input, of a surface (three columns) or a region (two), with snapped positions.
-struct Mesh {
-    std::span<const double> vertices;
-    std::span<const std::int32_t> triangles;
-    std::size_t columns;
+/// A mesh with snapped positions.
+struct Mesh : PlanMesh {
     const PlanSnapping* snapping;
 
     std::size_t size() const { return triangles.size() / 3; }
@@ -66,7 +65,7 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, Progress
         poll(progress, t);
         if (const auto v = mesh.corners(t)) triangles.push_back(*v);
     }
-    const std::size_t vertices = mesh.vertices.size() / mesh.columns;
+    const std::size_t vertices = mesh.vertex_count();
     const auto higher = bucketize<std::int32_t>(vertices, [&](const auto& put) {
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             poll(progress, t);
@@ -289,16 +288,11 @@ private:
 
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                          const Execution& execution) {
-    std::vector<Mesh> meshes;
-    for (const StackInput& rock : rocks) {
-        for (const TriangleView& s : rock.surfaces)
-            meshes.push_back({s.vertices, s.triangles, 3, &snapping});
-        if (rock.region)
-            meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
-    }
+    const std::vector<PlanMesh> meshes = meshes_of(rocks);
     std::vector<std::vector<PlanEdge>> borders(meshes.size());
-    parallel_chunks(meshes.size(), execution,
-                    [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
+    parallel_chunks(meshes.size(), execution, [&](std::size_t m) {
+        borders[m] = border_of({meshes[m], &snapping}, execution.progress);
+    });
     std::vector<PlanEdge> edges = concatenated(borders);
     sort_unique(edges);
     BorderChains chains;
@@ -326,7 +320,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
 JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
                        std::size_t columns, const PlanSnapping& snapping,
                        const BorderChains& chains, Progress* progress) {
-    const Mesh mesh{vertices, triangles, columns, &snapping};
+    const Mesh mesh{{vertices, triangles, columns}, &snapping};
     DividedMesh parts(mesh, chains, progress);
     return {std::move(parts.vertices), std::move(parts.triangles)};
 }
@@ -361,6 +355,61 @@ Warning joined_by_rounding(const PlanSnapping& snapping, const BorderChains& cha
                  std::to_string(chains.size()));
     }
     return {"joined", -1, {}, text + "; no action is needed"};
+}
+
+struct Joins::Found {
+    PlanSnapping snapping;
+    BorderChains chains;
+    Warning warning;
+
+    std::optional<JoinedMesh> mesh(const TriangleView& surface, std::size_t columns,
+                                   const Execution& execution) const {
+        begin_step(execution.progress, 0.0, 1.0, "joining the borders");
+        JoinedMesh joined = joined_mesh(surface.vertices, surface.triangles, columns, snapping,
+                                        chains, execution.progress);
+        if (!is_single_valued({joined.vertices, joined.triangles}, columns, execution)) return {};
+        return joined;
+    }
+
+private:
+    // All meshes together are single-valued where each is alone: what a mesh covers is found from
+    // its own border (load_input), and that the frame around this one is another one does not
+    // count, as it only has to lie outside of the border (fill_frame).
+    static bool is_single_valued(const TriangleView& mesh, std::size_t columns,
+                                 const Execution& execution) {
+        StackInput input;
+        if (columns == 3) {
+            input.surfaces.push_back(mesh);
+        } else {
+            input.region = mesh;
+        }
+        std::vector<Warning> warnings;
+        return load_input({&input, 1}, {}, warnings, execution)->is_single_valued;
+    }
+};
+
+const Warning& Joins::warning() const {
+    return joining_->warning;
+}
+
+std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t columns) const {
+    return joined_mesh(vertices, {}, columns, joining_->snapping, {}).vertices;
+}
+
+std::optional<JoinedMesh> Joins::mesh(const TriangleView& mesh, std::size_t columns,
+                                      const Execution& execution) const {
+    return joining_->mesh(mesh, columns, execution);
+}
+
+std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
+                                const Execution& execution) {
+    begin_step(execution.progress, 0.0, 1.0, "comparing the borders");
+    const auto joining = std::make_shared<Joins::Found>();
+    joining->snapping = find_snapping(rocks, execution);
+    if (borders) joining->chains = find_chains(rocks, joining->snapping, {1, execution.progress});
+    if (joining->snapping.empty() && joining->chains.empty()) return {};
+    joining->warning = joined_by_rounding(joining->snapping, joining->chains);
+    return Joins(joining);
 }
 
 }  // namespace realmodel::strata

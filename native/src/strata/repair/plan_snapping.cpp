@@ -21,30 +21,13 @@ namespace {
 using PlanPosition = std::array<double, 2>;
 using SpacePosition = std::array<double, 3>;
 
-/// One mesh of the input, of a surface (three columns) or a region (two).
-struct PlanMesh {
-    std::span<const double> vertices;
-    std::size_t columns;
-    std::span<const std::int32_t> triangles;
+PlanPosition position(const PlanMesh& mesh, std::size_t v) {
+    return {mesh.vertices[v * mesh.columns], mesh.vertices[v * mesh.columns + 1]};
+}
 
-    std::size_t size() const { return vertices.size() / columns; }
-    PlanPosition position(std::size_t v) const {
-        return {vertices[v * columns], vertices[v * columns + 1]};
-    }
-    SpacePosition corner(std::size_t v) const {
-        return {vertices[v * columns], vertices[v * columns + 1],
-                columns < 3 ? 0.0 : vertices[v * columns + 2]};
-    }
-};
-
-std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
-    std::vector<PlanMesh> meshes;
-    for (const StackInput& rock : rocks) {
-        for (const TriangleView& s : rock.surfaces)
-            meshes.push_back({s.vertices, 3, s.triangles});
-        if (rock.region) meshes.push_back({rock.region->vertices, 2, rock.region->triangles});
-    }
-    return meshes;
+SpacePosition corner(const PlanMesh& mesh, std::size_t v) {
+    const auto [x, y] = position(mesh, v);
+    return {x, y, mesh.columns < 3 ? 0.0 : mesh.vertices[v * mesh.columns + 2]};
 }
 
 template <class Position>
@@ -64,9 +47,9 @@ int orientation(const std::array<SpacePosition, 3>& p) {
 template <class Visit>
 void for_each_vertex(std::span<const StackInput> rocks, Progress* progress, const Visit& visit) {
     for (const PlanMesh& mesh : meshes_of(rocks)) {
-        for (std::size_t v = 0; v < mesh.size(); ++v) {
+        for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
             poll(progress, v);
-            const PlanPosition p = mesh.position(v);
+            const PlanPosition p = position(mesh, v);
             if (is_finite(p)) visit(p);
         }
     }
@@ -82,9 +65,9 @@ void for_each_triangle(std::span<const StackInput> rocks, Progress* progress, co
             bool sound = true;
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::int32_t v = mesh.triangles[t + i];
-                sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.size();
+                sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.vertex_count();
                 if (!sound) break;
-                corners[i] = mesh.corner(static_cast<std::size_t>(v));
+                corners[i] = corner(mesh, static_cast<std::size_t>(v));
                 sound = is_finite(corners[i]);
             }
             if (sound) visit(corners);
@@ -283,13 +266,23 @@ std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks,
 
 }  // namespace
 
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
+    std::vector<PlanMesh> meshes;
+    for (const StackInput& rock : rocks) {
+        for (const TriangleView& s : rock.surfaces)
+            meshes.push_back({s.vertices, s.triangles, 3});
+        if (rock.region) meshes.push_back({rock.region->vertices, rock.region->triangles, 2});
+    }
+    return meshes;
+}
+
 bool share_one_plan(std::span<const StackInput> rocks) {
     const std::vector<PlanMesh> meshes = meshes_of(rocks);
     return std::all_of(meshes.begin(), meshes.end(), [&](const PlanMesh& mesh) {
         const PlanMesh& first = meshes.front();
-        if (first.size() != mesh.size()) return false;
-        for (std::size_t v = 0; v < mesh.size(); ++v) {
-            if (first.position(v) != mesh.position(v)) return false;
+        if (first.vertex_count() != mesh.vertex_count()) return false;
+        for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+            if (position(first, v) != position(mesh, v)) return false;
         }
         return true;
     });

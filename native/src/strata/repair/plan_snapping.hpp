@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,6 +38,16 @@ struct PlanSnapping {
     AxisSnapping x, y;
     bool empty() const { return x.empty() && y.empty(); }
 };
+
+/// One mesh of the input, of a surface (three columns) or a region (two).
+struct PlanMesh {
+    std::span<const double> vertices;
+    std::span<const std::int32_t> triangles;
+    std::size_t columns;
+
+    std::size_t vertex_count() const { return vertices.size() / columns; }
+};
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks);
 
 /// Whether all surfaces and regions have the same plan vertices: then no border lies beside
 /// another, and there is nothing to join.
