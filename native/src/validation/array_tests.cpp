@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <compare>
 #include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/algorithms.hpp"
+#include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
@@ -125,22 +129,114 @@ Findings check_arrays(const ComplexView& m, const Execution& execution) {
 
 namespace {
 
-Findings check_distinct(const ComplexView& model, const Execution& execution) {
-    using PlacedVertex = std::pair<std::array<double, 3>, std::int32_t>;
-    std::vector<PlacedVertex> placed(model.vertex_count());
-    parallel_each(placed.size(), execution, [&](std::size_t i) {
-        const auto v = static_cast<std::int32_t>(i);
-        placed[i] = {model.vertex(v), v};
-    });
-    parallel_sort(placed, std::less<>(), execution);
-    std::vector<std::pair<std::int32_t, std::int32_t>> pairs;  // a vertex, the one before it there
-    for (std::size_t i = 1; i < placed.size(); ++i) {
-        if (placed[i].first == placed[i - 1].first)
-            pairs.emplace_back(placed[i].second, placed[i - 1].second);
+/// (vertex, an earlier one at the same position).
+using EqualPair = std::pair<std::int32_t, std::int32_t>;
+
+std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
+    std::uint64_t hash = 0;
+    for (const double coordinate : model.vertex(vertex)) {
+        // -0 and 0 are equal
+        hash += std::bit_cast<std::uint64_t>(coordinate == 0.0 ? 0.0 : coordinate);
+        hash *= 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 32;
     }
-    std::sort(pairs.begin(), pairs.end());
+    return hash * 0xBF58476D1CE4E5B9u;
+}
+
+/// How many vertices ascend before one does not.
+std::size_t count_ascending(const ComplexView& model, const Execution& execution) {
+    std::size_t ascending = model.vertex_count();
+    parallel_ranges(model.vertex_count(), kItemsOfChunk, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
+                            if (model.vertex(static_cast<std::int32_t>(v - 1)) <
+                                model.vertex(static_cast<std::int32_t>(v)))
+                                continue;
+                            atomic_min_by(ascending, v, std::less<>());
+                            return;
+                        }
+                    });
+    return ascending;
+}
+
+/// Whether all vertices are distinct, as the builder's own are, which ascend, and few others behind
+/// them. Where they are not in this order it says no: then they are compared by a hash of their
+/// positions.
+bool are_distinct_in_order(const ComplexView& model, const Execution& execution) {
+    constexpr std::size_t kAscendingOfOne = 64;  // to one behind, at least
+    const std::size_t ascending = count_ascending(model, execution);
+    std::vector<std::array<double, 3>> behind;
+    if (model.vertex_count() - ascending > ascending / kAscendingOfOne) return false;
+    for (std::size_t v = ascending; v < model.vertex_count(); ++v) {
+        behind.push_back(model.vertex(static_cast<std::int32_t>(v)));
+        for (const double coordinate : behind.back()) {
+            if (!std::isfinite(coordinate)) return false;
+        }
+    }
+    std::sort(behind.begin(), behind.end());
+    if (std::adjacent_find(behind.begin(), behind.end()) != behind.end()) return false;
+    return std::none_of(behind.begin(), behind.end(), [&](const auto& place) {
+        std::size_t low = 0, high = ascending;
+        while (low < high) {
+            const std::size_t middle = low + (high - low) / 2;
+            const auto position = model.vertex(static_cast<std::int32_t>(middle));
+            if (position == place) return true;
+            (position < place ? low : high) = position < place ? middle + 1 : middle;
+        }
+        return false;
+    });
+}
+
+/// A vertex with the hash of its position.
+struct HashedVertex {
+    std::uint32_t hash;
+    std::int32_t vertex;
+    friend auto operator<=>(const HashedVertex&, const HashedVertex&) = default;
+};
+
+/// Vertices in buckets by a hash of their positions; equal ones are in one bucket.
+Buckets<HashedVertex> position_buckets(const ComplexView& model, const Execution& execution) {
+    constexpr std::size_t kVerticesOfBucket = 4096, kMaxBuckets = std::size_t{1} << 16;
+    const std::size_t count = model.vertex_count();
+    const std::size_t buckets = std::min(kMaxBuckets, std::bit_ceil(count / kVerticesOfBucket + 1));
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(count, (chunk + 1) * kItemsOfChunk);
+        for (std::size_t i = chunk * kItemsOfChunk; i < end; ++i) {
+            const auto v = static_cast<std::int32_t>(i);
+            const std::uint64_t hash = position_hash(model, v);
+            put(hash & (buckets - 1), HashedVertex{static_cast<std::uint32_t>(hash >> 32), v});
+        }
+    };
+    const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
+    return bucketize_in_order<HashedVertex>(buckets, chunks, produce, execution);
+}
+
+/// Of each position that several vertices of a bucket have, all but the first with the one before.
+std::vector<EqualPair> equal_pairs(const ComplexView& model, std::span<HashedVertex> bucket) {
+    std::sort(bucket.begin(), bucket.end());
+    std::vector<EqualPair> pairs;
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+        const auto [hash, v] = bucket[i];
+        for (std::size_t j = i; j > 0 && bucket[j - 1].hash == hash; --j) {
+            const std::int32_t earlier = bucket[j - 1].vertex;
+            if (model.vertex(earlier) != model.vertex(v)) continue;
+            pairs.emplace_back(v, earlier);
+            break;
+        }
+    }
+    return pairs;
+}
+
+Findings check_distinct(const ComplexView& model, const Execution& execution) {
+    if (are_distinct_in_order(model, execution)) return {};
+    auto buckets = position_buckets(model, execution);
+    std::vector<std::vector<EqualPair>> pairs(buckets.size());
+    parallel_chunks(buckets.size(), execution,
+                    [&](std::size_t b) { pairs[b] = equal_pairs(model, buckets[b]); });
+    std::vector<EqualPair> all = concatenated(pairs);
+    std::sort(all.begin(), all.end());
     Findings findings;
-    for (const auto& pair : pairs) {
+    for (const EqualPair& pair : all) {
         findings.fail([&, pair] {
             const auto& [v, earlier] = pair;
             return Offender{.text = "vertex " + std::to_string(v) +

@@ -2,14 +2,12 @@
 #include "validation/cell_sides.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <functional>
 #include <vector>
 
-#include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
-#include "base/parallel_sort.hpp"
 #include "validation/face_shape.hpp"
 #include "validation/findings.hpp"
 
@@ -65,46 +63,86 @@ std::array<double, 3> CellExtent::middle() const {
 
 namespace {
 
-/// Adds the edges of a face as its cell runs along them: lower vertex, higher vertex, and whether
-/// the cell runs back from the higher one.
-void add_edges(const ComplexView& model, Side side, std::vector<std::uint64_t>& uses) {
+/// An edge as a face runs along it.
+struct LoopEdge {
+    std::int32_t from, to;
+};
+
+/// Calls visit(from, to) along the loop of a face as its cell has it.
+template <class Visit>
+void along_loop(const ComplexView& model, Side side, const Visit& visit) {
     const auto loop = model.face(face_of(side));
     std::int32_t before = loop.back();
-    for (const std::int32_t v : loop) {
-        const bool back = (v < before) != is_reversed(side);
-        const auto high = static_cast<std::uint32_t>(std::max(before, v)) << 1;
-        uses.push_back(std::uint64_t{static_cast<std::uint32_t>(std::min(before, v))} << 32 | high |
-                       (back ? 1 : 0));
-        before = v;
+    if (is_reversed(side)) {
+        for (const std::int32_t v : loop) {
+            visit(v, before);
+            before = v;
+        }
+    } else {
+        for (const std::int32_t v : loop) {
+            visit(before, v);
+            before = v;
+        }
     }
+}
+
+std::size_t count_edges(const ComplexView& model, std::span<const Side> sides) {
+    std::size_t edges = 0;
+    for (const Side side : sides)
+        edges += model.face(face_of(side)).size();
+    return edges;
+}
+
+/// The edges of a large cell in buckets that fit the cache, each edge with all its uses in one.
+Buckets<LoopEdge> edge_buckets(const ComplexView& model, std::span<const Side> sides,
+                               const Execution& execution) {
+    constexpr std::size_t kUsesOfBucket = 8192, kMaxBuckets = std::size_t{1} << 16;
+    const std::size_t buckets =
+        std::min(kMaxBuckets, std::bit_ceil(count_edges(model, sides) / kUsesOfBucket + 1));
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(sides.size(), (chunk + 1) * kItemsOfChunk);
+        for (std::size_t i = chunk * kItemsOfChunk; i < end; ++i) {
+            along_loop(model, sides[i], [&](std::int32_t from, std::int32_t to) {
+                // not the hash of EdgeTable, or a bucket would fill one part of its table
+                const auto low = static_cast<std::uint32_t>(std::min(from, to));
+                const std::uint64_t hash = low * std::uint64_t{0xD1B54A32D192ED03u};
+                put(static_cast<std::size_t>(hash >> 40) & (buckets - 1), LoopEdge{from, to});
+            });
+        }
+    };
+    const std::size_t chunks = (sides.size() + kItemsOfChunk - 1) / kItemsOfChunk;
+    return bucketize_in_order<LoopEdge>(buckets, chunks, produce, execution);
 }
 
 }  // namespace
 
 std::optional<EdgeCount> open_edge(const ComplexView& model, std::span<const Side> sides,
-                                   std::vector<std::uint64_t>& uses, const Execution& execution) {
-    uses.clear();
-    if (sides.size() <= kFacesOfLargeCell) {
-        for (const Side side : sides)
-            add_edges(model, side, uses);
-        std::sort(uses.begin(), uses.end());
-    } else {
-        uses = found_in_ranges<std::uint64_t>(
-            sides.size(), kFacesOfLargeCell, execution,
-            [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& list) {
-                for (const Side side : sides.subspan(begin, end - begin))
-                    add_edges(model, side, list);
-            });
-        parallel_sort(uses, std::less<>(), execution);
+                                   EdgeTable& table) {
+    table.reset(count_edges(model, sides), model.cell_kind == CellKind::kBlocks);
+    for (const Side side : sides) {
+        along_loop(model, side, [&](std::int32_t from, std::int32_t to) { table.use(from, to); });
     }
-    for (const auto of_edge : groups_of(uses, [](std::uint64_t use) { return use >> 1; })) {
-        const auto back = std::ranges::count_if(of_edge, [](auto use) { return (use & 1) != 0; });
-        const auto ahead = std::ssize(of_edge) - back;
-        if (ahead == back && (ahead == 1 || model.cell_kind == CellKind::kBlocks)) continue;
-        return EdgeCount{static_cast<std::int32_t>(of_edge[0] >> 32),
-                         static_cast<std::int32_t>((of_edge[0] >> 1) & INT32_MAX), ahead, back};
+    return table.closed() ? std::nullopt : table.open_edge();
+}
+
+std::optional<EdgeCount> open_edge_of_large_cell(const ComplexView& model,
+                                                 std::span<const Side> sides,
+                                                 const Execution& execution) {
+    const auto buckets = edge_buckets(model, sides, execution);
+    std::vector<std::optional<EdgeCount>> open(buckets.size());
+    parallel_chunks(buckets.size(), execution, [&](std::size_t b) {
+        EdgeTable table;
+        table.reset(buckets[b].size(), model.cell_kind == CellKind::kBlocks);
+        for (const auto& [from, to] : buckets[b])
+            table.use(from, to);
+        if (!table.closed()) open[b] = table.open_edge();
+    });
+    std::optional<EdgeCount> lowest;
+    for (const auto& e : open) {
+        if (e && (!lowest || std::pair(e->low, e->high) < std::pair(lowest->low, lowest->high)))
+            lowest = e;
     }
-    return std::nullopt;
+    return lowest;
 }
 
 }  // namespace realmodel::validation

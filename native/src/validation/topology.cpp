@@ -14,6 +14,9 @@ namespace realmodel::validation {
 
 namespace {
 
+/// Cells with more faces than this are looked at one by one, on all threads.
+constexpr std::size_t kFacesOfLargeCell = 4096;
+
 /// What is found cell by cell.
 struct CellFindings {
     Findings closed, volumes;
@@ -39,7 +42,7 @@ public:
         std::vector<CellFindings> chunk_findings(chunks);
         std::vector<std::vector<std::size_t>> large(chunks);
         parallel_chunks(chunks, execution_, [&](std::size_t chunk) {
-            std::vector<std::uint64_t> uses;
+            EdgeTable table;
             const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
             for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {
                 const auto sides = sides_[c];
@@ -47,18 +50,15 @@ public:
                 if (sides.size() > kFacesOfLargeCell) {
                     large[chunk].push_back(c);
                 } else {
-                    closed(c, open_edge(model_, sides, uses, execution_),
-                           chunk_findings[chunk].closed);
+                    closed(c, open_edge(model_, sides, table), chunk_findings[chunk].closed);
                 }
             }
         });
         CellFindings all;
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
             all.append(chunk_findings[chunk]);
-            for (const std::size_t c : large[chunk]) {
-                std::vector<std::uint64_t> uses;
-                closed(c, open_edge(model_, sides_[c], uses, execution_), all.closed);
-            }
+            for (const std::size_t c : large[chunk])
+                closed(c, open_edge_of_large_cell(model_, sides_[c], execution_), all.closed);
         }
         all.closed.examined = all.volumes.examined = static_cast<std::int64_t>(model_.cell_count());
         return all;
