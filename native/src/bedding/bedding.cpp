@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -159,13 +160,8 @@ private:
             SheetTriangle triangle;
             for (std::size_t i = 0; i < 3; ++i) {
                 v[i] = sheet.triangles[3 * t + i];
-                if (v[i] < 0 || static_cast<std::size_t>(v[i]) >= vertices) {
-                    throw InputError(
-                        "bad_index",
-                        "triangle " + std::to_string(t) + " refers to a vertex that does not exist",
-                        -1, {static_cast<std::int64_t>(t)});
-                }
             }
+            require_vertices("triangle", t, v, vertices);
             const auto plan = [&](std::int32_t vertex) {
                 const double* row = &sheet.vertices[3 * index(vertex)];
                 return PlanPosition{row[0], row[1]};
@@ -433,23 +429,17 @@ BeddingCorners::BeddingCorners(const ComplexView& complex, std::span<const Histo
 }
 
 void BeddingCorners::check() {
-    const auto refuse = [](std::size_t polygon, const char* what) {
-        throw InputError("bad_index", "polygon " + std::to_string(polygon) + " " + what, -1,
-                         {static_cast<std::int64_t>(polygon)});
-    };
     for (std::size_t n = 0; n < polygons_.size(); ++n) {
+        const auto refuse = [n](const char* what) { refuse_index("polygon", n, what); };
         const Polygon& polygon = polygons_[n];
         if (polygon.face < 0 || std::cmp_greater_equal(polygon.face, complex_.face_count()))
-            refuse(n, "is a face that does not exist");
+            refuse("is a face that does not exist");
         if (polygon.history < 0 || std::cmp_greater_equal(polygon.history, histories_.size()))
-            refuse(n, "has a history that does not exist");
+            refuse("has a history that does not exist");
         if (polygon.layer < -1 ||
             std::cmp_greater_equal(polygon.layer, histories_[index(polygon.history)].sheets.size()))
-            refuse(n, "lies in a layer that does not exist");
-        for (const std::int32_t v : complex_.face(index(polygon.face))) {
-            if (v < 0 || std::cmp_greater_equal(v, complex_.vertex_count()))
-                refuse(n, "refers to a vertex that does not exist");
-        }
+            refuse("lies in a layer that does not exist");
+        require_vertices("polygon", n, complex_.face(index(polygon.face)), complex_.vertex_count());
     }
 }
 
@@ -457,9 +447,7 @@ void BeddingCorners::check() {
 void BeddingCorners::check_histories() const {
     if (histories_of_corners_.empty()) return;
     const auto refuse = [](std::size_t polygon) {
-        throw InputError("bad_index",
-                         "polygon " + std::to_string(polygon) + " has a corner without a history",
-                         -1, {static_cast<std::int64_t>(polygon)});
+        refuse_index("polygon", polygon, "has a corner without a history");
     };
     if (histories_of_corners_.size() != begin_.back()) refuse(polygons_.size());
     for (std::size_t n = 0; n < polygons_.size(); ++n) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::booleans {
@@ -23,12 +24,7 @@ void check(const TriangleView& mesh, int surface) {
             throw InputError("not_finite", "a coordinate is not finite", surface,
                              {static_cast<std::int64_t>(i / 3)});
     }
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::int32_t v = mesh.triangles[i];
-        if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size() / 3)
-            throw InputError("bad_index", "a triangle has a vertex that is not there", surface,
-                             {static_cast<std::int64_t>(i / 3)});
-    }
+    require_triangles(mesh.triangles, mesh.vertices.size() / 3, surface);
 }
 
 exact::SpacePosition position(const TriangleView& mesh, std::size_t vertex) {

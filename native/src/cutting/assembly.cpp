@@ -17,9 +17,8 @@ Position position_of(const ComplexView& model, const std::vector<Position>& new_
 
 /// One half while it is put together.
 struct HalfAssembly {
-    HalfAssembly(CellComplex& to, std::vector<std::int32_t>& cells, std::size_t nodes,
-                 std::size_t chunks, const Execution& execution)
-        : complex(to), origin(cells), chunked(to, nodes, chunks, execution) {}
+    HalfAssembly(CellComplex& to, std::vector<std::int32_t>& cells, std::size_t chunks)
+        : complex(to), origin(cells), chunked(to, chunks) {}
 
     CellComplex& complex;
     std::vector<std::int32_t>& origin;
@@ -33,9 +32,8 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
                     const Execution& execution) {
     Cut cut;
     const std::size_t nodes = model.vertex_count() + new_positions.size(), chunks = pieces.chunks();
-    std::array<HalfAssembly, 2> halves{
-        HalfAssembly(cut.below, cut.below_cells, nodes, chunks, execution),
-        HalfAssembly(cut.above, cut.above_cells, nodes, chunks, execution)};
+    std::array<HalfAssembly, 2> halves{HalfAssembly(cut.below, cut.below_cells, chunks),
+                                       HalfAssembly(cut.above, cut.above_cells, chunks)};
     const auto half_of = [&](std::int32_t part) {
         return half_cells[index(part)].side == kBelow ? std::size_t{0} : std::size_t{1};
     };
@@ -84,8 +82,13 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
                 is_exposed || piece.face < 0 ? kCutFace : model.face_surface[index(piece.face)]);
         });
     });
+    parallel_chunks(2, execution, [&](std::size_t h) {
+        CellComplex& complex = halves[h].complex;
+        number_nodes(
+            complex.face_vertices, nodes,
+            [&](NodeId node) { return position_of(model, new_positions, node); }, complex.vertices);
+    });
     for (HalfAssembly& half : halves) {
-        half.chunked.number([&](NodeId node) { return position_of(model, new_positions, node); });
         half.complex.cell_kind = model.cell_kind;
         half.complex.volumes = strata::block_volumes(half.complex, model.blocks, execution);
     }
@@ -95,28 +98,20 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,
                          const CutPieces& pieces) {
     Section section;
-    std::vector<std::int32_t> number(model.vertex_count() + new_positions.size(), -1);
-    const auto renumbered = [&](NodeId node) {
-        std::int32_t& vertex = number[index(node)];
-        if (vertex < 0) {
-            vertex = static_cast<std::int32_t>(section.vertices.size());
-            section.vertices.push_back(position_of(model, new_positions, node));
-        }
-        return vertex;
-    };
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         if (!pieces[p].is_in_section()) continue;
         const auto& sides = pieces[p].sides;
         const bool reversed = sides[0] == kAbove || sides[1] == kBelow;
         const auto nodes = pieces.polygons[p];
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            section.polygon_vertices.push_back(
-                renumbered(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]));
-        }
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            section.polygon_vertices.push_back(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]);
         section.offsets.push_back(static_cast<std::int64_t>(section.polygon_vertices.size()));
         const auto& cells = pieces[p].cells;
         section.cells.push_back(reversed ? std::array{cells[1], cells[0]} : cells);
     }
+    number_nodes(
+        section.polygon_vertices, model.vertex_count() + new_positions.size(),
+        [&](NodeId node) { return position_of(model, new_positions, node); }, section.vertices);
     return section;
 }
 

@@ -7,6 +7,7 @@
 
 #include "arrangement/edge_fan.hpp"
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/key_table.hpp"
 #include "exact/orientation.hpp"
 #include "realmodel/base/errors.hpp"
@@ -97,7 +98,6 @@ private:
     };
 
     EdgeUses edges_of(const std::vector<Triangle>& triangles) const;
-    bool has_repeated() const;
     bool are_closed(const std::vector<Triangle>& triangles) const;
     bool drop_repeated();
     void divide_borders();
@@ -133,15 +133,11 @@ SurfaceInput::SurfaceInput(const TriangleView& input) {
                              [&](NodeId other) { return at(other) == p; });
         first.push_back(vertex.number);
     }
+    require_triangles(input.triangles, first.size());
     for (std::size_t t = 0; t + 2 < input.triangles.size(); t += 3) {
         Triangle corners{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t v = input.triangles[t + i];
-            if (v < 0 || v >= count)
-                throw InputError("bad_index", "a triangle of the surface names no vertex", -1,
-                                 {static_cast<std::int64_t>(t / 3)});
-            corners[i] = first[index(v)];
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = first[index(input.triangles[t + i])];
         if (exact::in_one_line(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
         surface_.triangles.push_back(corners);
         original_.push_back(static_cast<std::int64_t>(t / 3));
@@ -157,20 +153,6 @@ EdgeUses SurfaceInput::edges_of(const std::vector<Triangle>& triangles) const {
                                  {1});
 }
 
-/// Whether some triangles have the same corners.
-bool SurfaceInput::has_repeated() const {
-    const auto key_of = [this](std::int32_t t) {
-        Triangle corners = surface_.triangles[index(t)];
-        std::ranges::sort(corners);
-        return KeyTable::Key{corners[0], corners[1], corners[2], 0};
-    };
-    KeyTable known;
-    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
-        if (!known.insert(key_of(t), key_of).is_new) return true;
-    }
-    return false;
-}
-
 /// Whether some triangles have each edge an even number of times.
 bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
     const EdgeUses edges = edges_of(triangles);
@@ -183,7 +165,6 @@ bool SurfaceInput::are_closed(const std::vector<Triangle>& triangles) const {
 /// Where leaving out pairs of equal triangles leaves a closed surface: does that, and true. Else
 /// leaves one of each.
 bool SurfaceInput::drop_repeated() {
-    if (!has_repeated()) return are_closed(surface_.triangles);
     std::vector<std::pair<Triangle, std::size_t>> sorted;
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
         sorted.push_back({surface_.triangles[t], t});

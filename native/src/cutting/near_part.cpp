@@ -151,52 +151,33 @@ FarFaces::FarFaces(const ComplexView& model, std::span<const std::uint8_t> is_ne
     box_ = connection.keep_near(surface, margin);
     connection.join();
     // groups of which any are left out, in the order of their first faces
-    auto is_group = zeros<std::uint8_t>(count, execution);
-    parallel_each(count, execution, [&](std::size_t i) {
-        if (!connection.stays(i)) atomic_set(is_group[connection.first_of_group(i)]);
-    });
-    Array<std::int32_t> number(count);
-    std::fill(number.begin(), number.end(), -1);
-    number_in_order(
-        count, execution, [&](std::size_t i) { return is_group[i] != 0; },
-        [this](std::size_t groups) { first_.resize(groups); },
-        [&](std::size_t i, std::size_t group) { number[i] = static_cast<std::int32_t>(group); });
-    std::vector<std::int32_t> remaining_faces;
-    number_in_order(
-        count, execution, [&](std::size_t i) { return connection.stays(i); },
-        [&](std::size_t size) {
-            remaining_faces.resize(size);
-            group_.resize(size);
-        },
-        [&](std::size_t i, std::size_t at) {
-            remaining_faces[at] = faces[i];
-            group_[at] = number[connection.first_of_group(i)];
-            if (number[i] >= 0) first_[index(number[i])] = static_cast<std::int32_t>(at);
-        });
-    number_in_order(
-        count, execution, [&](std::size_t i) { return !connection.stays(i); },
-        [this](std::size_t size) {
-            faces_.resize(size);
-            groups_of_faces_.resize(size);
-        },
-        [&](std::size_t i, std::size_t at) {
-            faces_[at] = faces[i];
-            groups_of_faces_[at] = number[connection.first_of_group(i)];
-        });
-    of_group_ = bucketize_in_order<std::int32_t>(
-        first_.size(), (faces_.size() + kEdgeChunk - 1) / kEdgeChunk,
-        [this](std::size_t chunk, const auto& put) {
-            const std::size_t end = std::min(faces_.size(), (chunk + 1) * kEdgeChunk);
-            for (std::size_t i = chunk * kEdgeChunk; i < end; ++i)
-                put(index(groups_of_faces_[i]), faces_[i]);
-        },
-        execution);
-    std::size_t at = 0;
+    std::vector<std::uint8_t> is_group(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
-        if (!connection.stays(i) || group_[at++] < 0) continue;
+        if (!connection.stays(i)) is_group[connection.first_of_group(i)] = 1;
+    }
+    std::vector<std::int32_t> number(count, -1), remaining_faces;
+    for (std::size_t i = 0; i < count; ++i) {
+        poll(execution.progress, i);
+        const std::size_t first = connection.first_of_group(i);
+        if (!connection.stays(i)) {
+            faces_.push_back(faces[i]);
+            groups_of_faces_.push_back(number[first]);
+            continue;
+        }
+        if (is_group[i] != 0) {
+            number[i] = static_cast<std::int32_t>(first_.size());
+            first_.push_back(static_cast<std::int32_t>(remaining_faces.size()));
+        }
+        remaining_faces.push_back(faces[i]);
+        group_.push_back(number[first]);
+        if (number[first] < 0) continue;
         connection.each_edge_to_left_out(
             i, [this](const EdgeUse& use) { edges_.push_back(use.key()); });
     }
+    of_group_ = bucketize<std::int32_t>(first_.size(), [this](const auto& put) {
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            put(index(groups_of_faces_[i]), faces_[i]);
+    });
     std::ranges::sort(edges_);
     faces = std::move(remaining_faces);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -86,22 +87,6 @@ namespace {
 
 constexpr std::size_t kFacesOfChunk = 1 << 12;
 
-void require_faces(const ComplexView& complex, std::size_t faces) {
-    const auto refuse = [](std::size_t face, const char* what) {
-        throw InputError("bad_index", "face " + std::to_string(face) + " " + what, -1,
-                         {static_cast<std::int64_t>(face)});
-    };
-    for (std::size_t f = 0; f < faces; ++f) {
-        const std::int64_t begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
-        if (begin < 0 || end < begin + 3 || std::cmp_greater(end, complex.face_vertices.size()))
-            refuse(f, "has corners that do not exist, or less than three");
-        for (const std::int32_t v : complex.face(f)) {
-            if (v < 0 || std::cmp_greater_equal(v, complex.vertex_count()))
-                refuse(f, "refers to a vertex that does not exist");
-        }
-    }
-}
-
 }  // namespace
 
 FaceTriangles triangulate_faces(std::span<const double> vertices,
@@ -113,7 +98,9 @@ FaceTriangles triangulate_faces(std::span<const double> vertices,
     complex.face_offsets = face_offsets;
     complex.face_vertices = face_vertices;
     const std::size_t faces = face_offsets.empty() ? 0 : face_offsets.size() - 1;
-    require_faces(complex, faces);
+    for (std::size_t f = 0; f < faces; ++f)
+        require_vertices("face", f, checked_corners("face", f, face_offsets, face_vertices, 3),
+                         complex.vertex_count());
     FaceTriangles face_triangles;
     face_triangles.offsets.resize(faces + 1, 0);
     face_triangles.triangles = found_in_ranges<std::array<std::int32_t, 3>>(

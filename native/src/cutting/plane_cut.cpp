@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "base/algorithms.hpp"
 #include "base/counting_sort.hpp"
+#include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "cutting/assembly.hpp"
 #include "cutting/near_part.hpp"
@@ -450,80 +450,38 @@ namespace {
 
 /// The part of a section above a plane. Convex polygons stay convex and in one piece (I. E.
 /// Sutherland and G. W. Hodgman 1974); neighbors are cut in the same points.
-class SectionClip {
-public:
-    SectionClip(const Section& section, const exact::OrientedPlane& plane)
-        : section_(section), plane_(plane), number_(section.vertices.size(), -1) {}
-
-    Section above() {
-        for (const Position& p : section_.vertices)
-            sides_.push_back(plane_.side(p));
-        std::vector<NodeId> polygon;
-        for (std::size_t k = 0; k < section_.cells.size(); ++k) {
-            const auto begin = static_cast<std::size_t>(section_.offsets[k]);
-            const auto end = static_cast<std::size_t>(section_.offsets[k + 1]);
-            polygon.clear();
-            bool any = false;
-            for (std::size_t i = begin; i < end; ++i) {
-                const NodeId a = section_.polygon_vertices[i];
-                const NodeId b = section_.polygon_vertices[i + 1 < end ? i + 1 : begin];
-                any = any || side(a) == kAbove;
-                if (side(a) != kBelow) polygon.push_back(node_of(a));
-                if (side(a) * side(b) < 0) polygon.push_back(intersection(a, b));
-            }
-            if (!any || polygon.size() < 3) continue;
-            result_.polygon_vertices.insert(result_.polygon_vertices.end(), polygon.begin(),
-                                            polygon.end());
-            result_.offsets.push_back(static_cast<std::int64_t>(result_.polygon_vertices.size()));
-            result_.cells.push_back(section_.cells[k]);
+Section section_above(const Section& section, const exact::OrientedPlane& plane) {
+    const auto sides =
+        transformed(section.vertices, [&](const Position& p) { return plane.side(p); });
+    using Ends = std::array<std::int64_t, 2>;  // of the edge that a node is on, or a vertex twice
+    KeyNumbers<Ends> nodes;
+    std::vector<Ends> polygon;
+    Section above;
+    for (std::size_t k = 0; k < section.cells.size(); ++k) {
+        const auto begin = static_cast<std::size_t>(section.offsets[k]);
+        const auto end = static_cast<std::size_t>(section.offsets[k + 1]);
+        polygon.clear();
+        bool any = false;
+        for (std::size_t i = begin; i < end; ++i) {
+            const NodeId a = section.polygon_vertices[i];
+            const NodeId b = section.polygon_vertices[i + 1 < end ? i + 1 : begin];
+            any = any || sides[index(a)] == kAbove;
+            if (sides[index(a)] != kBelow) polygon.push_back({a, a});
+            if (sides[index(a)] * sides[index(b)] < 0)
+                polygon.push_back({std::min(a, b), std::max(a, b)});
         }
-        drop_unused();
-        return std::move(result_);
+        if (!any || polygon.size() < 3) continue;
+        for (const Ends& ends : polygon)
+            above.polygon_vertices.push_back(nodes.add(ends));
+        above.offsets.push_back(static_cast<std::int64_t>(above.polygon_vertices.size()));
+        above.cells.push_back(section.cells[k]);
     }
-
-private:
-    std::int8_t side(NodeId v) const { return sides_[index(v)]; }
-
-    NodeId add(const Position& p) {
-        result_.vertices.push_back(p);
-        return static_cast<NodeId>(result_.vertices.size()) - 1;
+    for (const auto& [a, b] : nodes.keys()) {
+        const Position &p = section.vertices[index(a)], &q = section.vertices[index(b)];
+        above.vertices.push_back(a == b ? p : plane.intersection(p, q));
     }
-    NodeId node_of(NodeId v) {
-        NodeId& number = number_[index(v)];
-        if (number < 0) number = add(section_.vertices[index(v)]);
-        return number;
-    }
-    NodeId intersection(NodeId a, NodeId b) {
-        const auto [entry, is_new] =
-            intersections_.try_emplace(std::pair(std::min(a, b), std::max(a, b)), -1);
-        if (is_new) {
-            entry->second = add(plane_.intersection(section_.vertices[index(entry->first.first)],
-                                                    section_.vertices[index(entry->first.second)]));
-        }
-        return entry->second;
-    }
-    /// Nodes of polygons that merely touch the plane.
-    void drop_unused() {
-        std::vector<NodeId> renumbered(result_.vertices.size(), -1);
-        Array<Position> used;
-        for (NodeId& v : result_.polygon_vertices) {
-            NodeId& number = renumbered[index(v)];
-            if (number < 0) {
-                number = static_cast<NodeId>(used.size());
-                used.push_back(result_.vertices[index(v)]);
-            }
-            v = number;
-        }
-        result_.vertices = std::move(used);
-    }
-
-    const Section& section_;
-    const exact::OrientedPlane& plane_;
-    std::vector<std::int8_t> sides_;
-    std::vector<NodeId> number_;
-    std::map<std::pair<NodeId, NodeId>, NodeId> intersections_;
-    Section result_;
-};
+    return above;
+}
 
 }  // namespace
 
@@ -532,8 +490,8 @@ Section fence_panel(const ComplexView& model, const std::array<double, 2>& start
     const double dx = end[0] - start[0], dy = end[1] - start[1];
     const Position first{start[0], start[1], 0}, last{end[0], end[1], 0};
     const Section whole = section_by_plane(model, {first, {dy, -dx, 0}}, execution);
-    const Section begun = SectionClip(whole, checked_plane({first, {dx, dy, 0}})).above();
-    return SectionClip(begun, checked_plane({last, {-dx, -dy, 0}})).above();
+    const Section begun = section_above(whole, checked_plane({first, {dx, dy, 0}}));
+    return section_above(begun, checked_plane({last, {-dx, -dy, 0}}));
 }
 
 }  // namespace realmodel::cutting

@@ -253,7 +253,7 @@ private:
     std::int32_t triangle(std::size_t region) const {
         return arrangement_.regions().triangles[region];
     }
-    class FacePlane;
+    class RoundedPlane;
     void find_same_faces(bool are_there);
     void find_active_faces(std::span<const std::int32_t> groups);
     bool is_beside(std::span<const NodeId> polygon, std::int32_t triangle) const;

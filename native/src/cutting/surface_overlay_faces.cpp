@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -17,26 +18,34 @@ namespace realmodel::cutting {
 using spatial::Box;
 using spatial::BoxTree;
 
-/// The plane that a face lies in but for rounding.
-class SurfaceOverlay::FacePlane {
+/// A plane, from which rounding may have moved what is in it.
+class SurfaceOverlay::RoundedPlane {
 public:
-    FacePlane(const ComplexView& model, std::span<const NodeId> polygon, double margin) {
-        const auto corners = positions_of(model, polygon);
-        origin_ = corners[0];
-        normal_ = polygon_normal(corners);
-        margin_ = 2 * margin;
-        for (const Position& p : corners)
+    /// @param margin  how far coordinates may be off
+    RoundedPlane(const Position& origin, const Position& normal, double margin)
+        : origin_(origin), normal_(normal), margin_(margin) {}
+    /// The plane of a face.
+    RoundedPlane(const ComplexView& model, std::span<const NodeId> polygon, double margin)
+        : origin_(model.vertex(polygon[0])),
+          normal_(polygon_normal(positions_of(model, polygon))),
+          margin_(2 * margin) {
+        for (const NodeId v : polygon) {
+            const Position p = model.vertex(v);
             reach_ = std::max(reach_, std::abs(distance(p)) + rounding(p));
-    }
-    /// Whether a triangle is surely beside it, farther than the face's corners are.
-    bool is_beside(const std::array<Position, 3>& triangle) const {
-        int above = 0, below = 0;
-        for (const Position& p : triangle) {
-            const double off = distance(p), allowed = reach_ + rounding(p);
-            above += off > allowed;
-            below += off < -allowed;
         }
-        return above == 3 || below == 3;
+    }
+    /// Whether some corners surely are all on one side of it, farther than the face's are.
+    template <class Corners, class PositionOf>
+    bool is_beside(const Corners& corners, const PositionOf& position_of) const {
+        int side = 0;
+        for (const auto& corner : corners) {
+            const Position& p = position_of(corner);
+            const double off = distance(p), allowed = reach_ + rounding(p);
+            const int side_here = off > allowed ? 1 : off < -allowed ? -1 : 0;
+            if (side_here == 0 || side_here == -side) return false;
+            side = side_here;
+        }
+        return true;
     }
 
 private:
@@ -98,12 +107,12 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
                 active_[f] = first_passed(model_.face(f)) >= 0 ? 1 : 0;
                 continue;
             }
-            std::optional<FacePlane> plane;
+            std::optional<RoundedPlane> plane;
             each_near(model_.face(f), [&](std::int32_t t) {
                 if (is_beside(model_.face(f), t)) return;
                 active_[f] = 1;
                 if (!plane) plane.emplace(model_, model_.face(f), margin_);
-                if (!plane->is_beside(surface_.corners(index(t))))
+                if (!plane->is_beside(surface_.corners(index(t)), std::identity()))
                     std::atomic_ref(meets[index(t)]).store(1, std::memory_order_relaxed);
             });
         }
@@ -120,22 +129,8 @@ void SurfaceOverlay::find_active_faces(std::span<const std::int32_t> groups) {
 /// Whether all corners of a polygon are on one side of the plane of a triangle, farther from it
 /// than rounding may put them.
 bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) const {
-    constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
-    const Position a = corner(t, 0);
-    const Position& normal = normals_[index(t)];
-    int above = 0, below = 0;
-    for (const NodeId v : polygon) {
-        const Position p = model_.vertex(v);
-        double distance = 0, allowed = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            distance += normal[k] * (p[k] - a[k]);
-            allowed += std::abs(normal[k]) * (margin_ + kRounding * std::abs(p[k] - a[k]));
-        }
-        above += distance > allowed;
-        below += distance < -allowed;
-        if (above > 0 && below > 0) return false;
-    }
-    return index(above) == polygon.size() || index(below) == polygon.size();
+    return RoundedPlane(corner(t, 0), normals_[index(t)], margin_)
+        .is_beside(polygon, [this](NodeId v) { return model_.vertex(v); });
 }
 
 /// Calls visit(triangle) for those whose boxes a polygon's meets.

@@ -119,8 +119,8 @@ private:
     void write_patches(Progress* progress);
     void write_caps(Progress* progress);
     void divide(const Patch& patch, Polygons& polygons);
-    void write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
-               std::int32_t face, std::array<std::int32_t, 2> half_faces, bool on_cutter);
+    void write(const Polygons& polygons, bool reversed, std::int32_t face,
+               std::array<std::int32_t, 2> half_faces, bool on_cutter);
     void find_touches(Progress* progress);
 
     SurfaceOverlay& overlay_;

@@ -24,38 +24,6 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
     return divided;
 }
 
-/// Many things in polygons, which are found on several threads.
-class DividedInChunks {
-public:
-    /// @param divide  divide(i, polygons) adds those of the i-th
-    template <class Divide>
-    DividedInChunks(std::size_t count, const Divide& divide, const Execution& execution)
-        : chunks_((count + kChunk - 1) / kChunk) {
-        parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
-            Chunk& chunk = chunks_[begin / kChunk];
-            for (std::size_t i = begin; i < end; ++i) {
-                divide(i, chunk.polygons);
-                chunk.ends.push_back(chunk.polygons.size());
-            }
-        });
-    }
-    /// Calls visit(polygons, first, end) for those of the i-th.
-    template <class Visit>
-    void visit(std::size_t i, const Visit& visit) const {
-        const Chunk& chunk = chunks_[i / kChunk];
-        visit(chunk.polygons, i % kChunk == 0 ? 0 : chunk.ends[i % kChunk - 1],
-              chunk.ends[i % kChunk]);
-    }
-
-private:
-    static constexpr std::size_t kChunk = 1 << 10;
-    struct Chunk {
-        Polygons polygons;
-        std::vector<std::size_t> ends;  ///< of the polygons of each
-    };
-    std::vector<Chunk> chunks_;
-};
-
 }  // namespace
 
 bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
@@ -107,11 +75,10 @@ void SurfaceParts::number_parts() {
     }
 }
 
-/// Adds some of the polygons between two half-faces: they turn counter-clockwise, the other
+/// Adds polygons between two half-faces: they turn counter-clockwise, the other
 /// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
-void SurfaceParts::write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
-                         std::int32_t face, std::array<std::int32_t, 2> half_faces,
-                         bool on_cutter) {
+void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t face,
+                         std::array<std::int32_t, 2> half_faces, bool on_cutter) {
     CutPiece origin{face, {-1, -1}, {kOn, kOn}, on_cutter};
     for (std::size_t k = 0; k < 2; ++k) {
         if (half_faces[k] < 0) continue;
@@ -122,7 +89,7 @@ void SurfaceParts::write(const Polygons& polygons, std::array<std::size_t, 2> ra
     }
     assert(origin.parts[0] >= 0 || origin.parts[1] >= 0);
     if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
-    for (std::size_t p = range[0]; p < range[1]; ++p) {
+    for (std::size_t p = 0; p < polygons.size(); ++p) {
         if (reversed) {
             pieces.add_reversed(polygons[p], origin);
         } else {
@@ -156,15 +123,11 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
 
 /// Patches are divided on all threads and written in their order.
 void SurfaceParts::write_patches(Progress* progress) {
-    const DividedInChunks divided(
-        patches_.size(),
-        [this](std::size_t i, Polygons& polygons) { divide(patches_[i], polygons); },
-        {overlay_.threads(), progress});
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
-        divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
-            write(polygons, {first, end}, false, patches_[i].face, patches_[i].half_faces, false);
-        });
-    }
+    std::vector<Polygons> divided(patches_.size());
+    parallel_each(divided.size(), {overlay_.threads(), progress},
+                  [&](std::size_t i) { divide(patches_[i], divided[i]); });
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+        write(divided[i], false, patches_[i].face, patches_[i].half_faces, false);
 }
 
 /// A region of the surface, or an undivided triangle, in polygons, which are added.
@@ -192,17 +155,12 @@ void SurfaceParts::write_caps(Progress* progress) {
             if (model.cell(index(face), 1) < 0) outer_face[index(winding_.coincident(r))] = face;
         }
     }
-    const DividedInChunks in_polygons(
-        cap_facets_.size(),
-        [this](std::size_t i, Polygons& polygons) { divide(cap_facets_[i], polygons); },
-        {overlay_.threads(), progress});
-    Polygons polygons;
+    std::vector<Polygons> in_polygons(cap_facets_.size());
+    parallel_each(in_polygons.size(), {overlay_.threads(), progress},
+                  [&](std::size_t i) { divide(cap_facets_[i], in_polygons[i]); });
     for (std::size_t i = 0; i < cap_facets_.size(); ++i) {
         const Caps& caps = caps_[cap_facets_[i].caps];
-        polygons.clear();
-        in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
-            polygons.add(all, first, end);
-        });
+        const Polygons& polygons = in_polygons[i];
         // no two polygons of a half may be the same; between two parts of a half there is one
         std::array<bool, 2> written{false, false};
         const auto add = [&](bool reversed, std::int32_t face,
@@ -216,12 +174,8 @@ void SurfaceParts::write_caps(Progress* progress) {
             for (const std::int32_t half_face : half_faces) {
                 if (half_face >= 0) written[half_of(half_face)] = true;
             }
-            if (again) {
-                const Polygons divided = from_middle(overlay_, polygons);
-                write(divided, {0, divided.size()}, reversed, face, half_faces, on_cutter);
-            } else {
-                write(polygons, {0, polygons.size()}, reversed, face, half_faces, on_cutter);
-            }
+            write(again ? from_middle(overlay_, polygons) : polygons, reversed, face, half_faces,
+                  on_cutter);
         };
         const std::int32_t outer = outer_face[index(caps.region)];
         const auto cap = [&](const std::array<std::int32_t, 2>& half_faces) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <string>
 #include <utility>
 
+#include "base/checked_indices.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
-#include "realmodel/base/errors.hpp"
 #include "realmodel/shells/shells.hpp"
 
 namespace realmodel::shells {
@@ -22,22 +21,14 @@ constexpr std::size_t kFewUses = 24;  // so few are compared one by one
 
 void require_in_range(std::span<const std::int32_t> offsets, std::span<const std::int32_t> corners,
                       std::size_t vertices) {
-    const auto refuse = [](std::size_t polygon, const char* what) {
-        throw InputError("bad_index", "polygon " + std::to_string(polygon) + " " + what, -1,
-                         {static_cast<std::int64_t>(polygon)});
-    };
-    if (offsets.empty() || offsets[0] != 0) refuse(0, "does not begin with the first corner");
+    if (offsets.empty() || offsets[0] != 0)
+        refuse_index("polygon", 0, "does not begin with the first corner");
     for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
-        if (offsets[f + 1] < offsets[f] || std::cmp_greater(offsets[f + 1], corners.size()))
-            refuse(f, "has corners that do not exist");
-        for (auto c = offsets[f]; c < offsets[f + 1]; ++c) {
-            const std::int32_t v = corners[static_cast<std::size_t>(c)];
-            if (v < 0 || std::cmp_greater_equal(v, vertices))
-                refuse(f, "refers to a vertex that does not exist");
-        }
+        require_vertices("polygon", f, checked_corners("polygon", f, offsets, corners, 0),
+                         vertices);
     }
     if (std::cmp_not_equal(offsets.back(), corners.size()))
-        refuse(offsets.size() - 1, "has corners beyond the last");
+        refuse_index("polygon", offsets.size() - 1, "has corners beyond the last");
 }
 
 /// Calls use(corner, lower, upper) for each corner and the next of its polygon.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
@@ -26,25 +27,15 @@ struct FaceSide {
 };
 
 void require_in_range(const ComplexView& complex, Progress* progress) {
-    const auto refuse = [](std::size_t face, const char* what) {
-        throw InputError("bad_index", "face " + std::to_string(face) + " " + what, -1,
-                         {static_cast<std::int64_t>(face)});
-    };
     const std::size_t faces = complex.face_count();
-    if (complex.face_offsets.size() != faces + 1) refuse(faces, "has no offset, or one too many");
+    if (complex.face_offsets.size() != faces + 1)
+        refuse_index("face", faces, "has no offset, or one too many");
     for (std::size_t f = 0; f < faces; ++f) {
         poll(progress, f);
-        const auto begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
-        if (begin < 0 || begin > end || std::cmp_greater(end, complex.face_vertices.size()))
-            refuse(f, "has corners that do not exist");
-        for (const std::int32_t v : complex.face(f)) {
-            if (v < 0 || std::cmp_greater_equal(v, complex.vertex_count()))
-                refuse(f, "refers to a vertex that does not exist");
-        }
-        for (const std::int32_t cell : {complex.cell(f, 0), complex.cell(f, 1)}) {
-            if (cell < -1 || std::cmp_greater_equal(cell, complex.cell_count()))
-                refuse(f, "refers to a cell that does not exist");
-        }
+        const auto corners =
+            checked_corners("face", f, complex.face_offsets, complex.face_vertices, 0);
+        require_vertices("face", f, corners, complex.vertex_count());
+        require_cells(f, {complex.cell(f, 0), complex.cell(f, 1)}, complex.cell_count());
     }
     for (const std::int32_t block : complex.cell_block) {
         if (block < 0 || std::cmp_greater_equal(block, complex.blocks))

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -23,10 +24,7 @@ namespace {
 std::span<const std::int32_t> loop_of(const FaceLoops& faces, std::int64_t face) {
     if (face < 0 || face + 1 >= static_cast<std::int64_t>(faces.offsets.size()))
         refuse(face, "there is no such face");
-    const std::int64_t begin = faces.offsets[index(face)], end = faces.offsets[index(face + 1)];
-    if (begin < 0 || begin >= end || end > static_cast<std::int64_t>(faces.vertices.size()))
-        refuse(face, "the face has corners that do not exist");
-    return faces.vertices.subspan(index(begin), index(end - begin));
+    return checked_corners("face", index(face), faces.offsets, faces.vertices, 1);
 }
 
 constexpr std::size_t kCells = 2048;  ///< described at a time

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/checked_indices.hpp"
 #include "base/index.hpp"
 #include "base/vectors.hpp"
 #include "exact/orientation.hpp"
@@ -22,15 +23,8 @@ void check_mesh(std::span<const PlanPosition> vertices,
         throw InputError("not_finite", "vertex " + std::to_string(v) + " is not finite", -1,
                          {static_cast<std::int64_t>(v)});
     }
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (const std::int32_t v : triangles[t]) {
-            if (v >= 0 && static_cast<std::size_t>(v) < vertices.size()) continue;
-            throw InputError(
-                "bad_index",
-                "triangle " + std::to_string(t) + " refers to a vertex that does not exist", -1,
-                {static_cast<std::int64_t>(t)});
-        }
-    }
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        require_vertices("triangle", t, triangles[t], vertices.size());
 }
 
 }  // namespace

@@ -213,8 +213,7 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
     for (const cutting::HalfCell& cell : cells)
         complex.cell_block.push_back(merged.cell_block[index(cell.cell)]);
     const std::size_t merged_vertices = merged.vertices.size();
-    cutting::ChunkedComplex chunked(complex, merged_vertices + new_positions.size(),
-                                    pieces.chunks(), execution);
+    cutting::ChunkedComplex chunked(complex, pieces.chunks());
     const auto is_left = [](const cutting::CutPiece& piece) {
         return piece.parts[0] >= 0 || piece.parts[1] >= 0;
     };
@@ -235,10 +234,13 @@ CellComplex assemble(const MergedModels& merged, const std::vector<Position>& ne
                                                        : merged.face_surface[index(piece.face)]);
                        });
     });
-    chunked.number([&](cutting::NodeId node) {
-        return index(node) < merged_vertices ? merged.vertices[index(node)]
-                                             : new_positions[index(node) - merged_vertices];
-    });
+    cutting::number_nodes(
+        complex.face_vertices, merged_vertices + new_positions.size(),
+        [&](cutting::NodeId node) {
+            return index(node) < merged_vertices ? merged.vertices[index(node)]
+                                                 : new_positions[index(node) - merged_vertices];
+        },
+        complex.vertices);
     return complex;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -8,7 +7,6 @@
 #include <unordered_map>
 
 #include "base/algorithms.hpp"
-#include "base/disjoint_sets.hpp"
 #include "base/floating_point.hpp"
 #include "base/parallel.hpp"
 #include "cutting/rounding/rounded_parts.hpp"
@@ -30,7 +28,7 @@ using Edge = std::array<NodeId, 2>;
 /// either end. The others stay as they are.
 class ShortEdges {
 public:
-    ShortEdges(RoundedParts& parts, double allowed, const std::set<Edge>& edges)
+    ShortEdges(RoundedParts& parts, double allowed)
         : parts_(parts), allowed_(allowed), contraction_(parts, true) {
         pieces_at_ =
             bucketize<std::int32_t>(contraction_.becomes.size(), [&parts](const auto& put) {
@@ -39,24 +37,14 @@ public:
                         put(index(node), static_cast<std::int32_t>(p));
                 }
             });
-        find_rounds(edges);
     }
 
-    void contract_all() {
-        std::atomic<bool> any = false;
-        for (const std::vector<Edge>& round : rounds_) {
-            constexpr std::size_t kAtOnce = 1 << 3;
-            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, parts_.execution,
-                             [&] {
-                                 return [&, scratch = ShapeScratch()](std::size_t chunk) mutable {
-                                     const std::size_t begin = chunk * kAtOnce;
-                                     for (const Edge& edge : std::span(round).subspan(
-                                              begin, std::min(kAtOnce, round.size() - begin))) {
-                                         if (contract(edge, scratch)) any = true;
-                                     }
-                                 };
-                             },
-                             0.01);
+    void contract_all(const std::set<Edge>& edges) {
+        ShapeScratch scratch;
+        bool any = false;
+        for (const Edge& edge : edges) {
+            poll(parts_.execution.progress, static_cast<std::size_t>(edge[0]));
+            any = contract(edge, scratch) || any;
         }
         if (any) contraction_.apply();
     }
@@ -72,45 +60,6 @@ private:
             for (const std::int32_t part : parts_.pieces[index(p)].parts) {
                 if (part >= 0) visit(part);
             }
-        }
-    }
-
-    /// Divides the edges into rounds. Two of one round have no part in common around them, nor
-    /// around what their nodes may become one with; of others the first comes in an earlier round.
-    void find_rounds(const std::set<Edge>& edges) {
-        std::vector<NodeId> nodes;
-        for (const Edge& edge : edges)
-            nodes.insert(nodes.end(), edge.begin(), edge.end());
-        sort_unique(nodes);
-        const auto number = [&nodes](NodeId node) {
-            return static_cast<std::int32_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
-        };
-        DisjointSets clusters(nodes.size());
-        for (const Edge& edge : edges)
-            clusters.join(number(edge[0]), number(edge[1]));
-        std::vector<std::vector<std::int32_t>> around(nodes.size());  // each cluster: parts
-        for (const NodeId node : nodes) {
-            auto& parts_around = around[index(clusters.find(number(node)))];
-            each_part_at(node,
-                         [&parts_around](std::int32_t part) { parts_around.push_back(part); });
-            nodes_[node] = {node};
-        }
-        for (auto& parts_around : around) {
-            sort_unique(parts_around);
-            for (const std::int32_t part : parts_around)
-                now_.try_emplace(part);
-        }
-        std::vector<std::size_t> rounds(parts_.half_cells.size(), 0);  // of a part's edges
-        for (const Edge& edge : edges) {
-            const auto& parts_around = around[index(clusters.find(number(edge[0])))];
-            std::size_t round = 0;
-            for (const std::int32_t part : parts_around)
-                round = std::max(round, rounds[index(part)]);
-            for (const std::int32_t part : parts_around)
-                rounds[index(part)] = round + 1;
-            assert(round <= rounds_.size());  // one after another
-            if (rounds_.size() == round) rounds_.emplace_back();
-            rounds_[round].push_back(edge);
         }
     }
 
@@ -137,14 +86,14 @@ private:
                 (!contraction_.is_sound(*shape, part) && contraction_.is_sound(before, part)))
                 return false;
         }
-        assert(contraction_.becomes[index(to)] == to && !nodes_.at(from).empty());
+        assert(contraction_.becomes[index(to)] == to);
         become(from, to);
-        auto& nodes = nodes_.at(to);
-        auto& added = nodes_.at(from);
+        std::vector<NodeId> nodes = nodes_of(to), added = nodes_of(from);
         nodes.insert(nodes.end(), added.begin(), added.end());
-        added.clear();
+        nodes_[to] = std::move(nodes);
+        nodes_.erase(from);
         for (auto& [part, shape] : after)
-            now_.at(part) = shape;
+            now_[part] = shape;
         return true;
     }
 
@@ -190,7 +139,7 @@ private:
     }
     /// What a part is like now.
     const std::optional<PartShape>& now(std::int32_t part, ShapeScratch& scratch) {
-        auto& known = now_.at(part);
+        auto& known = now_[part];
         if (!known) known.emplace(contraction_.shape(part, scratch));
         return *known;
     }
@@ -253,9 +202,8 @@ private:
     RoundedParts& parts_;
     double allowed_;
     Contraction contraction_;
-    Buckets<std::int32_t> pieces_at_;  ///< of nodes
-    std::vector<std::vector<Edge>> rounds_;
-    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;  ///< that became one, of ends of edges
+    Buckets<std::int32_t> pieces_at_;                        ///< of nodes
+    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;  ///< that became one
     /// What the parts around are like: nothing where nobody has asked yet.
     std::unordered_map<std::int32_t, std::optional<std::optional<PartShape>>> now_;
 };
@@ -283,7 +231,7 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
         },
         0.05);
     const std::set<Edge> edges(short_edges.begin(), short_edges.end());
-    if (!edges.empty()) ShortEdges(parts, allowed, edges).contract_all();
+    if (!edges.empty()) ShortEdges(parts, allowed).contract_all(edges);
 }
 
 }  // namespace realmodel::structures

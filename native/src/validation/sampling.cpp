@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "realmodel/base/errors.hpp"
+#include "base/checked_indices.hpp"
 #include "validation/closed_form.hpp"
 #include "validation/findings.hpp"
 #include "validation/probes.hpp"
@@ -240,19 +240,12 @@ private:
 };
 
 void require_vertices(const ModelInput& input) {
-    const auto check = [](std::span<const std::int32_t> triangles, std::size_t vertices,
-                          int surface) {
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            if (triangles[i] >= 0 && static_cast<std::size_t>(triangles[i]) < vertices) continue;
-            throw InputError("bad_index", "a triangle refers to a vertex that does not exist",
-                             surface, {static_cast<std::int64_t>(i / 3)});
-        }
-    };
     int surface = 0;
     for (const strata::StackInput& rock : input.rocks) {
         for (const TriangleView& s : rock.surfaces)
-            check(s.triangles, s.vertices.size() / 3, surface++);
-        if (rock.region) check(rock.region->triangles, rock.region->vertices.size() / 2, -1);
+            require_triangles(s.triangles, s.vertices.size() / 3, surface++);
+        if (rock.region)
+            require_triangles(rock.region->triangles, rock.region->vertices.size() / 2);
     }
 }
 

@@ -219,18 +219,11 @@ namespace {
 template <class IsIt, class Visit>
 void visit_where(const RoundedParts& parts, std::size_t count, const IsIt& is_it,
                  const Visit& visit) {
-    std::size_t first = count;
-    parallel_ranges(
-        count, 1 << 12, parts.execution,
-        [&](std::size_t begin, std::size_t end) {
-            if (std::atomic_ref(first).load(std::memory_order_relaxed) < begin) return;
-            std::size_t i = begin;
-            while (i < end && !is_it(i))
-                ++i;
-            if (i < end) atomic_min_by(first, i, std::less<>());
-        },
-        0.05);
-    for (std::size_t i = first; i < count; ++i) {
+    const auto at_first = found_in_each<std::size_t>(
+        count, parts.execution, [&](std::size_t i, std::vector<std::size_t>& list) {
+            if (is_it(i)) list.push_back(i);
+        });
+    for (std::size_t i = at_first.empty() ? count : at_first[0]; i < count; ++i) {
         if (is_it(i)) visit(i);
     }
 }

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <string>
 
 #include "base/algorithms.hpp"
+#include "base/checked_indices.hpp"
 #include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
-#include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::simulation {
@@ -19,33 +18,20 @@ namespace {
 
 constexpr std::size_t kAtOnce = 1 << 13;
 
-[[noreturn]] void refuse(std::size_t face, const char* what) {
-    throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
-                     {static_cast<std::int64_t>(face)});
-}
-
 void check_indices(const ComplexView& model) {
     const std::size_t faces = model.face_count();
     if (model.face_offsets.size() != faces + 1 || model.face_surface.size() != faces)
-        refuse(faces, "more or fewer offsets than faces");
+        refuse_index("face", faces, "has no offset, or one too many");
     for (std::size_t f = 0; f < faces; ++f) {
-        const std::int64_t begin = model.face_offsets[f], end = model.face_offsets[f + 1];
-        if (begin < 0 || begin >= end ||
-            end > static_cast<std::int64_t>(model.face_vertices.size()))
-            refuse(f, "corners that do not exist");
-        for (const std::int32_t v : model.face(f)) {
-            if (v < 0 || index(v) >= model.vertex_count())
-                refuse(f, "a vertex that does not exist");
-        }
-        for (std::size_t side = 0; side < 2; ++side) {
-            const std::int32_t cell = model.cell(f, side);
-            if (cell < (side == 0 ? 0 : -1) ||
-                cell >= static_cast<std::int64_t>(model.cell_count()))
-                refuse(f, "a cell that does not exist");
-        }
+        require_vertices("face", f,
+                         checked_corners("face", f, model.face_offsets, model.face_vertices, 1),
+                         model.vertex_count());
+        require_cells(f, {model.cell(f, 0), model.cell(f, 1)}, model.cell_count());
+        if (model.cell(f, 0) < 0) refuse_index("face", f, "has no first cell");
     }
     for (const std::int32_t block : model.cell_block) {
-        if (block < 0 || index(block) >= model.blocks) refuse(0, "a cell of no block");
+        if (block < 0 || index(block) >= model.blocks)
+            refuse_index("face", 0, "has a cell of no block");
     }
 }
 

@@ -2,29 +2,16 @@
 #include "realmodel/strata/cell_components.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
+#include "base/checked_indices.hpp"
 #include "base/counting_sort.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
-#include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {
-
-namespace {
-
-void check_cells(const std::array<std::int32_t, 2>& sides, std::size_t face, std::size_t cells) {
-    const auto count = static_cast<std::int64_t>(cells);
-    if (std::max(sides[0], sides[1]) < count && std::min(sides[0], sides[1]) >= -1) return;
-    throw InputError("bad_index",
-                     "face " + std::to_string(face) + " refers to a cell that does not exist", -1,
-                     {static_cast<std::int64_t>(face)});
-}
-
-}  // namespace
 
 std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_t, 2>> face_cells,
                                           std::span<const std::int32_t> cell_block,
@@ -34,7 +21,7 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
     for (std::size_t f = 0; f < face_cells.size(); ++f) {
         poll(progress, f);
         const auto [first, second] = face_cells[f];
-        check_cells(face_cells[f], f, cell_block.size());
+        require_cells(f, face_cells[f], cell_block.size());
         if (first < 0 || second < 0) continue;
         if (cell_block[index(first)] == cell_block[index(second)]) {
             parts.join(first, second);
@@ -55,7 +42,7 @@ CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, st
     const auto produce = [&](std::size_t chunk, const auto& put) {
         const std::size_t end = std::min(face_cells.size(), (chunk + 1) * kFaces);
         for (std::size_t f = chunk * kFaces; f < end; ++f) {
-            check_cells(face_cells[f], f, cells);
+            require_cells(f, face_cells[f], cells);
             for (std::size_t second = 0; second < 2; ++second) {
                 const std::int32_t cell = face_cells[f][second];
                 if (cell >= 0) put(index(cell), static_cast<std::uint32_t>(2 * f + second));

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
+#include "base/checked_indices.hpp"
 #include "base/floating_point.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/vectors.hpp"
-#include "realmodel/base/errors.hpp"
 #include "realmodel/strata/cell_volumes.hpp"
 
 namespace realmodel::strata {
@@ -128,40 +127,24 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
     return result;
 }
 
-namespace {
-
-[[noreturn]] void refuse(std::size_t face, const char* what) {
-    throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
-                     {static_cast<std::int64_t>(face)});
-}
-
-}  // namespace
-
 std::vector<double> cell_volumes(std::span<const Vec3> vertices,
                                  std::span<const std::int64_t> face_offsets,
                                  std::span<const std::int32_t> face_vertices,
                                  std::span<const std::array<std::int32_t, 2>> face_cells,
                                  std::size_t cells, const Execution& execution) {
     const std::size_t faces = face_cells.size();
-    if (face_offsets.size() != faces + 1) refuse(faces, "more or fewer offsets than faces");
+    if (face_offsets.size() != faces + 1)
+        refuse_index("face", faces, "has no offset, or one too many");
     const auto loop_of = [&](std::size_t f) {
-        const std::int64_t begin = face_offsets[f], end = face_offsets[f + 1];
-        if (begin < 0 || begin >= end || end > static_cast<std::int64_t>(face_vertices.size()))
-            refuse(f, "corners that do not exist");
-        return face_vertices.subspan(static_cast<std::size_t>(begin),
-                                     static_cast<std::size_t>(end - begin));
+        return checked_corners("face", f, face_offsets, face_vertices, 1);
     };
     std::vector<std::int32_t> origin(cells, -1);  // a corner of each cell
     for (std::size_t f = 0; f < faces; ++f) {
         poll(execution.progress, f);
         const auto loop = loop_of(f);
-        for (const std::int32_t v : loop) {
-            if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())
-                refuse(f, "a vertex that does not exist");
-        }
+        require_vertices("face", f, loop, vertices.size());
+        require_cells(f, face_cells[f], cells);
         for (const std::int32_t cell : face_cells[f]) {
-            if (cell < -1 || cell >= static_cast<std::int64_t>(cells))
-                refuse(f, "a cell that does not exist");
             if (cell >= 0 && origin[static_cast<std::size_t>(cell)] < 0)
                 origin[static_cast<std::size_t>(cell)] = loop[0];
         }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <numeric>
 
 #include "base/algorithms.hpp"
 #include "base/disjoint_sets.hpp"
@@ -43,19 +42,28 @@ public:
             i < covered_.wholes.size()
                 ? middle_of(geometry_, covered_.wholes[i])
                 : middle_of(parts_.outlines[covered_.parts[i - covered_.wholes.size()]], point);
-        searched_.push_back({tiles().tile_at(middle), middle, node, kNothing});
+        searched_.push_back({middle, node, kNothing});
     }
 
     /// Calls link(node, triangle) with what lies beneath each facet.
     template <class Link>
     void find(const Link& link) {
         if (searched_.empty()) return;
-        sort_by_tile();
+        const spatial::PointBins middles(transformed(searched_, &Searched::middle));
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
-        const auto near = found_in_each<std::pair<std::uint32_t, std::int32_t>>(
+        const auto near = found_in_each<std::pair<std::size_t, std::int32_t>>(
             tiling_.whole.size(), execution_, [&](std::size_t t, auto& pairs) {
-                if (filter_.surface[t] == HeightRelation::kBelow) look(t, pairs);
+                if (filter_.surface[t] != HeightRelation::kBelow) return;
+                const PlanTriangle& triangle = geometry_.plane(tiling_.whole[t]).plan;
+                const auto number = static_cast<std::int32_t>(t);
+                middles.within(filter_.surface_at[t].bounds.box,
+                               [&](std::size_t s, const spatial::PlanPosition& middle) {
+                                   const int side = side_of_border(geometry_, triangle, middle);
+                                   if (side == 0) pairs.emplace_back(s, number);
+                                   // a position is well inside one triangle at the most
+                                   if (side > 0) searched_[s].beneath = number;
+                               });
             });
         for (const auto& [s, t] : near) {
             if (searched_[s].beneath == kNothing && lies_over(searched_[s].node, t))
@@ -63,7 +71,7 @@ public:
         }
         const auto triangles = static_cast<std::int32_t>(tiling_.whole.size());
         for (Searched& s : searched_) {
-            // where rounding put a middle into a tile that nothing beneath it meets
+            // where rounding put a middle beside the boxes of all that lie beneath it
             for (std::int32_t t = 0; t < triangles && s.beneath == kNothing; ++t) {
                 if (filter_.surface[static_cast<std::size_t>(t)] == HeightRelation::kBelow &&
                     lies_over(s.node, t))
@@ -77,13 +85,10 @@ public:
 private:
     static constexpr std::int32_t kNothing = -1;
     struct Searched {
-        std::size_t tile;
         std::array<double, 2> middle;
         std::int32_t node;
         std::int32_t beneath;  ///< a triangle of the surface that lies there
     };
-
-    const PlanTiles& tiles() const { return filter_.tiles(); }
 
     [[noreturn]] void refuse(const Searched& s) const {
         const auto i = static_cast<std::size_t>(s.node - covered_.first_node);
@@ -94,34 +99,6 @@ private:
             "a triangle of the surface lies beneath each facet that it is sorted below",
             std::array{s.middle[0], s.middle[1], heights_of(geometry_, plane).low});
     }
-    /// Most tiles have none, and that is asked of bytes.
-    void sort_by_tile() {
-        first_.assign(tiles().size() + 1, 0);
-        is_searched_.assign(tiles().size(), 0);
-        for (const Searched& s : searched_) {
-            ++first_[s.tile + 1];
-            is_searched_[s.tile] = 1;
-        }
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        std::stable_sort(searched_.begin(), searched_.end(),
-                         [](const Searched& a, const Searched& b) { return a.tile < b.tile; });
-    }
-
-    /// Looks which middles lie in a triangle; those near its border go to `near`.
-    void look(std::size_t t, std::vector<std::pair<std::uint32_t, std::int32_t>>& near) {
-        const auto number = static_cast<std::int32_t>(t);
-        const PlanTriangle& triangle = geometry_.plane(tiling_.whole[t]).plan;
-        tiles().for_each(filter_.surface_at[t].span, [&](std::size_t tile) {
-            if (is_searched_[tile] == 0) return;
-            for (auto s = first_[tile]; s < first_[tile + 1]; ++s) {
-                const int side = side_of_border(geometry_, triangle, searched_[s].middle);
-                if (side == 0) near.emplace_back(s, number);
-                // a position is well inside one triangle at the most
-                if (side > 0) searched_[s].beneath = number;
-            }
-        });
-    }
-
     bool lies_over(std::int32_t node, std::int32_t triangle) {
         const auto outline_of = [&](PlaneId plane) {
             return triangle_outline(geometry_, geometry_.plane(plane).plan);
@@ -142,8 +119,6 @@ private:
     LocalArrangement scope_;
     Clipper clipper_;
     std::vector<Searched> searched_;
-    std::vector<std::uint32_t> first_;  ///< of each tile
-    std::vector<std::uint8_t> is_searched_;
 };
 
 /// Joins covered triangles that are neighbors over one block.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/checked_indices.hpp"
 #include "base/parallel_counts.hpp"
 #include "exact/orientation.hpp"
 #include "realmodel/base/array.hpp"
@@ -45,15 +46,9 @@ void check_vertices(const TriangleView& surface, int index, const Execution& exe
 
 /// Looks at the corners of triangles.
 void check_corners(const TriangleView& surface, int index, const Execution& execution) {
-    const std::size_t count = surface.vertices.size() / 3;
-    parallel_each(3 * surface.triangle_count(), execution, [&](std::size_t i) {
-        const std::int32_t v = surface.triangles[i];
-        if (v >= 0 && static_cast<std::size_t>(v) < count) return;
-        const auto t = static_cast<std::int64_t>(i / 3);
-        throw InputError("bad_index",
-                         "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
-                             " of " + std::to_string(count),
-                         index, {t});
+    parallel_each(surface.triangle_count(), execution, [&](std::size_t t) {
+        require_vertices("triangle", t, surface.triangles.subspan(3 * t, 3),
+                         surface.vertices.size() / 3, index);
     });
 }
 
@@ -161,18 +156,11 @@ std::vector<PlanTriangle> load_region(PlanArrangement& geometry, const TriangleV
     }
     std::vector<PlanTriangle> triangles;
     for (std::size_t t = 0; t * 3 < region.triangles.size(); ++t) {
+        require_vertices("region triangle", t, region.triangles.subspan(t * 3, 3),
+                         region.vertices.size() / 2);
         std::array<std::array<double, 2>, 3> p;
         for (std::size_t i = 0; i < 3; ++i) {
             const auto row = static_cast<std::size_t>(region.triangles[t * 3 + i]) * 2;
-            if (region.triangles[t * 3 + i] < 0 || row + 1 >= region.vertices.size()) {
-                throw InputError("bad_index",
-                                 "triangle " + std::to_string(t) +
-                                     " of the region refers to vertex " +
-                                     std::to_string(region.triangles[t * 3 + i]) +
-                                     ", but the vertices are numbered from 0 to " +
-                                     std::to_string(region.vertices.size() / 2 - 1),
-                                 -1, {static_cast<std::int64_t>(t)});
-            }
             p[i] = {snapping.x(region.vertices[row]), snapping.y(region.vertices[row + 1])};
         }
         const int orientation = exact::orient2d(p[0], p[1], p[2]);
