@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -41,11 +40,10 @@ constexpr double kFirstError = 1e-6;  // of values, in units of the kernel, wher
 // Of dips, of the fifth order: with none at first the search ends at ranges so short that the
 // errors are taken for folds.
 constexpr double kFirstSlopeError = 1e-3;
-constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 struct AnisotropyCandidate {
     Likely what;
-    double likelihood = kNever;
+    double likelihood = -HUGE_VAL;
 };
 
 /// Compares anisotropies.
@@ -59,11 +57,7 @@ public:
 
     /// The best of some; the first of equal ones.
     AnisotropyCandidate best(std::span<const Likely> of) const {
-        std::vector<double> likelihood(of.size(), kNever);
-        parallel_chunks(of.size(), execution_, [&](std::size_t n) {
-            const Spline spline(known_, of[n].smoothness(), {1, nullptr});
-            likelihood[n] = spline.log_likelihood(error_).value_or(kNever);
-        });
+        const std::vector<double> likelihood = log_likelihoods(known_, of, error_, execution_);
         const auto at = std::max_element(likelihood.begin(), likelihood.end()) - likelihood.begin();
         return {of[at], likelihood[at]};
     }
@@ -312,6 +306,17 @@ void search_throws(const Search& search, std::span<const Vec3> normals, Anisotro
 }
 
 }  // namespace
+
+std::vector<double> log_likelihoods(std::span<const Functional> known,
+                                    std::span<const Likely> kinds, double error,
+                                    const Execution& execution) {
+    std::vector<double> out(kinds.size());
+    parallel_chunks(kinds.size(), execution, [&](std::size_t n) {
+        const Spline spline(known, kinds[n].smoothness(), {1, nullptr});
+        out[n] = spline.log_likelihood(error).value_or(-HUGE_VAL);
+    });
+    return out;
+}
 
 Map3 map_of(const AxisRatios& anisotropy) {
     Map3 map{};

@@ -119,10 +119,7 @@ std::vector<CriticalPoint> critical_points(const Lattice& lattice, std::span<con
             }
         }
     });
-    std::vector<CriticalPoint> all;
-    for (const auto& of_layer : layers)
-        all.insert(all.end(), of_layer.begin(), of_layer.end());
-    return all;
+    return concatenated(layers);
 }
 
 namespace {

@@ -99,15 +99,14 @@ std::vector<double> CrossValidation::costs(std::span<const Likely> kinds,
 }
 
 std::vector<Functional> CrossValidation::rows_without(int part, int order) const {
-    const std::vector<Functional> fixed = known_.fixed(gaps_);
+    const std::vector<Functional> fixed = known_.fixed(gaps_, order);
     std::vector<Functional> rows;
     for (std::size_t k = 0; k < dips_.size(); ++k) {
         if (dip_parts_[k] == part) continue;
-        rows.push_back(known_.for_order(order, fixed[2 * dips_[k]]));
-        rows.push_back(known_.for_order(order, fixed[2 * dips_[k] + 1]));
+        rows.push_back(fixed[2 * dips_[k]]);
+        rows.push_back(fixed[2 * dips_[k] + 1]);
     }
-    for (std::size_t n = 2 * known_.data().dips.size(); n < fixed.size(); ++n)
-        rows.push_back(known_.for_order(order, fixed[n]));
+    rows.insert(rows.end(), fixed.begin() + 2 * std::ssize(known_.data().dips), fixed.end());
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
         if (contact_parts_[k] != part) rows.push_back(known_.on_surface(contacts_[k]));
     }
@@ -119,12 +118,11 @@ std::vector<Inequality> CrossValidation::inequalities_without(int part, int orde
     for (std::size_t k = 0; k < dips_.size(); ++k)
         is_given[dips_[k]] = dip_parts_[k] == part ? 0 : 1;
     std::vector<Inequality> out;
-    for (Inequality& inequality : known_.inequalities()) {
+    for (Inequality& inequality : known_.inequalities(order)) {
         if (inequality.kind == Inequality::Origin::kBound) continue;  // may contradict other data
         if (inequality.kind == Inequality::Origin::kPolarity &&
             is_given[static_cast<std::size_t>(inequality.item)] == 0)
             continue;
-        inequality.functional = known_.for_order(order, inequality.functional);
         out.push_back(std::move(inequality));
     }
     return out;

@@ -71,11 +71,9 @@ public:
     /// Rounds until all data are met, but for those that contradict others.
     void solve() {
         fit();
-        std::vector<Inequality> inequalities = known_.inequalities();
-        for (Inequality& inequality : inequalities) {
-            inequality.functional = known_.for_order(likely_.order, inequality.functional);
+        std::vector<Inequality> inequalities = known_.inequalities(likely_.order);
+        for (Inequality& inequality : inequalities)
             if (drawn_) inequality.least -= drawn_->of(inequality.functional);
-        }
         active_ = ActiveInequalities(std::move(inequalities));
         if (drawn_) {
             leave_out_as_found();
@@ -224,9 +222,7 @@ private:
     }
 
     void fit() {
-        std::vector<Functional> all;
-        for (const Functional& functional : known_.fixed(gaps_))
-            all.push_back(known_.for_order(likely_.order, functional));
+        std::vector<Functional> all = known_.fixed(gaps_, likely_.order);
         first_contact_ = all.size();
         contacts_of_rows_.clear();
         for (std::size_t n = 0; n < is_center_.size(); ++n) {

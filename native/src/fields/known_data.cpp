@@ -221,7 +221,7 @@ double KnownData::total_gap() const {
 }
 
 /// f would else be 0: one surface has a mean rise of 1 across dips, more have different levels.
-std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
+std::vector<Functional> KnownData::fixed(std::span<const double> gaps, int order) const {
     std::vector<Functional> out = planes_;
     const auto add = [&](std::int32_t older, std::int32_t younger, double gap) {
         out.push_back(difference(reference(younger), reference(older)));
@@ -237,6 +237,8 @@ std::vector<Functional> KnownData::fixed(std::span<const double> gaps) const {
     }
     out.insert(out.end(), tilts_.begin(), tilts_.end());
     assert(out.size() >= planes_.size() + 1);
+    for (Functional& functional : out)
+        functional = for_order(order, functional);
     return out;
 }
 
@@ -270,7 +272,7 @@ Functional KnownData::bound(std::size_t n, std::int32_t surface, double sign) co
             false};
 }
 
-std::vector<Inequality> KnownData::inequalities() const {
+std::vector<Inequality> KnownData::inequalities(int order) const {
     std::vector<Inequality> out;
     for (std::int32_t k = 0; k + 1 < data_.surfaces; ++k) {
         const std::size_t younger = reference(k + 1);
@@ -295,6 +297,8 @@ std::vector<Inequality> KnownData::inequalities() const {
             out.push_back(
                 {bound(n, data_.bound_above[n], -1), 0, Inequality::Origin::kBound, item, at});
     }
+    for (Inequality& inequality : out)
+        inequality.functional = for_order(order, inequality.functional);
     return out;
 }
 

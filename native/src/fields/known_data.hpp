@@ -52,7 +52,8 @@ public:
     /// What holds in any case: planes of dips, two for each; how fast f rises; and that it is no
     /// steeper in directions of which no datum says anything.
     /// @param gaps  differences of the levels; none: only that of the first and the last is given
-    std::vector<Functional> fixed(std::span<const double> gaps) const;
+    /// @param order  of the splines that take them: see for_order
+    std::vector<Functional> fixed(std::span<const double> gaps, int order = 3) const;
     Functional on_surface(std::size_t contact) const {
         return difference(contact, references_[surface_of(contact)]);
     }
@@ -73,7 +74,7 @@ public:
     /// Those of a dip.
     Lift lift_of_dip(std::size_t dip) const { return lift(data_.slits.dips, dip); }
     /// Levels that rise, polarities and bounds.
-    std::vector<Inequality> inequalities() const;
+    std::vector<Inequality> inequalities(int order = 3) const;
     /// About the distance of the first surface from the last.
     double total_gap() const;
 

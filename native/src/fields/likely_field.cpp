@@ -242,24 +242,16 @@ private:
         return high > kUneven * low;
     }
 
-    /// The fixed functionals, of many dips only some.
-    std::vector<Functional> with_some_dips(std::span<const double> gaps) const {
-        std::vector<Functional> fixed = known_.fixed(gaps);
+    /// The fixed functionals, of many dips only some, and contacts.
+    std::vector<Functional> with(std::span<const std::size_t> contacts,
+                                 std::span<const double> gaps, int order) const {
+        std::vector<Functional> fixed = known_.fixed(gaps, order);
         const std::size_t dips = known_.data().dips.size();
         const std::size_t stride = (dips + kSampledDips - 1) / kSampledDips;
         std::vector<Functional> out;
         for (std::size_t n = 0; n < fixed.size(); ++n) {
             if (n >= 2 * dips || n / 2 % stride == 0) out.push_back(std::move(fixed[n]));
         }
-        return out;
-    }
-
-    /// These, and contacts.
-    std::vector<Functional> with(std::span<const std::size_t> contacts,
-                                 std::span<const double> gaps, int order) const {
-        std::vector<Functional> out = with_some_dips(gaps);
-        for (Functional& functional : out)
-            functional = known_.for_order(order, functional);
         for (const std::size_t n : contacts) {
             if (n != known_.reference(known_.surface_of(n))) out.push_back(known_.on_surface(n));
         }
@@ -300,12 +292,8 @@ private:
     /// Of a shape those with errors that near contacts and dips allow: what is left out far from
     /// all others says little of errors.
     void add_possible(std::vector<Likely> kinds, std::vector<Likely>& to) const {
-        const std::vector<Functional> sample = sampled(gaps_, kinds[0].order);
-        std::vector<double> likelihoods(kinds.size());
-        parallel_chunks(kinds.size(), execution_, [&](std::size_t n) {
-            const Spline spline(sample, kinds[n].smoothness(), {1, nullptr});
-            likelihoods[n] = spline.log_likelihood(known_.error()).value_or(-HUGE_VAL);
-        });
+        const std::vector<double> likelihoods =
+            log_likelihoods(sampled(gaps_, kinds[0].order), kinds, known_.error(), execution_);
         const double least = std::ranges::max(likelihoods) - kRuledOut;
         for (std::size_t n = 0; n < kinds.size(); ++n) {
             if (likelihoods[n] >= least) to.push_back(std::move(kinds[n]));

@@ -32,6 +32,12 @@ struct Likely {
     Smoothness smoothness() const { return {map_of(anisotropy), errors, order, lift, throws}; }
 };
 
+/// How likely what is known is with each of some kinds: Spline::log_likelihood, -inf where it has
+/// none.
+std::vector<double> log_likelihoods(std::span<const Functional> known,
+                                    std::span<const Likely> kinds, double error,
+                                    const Execution& execution);
+
 /// The anisotropy, the errors of measurement and the scale of further coordinates under which what
 /// is known is most likely, with the third order. The anisotropy is along the fold axis, to which
 /// the normals are most nearly perpendicular, or where they show none along the best of some

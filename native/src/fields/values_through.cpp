@@ -4,6 +4,7 @@
 #ifndef EIGEN_DONT_PARALLELIZE
 #define EIGEN_DONT_PARALLELIZE
 #endif
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstddef>
@@ -40,25 +41,6 @@ Weights weights_of(const LevelsAtContacts& at, std::span<const std::int64_t> use
     return weights;
 }
 
-/// y with (A A^T + loose) y = missed, until its square is at most `least`.
-Eigen::VectorXd solved(const Weights& a, const Eigen::VectorXd& missed, double least,
-                       const Execution& execution) {
-    Eigen::VectorXd y = Eigen::VectorXd::Zero(missed.size()), way = missed, rest = missed;
-    double square = rest.squaredNorm();
-    for (int step = 0; step < kSteps && square > least; ++step) {
-        if (execution.progress != nullptr) execution.progress->check();
-        const Eigen::VectorXd corners = a.transpose() * way;
-        const Eigen::VectorXd ahead = a * corners + kLoose * way;
-        const double far = square / way.dot(ahead);
-        y += far * way;
-        rest -= far * ahead;
-        const double before = square;
-        square = rest.squaredNorm();
-        way = rest + square / before * way;
-    }
-    return y;
-}
-
 }  // namespace
 
 ValuesThrough values_through(std::span<const double> initial, const LevelsAtContacts& at,
@@ -75,9 +57,17 @@ ValuesThrough values_through(std::span<const double> initial, const LevelsAtCont
         values[static_cast<Eigen::Index>(n)] = initial[index(used[n])];
     const Eigen::Map<const Eigen::VectorXd> levels(at.levels.data(), std::ssize(at.levels));
     Eigen::VectorXd missed = levels - weights * values;
-    const double least = kReached * kReached * missed.squaredNorm();
-    for (int round = 0; round < rounds; ++round) {
-        values += weights.transpose() * solved(weights, missed, least, execution);
+    const double reached = kReached * missed.norm();
+    Eigen::SparseMatrix<double> square(weights.cols(), weights.cols());
+    square.setIdentity();
+    square = kLoose * square + weights.transpose() * weights;
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> moves;
+    moves.setMaxIterations(kSteps);
+    moves.compute(square);
+    for (int round = 0; round < rounds && missed.norm() > reached; ++round) {
+        if (execution.progress != nullptr) execution.progress->check();
+        moves.setTolerance(reached / missed.norm());
+        values += moves.solve(weights.transpose() * missed);
         missed = levels - weights * values;
     }
     ValuesThrough fitted{{initial.begin(), initial.end()}, {missed.begin(), missed.end()}};

@@ -206,19 +206,22 @@ private:
     }
 
     /// Faces that are steep, so that the centers of neighbors lie far from the direction across
-    /// them, are made less steep.
+    /// them, are made less steep: at first all heights of a node move, so that elements stay
+    /// upright, then each for itself. Else more of thin blocks has to be given up.
     /// @param reach  minimum thicknesses: how far heights move at most
     void relax_steep_faces(double reach) {
         const double thickness = layering_.minimum_thickness;
-        std::vector<std::uint8_t> is_moved(plan_.nodes(), 1);
         bool any = false;
-        for (int round = 0; round < kRelaxations; ++round) {
-            const auto moves = filling_->quality.steep(is_moved);
-            is_moved.assign(plan_.nodes(), 0);
-            if (!levels_.relax_heights(moves, reach * thickness, thickness, has_flat_base_,
-                                       is_moved))
-                break;
-            any = true;
+        for (const bool alone : {false, true}) {
+            std::vector<std::uint8_t> is_moved(plan_.nodes(), 1);
+            for (int round = 0; round < kRelaxations; ++round) {
+                const auto moves = filling_->quality.steep(is_moved);
+                is_moved.assign(plan_.nodes(), 0);
+                if (!levels_.relax_heights(moves, reach * thickness, thickness, alone,
+                                           has_flat_base_, is_moved))
+                    break;
+                any = true;
+            }
         }
         if (any) refill();
     }

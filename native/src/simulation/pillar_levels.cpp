@@ -443,30 +443,50 @@ std::size_t PillarLevels::remove(const PlanTopology& plan, std::vector<Removal>&
 }
 
 bool PillarLevels::relax_heights(const std::vector<Move>& moves, double most, double gap,
-                                 std::span<const std::uint8_t> has_flat_base,
+                                 bool alone, std::span<const std::uint8_t> has_flat_base,
                                  std::span<std::uint8_t> is_moved) {
     constexpr double kLeast = 1e-3;  // of `most`: what is worth another round
-    std::vector<std::pair<double, std::int32_t>> asked(height_.size());  // sums and numbers
+    struct MoveSum {
+        double by = 0;
+        std::int32_t count = 0, lowest = INT32_MAX;
+    };
+    std::vector<MoveSum> asked(alone ? height_.size() : node_offset_.size() - 1);
     for (const Move& move : moves) {
-        auto& [by, count] = asked[node_offset_[index(move.node)] + index(move.height)];
-        by += move.by;
-        ++count;
+        const auto n = index(move.node);
+        MoveSum& sum = asked[alone ? node_offset_[n] + index(move.height) : n];
+        sum.by += move.by;
+        ++sum.count;
+        sum.lowest = std::min(sum.lowest, move.height);
     }
     bool any = false;
     for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
         const std::size_t first = node_offset_[n], end = node_offset_[n + 1];
-        for (std::size_t at = has_flat_base[n] != 0 ? first + 1 : first; at < end; ++at) {
-            const auto [by, count] = asked[at];
-            if (count == 0) continue;
+        const auto move = [&](std::size_t at, double by) {
+            if (has_flat_base[n] != 0 && at == first) return;
             const double height = height_[at];
-            double to =
-                std::clamp(height + by / count, first_height_[at] - most, first_height_[at] + most);
+            double to = std::clamp(height + by, first_height_[at] - most, first_height_[at] + most);
             if (at > first) to = std::max(to, std::min(height, height_[at - 1] + gap));
             if (at + 1 < end) to = std::min(to, std::max(height, height_[at + 1] - gap));
-            if (std::abs(to - height) < kLeast * gap) continue;
+            if (std::abs(to - height) < kLeast * gap) return;
             height_[at] = to;
             is_moved[n] = 1;
             any = true;
+        };
+        if (alone) {
+            for (std::size_t at = first; at < end; ++at)
+                if (asked[at].count > 0) move(at, asked[at].by / asked[at].count);
+            continue;
+        }
+        if (asked[n].count == 0) continue;
+        const double by = asked[n].by / asked[n].count, bottom = height_[first],
+                     span = height_[first + index(asked[n].lowest)] - bottom;
+        const auto share = [&](std::size_t at) {
+            return has_flat_base[n] == 0 ? 1 : std::min(1.0, (height_[at] - bottom) / span);
+        };
+        // what moves first makes room for the next
+        for (std::size_t k = 0; k < end - first; ++k) {
+            const std::size_t at = by < 0 ? first + k : end - 1 - k;
+            move(at, share(at) * by);
         }
     }
     return any;

@@ -65,8 +65,10 @@ public:
     };
     /// Moves heights by the means of what is asked, but no farther than `most` from where they
     /// were at first, and no nearer to others than `gap` or than they are. Flat bases stay.
+    /// @param alone  whether other heights of the same node stay; else those above move likewise,
+    ///   and those below in proportion
     /// @param is_moved  set for the nodes where a height moved  @return whether any did
-    bool relax_heights(const std::vector<Move>& moves, double most, double gap,
+    bool relax_heights(const std::vector<Move>& moves, double most, double gap, bool alone,
                        std::span<const std::uint8_t> has_flat_base,
                        std::span<std::uint8_t> is_moved);
 

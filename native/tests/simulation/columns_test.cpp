@@ -112,13 +112,14 @@ TEST(PillarLevelsTest, HeightsMoveWithinBoundsAndKeepTheirDistance) {
     std::vector<std::uint8_t> moved(at.plan.nodes(), 0), flat(at.plan.nodes(), 0);
     flat[0] = 1;
     const std::vector<PillarLevels::Move> moves{{6, 2, 9}, {0, 4, 1}, {0, 4, 0}};
-    EXPECT_TRUE(levels.relax_heights(moves, 0.75, 0.5, flat, moved));
+    EXPECT_TRUE(levels.relax_heights(moves, 0.75, 0.5, true, flat, moved));
     EXPECT_DOUBLE_EQ(levels.heights(6)[2], 2.5);  // as near to 3 as they may be
     EXPECT_DOUBLE_EQ(levels.heights(6)[3], 3);
     EXPECT_DOUBLE_EQ(levels.heights(0)[4], 4.5);  // by the mean of what was asked
-    EXPECT_TRUE(levels.relax_heights({{0, 0, -1}, {0, 4, 9}}, 0.75, 0.5, flat, moved));
+    EXPECT_TRUE(levels.relax_heights({{0, 4, 9}}, 0.75, 0.5, false, flat, moved));
     EXPECT_DOUBLE_EQ(levels.heights(0)[4], 4.75);  // no farther from where it was at first
     EXPECT_EQ(levels.heights(0)[0], 0);            // a flat base
+    EXPECT_GT(levels.heights(0)[2], 2);
     EXPECT_EQ(moved, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 1, 0}));
 }
 
