@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -198,27 +197,25 @@ void EarClipping::join_holes(std::span<const std::int32_t> holes) {
                    !tree.any(way, [&](std::int32_t i) { return is_hidden_by(edges[index(i)]); });
         };
         using Near = std::pair<double, std::int32_t>;  // squared distance, corner
-        constexpr std::int32_t kBeyond = std::numeric_limits<std::int32_t>::max();
         std::int32_t outer = kNone, nearest_in_ring = kNone;
         for (Near last{-1, kNone}; outer == kNone;) {
-            Near next{HUGE_VAL, kBeyond};
+            Near next{HUGE_VAL, kNone};
+            const auto visit = [&](std::int32_t corner) {
+                const Near near{squared_distance(at(corner), from.at), corner};
+                if (link(corner).is_in_ring && last < near && (next.second == kNone || near < next))
+                    next = near;
+            };
             tree.approach(
-                {from.at[0], from.at[1], 0}, [&] { return next.first; },
-                [&](std::int32_t corner) {
-                    const Near near{squared_distance(at(corner), from.at), corner};
-                    if (link(corner).is_in_ring && last < near && near < next) next = near;
-                });
-            last = next;
-            if (last.second == kBeyond) break;
-            if (nearest_in_ring == kNone) nearest_in_ring = last.second;
-            for (std::int32_t i = last.second; i != kNone; i = link(i).again) {
+                {from.at[0], from.at[1], 0}, [&] { return next.first; }, visit);
+            if (next.second == kNone) break;
+            if (nearest_in_ring == kNone) nearest_in_ring = next.second;
+            for (std::int32_t i = next.second; outer == kNone && i != kNone; i = link(i).again) {
                 const bool fits = are_same(i, hole)
                                       ? opens_towards(i, link(link(hole).next).corner)
                                       : opens_towards(i, from) && sees(link(i).corner);
-                if (!fits) continue;
-                outer = i;
-                break;
+                if (fits) outer = i;
             }
+            last = next;
         }
         if (outer == kNone) {  // rounding has put the hole over the outline
             is_clean_ = false;
@@ -354,17 +351,14 @@ std::int32_t EarClipping::blocker_of(std::int32_t tip, EarTest test) {
         }
         return p;
     };
-    const auto is_right_of = [&](const PlanePosition& p, const PlanePosition& q,
-                                 const spatial::CornerGrid::Member& other) {
-        return exact::orient2d_filter(p, q, other.position) == -1;
-    };
-    const PlanePosition p = at(a), q = at(tip), r = at(c);
+    const std::array corners{at(a), at(tip), at(c)};
     std::int32_t blocker = kNone;
     grid_->any_in_triangle(
         outward(a), outward(tip), outward(c), [&](const spatial::CornerGrid::Member& other) {
-            if (is_exact() &&
-                (is_right_of(p, q, other) || is_right_of(q, r, other) || is_right_of(r, p, other)))
-                return false;  // most of them
+            for (std::size_t k = 0; is_exact() && k < 3; ++k) {  // most are surely beyond an edge
+                if (exact::orient2d_filter(corners[k], corners[(k + 1) % 3], other.position) == -1)
+                    return false;
+            }
             if (!blocks(other.number, a, tip, c, test)) return false;
             blocker = other.number;
             return true;
@@ -377,10 +371,8 @@ void EarClipping::cut(std::int32_t tip) {
     triangles_.push_back({link(a).number, link(tip).number, link(c).number});
     remove(tip);
     for (const std::int32_t i : {a, c}) {
-        if (is_exact()) {
-            if (turn_at(i) <= 0) continue;  // not a tip until one of its neighbors is cut off
-            if (grid_) grid_->remove(i);
-        }
+        if (is_exact() && turn_at(i) <= 0) continue;  // no tip until something beside it is cut
+        if (grid_ && is_exact()) grid_->remove(i);
         enqueue(i);
     }
     for (std::int32_t w = link(tip).first_waiting; w != kNone; w = waiting_[index(w)][1]) {
