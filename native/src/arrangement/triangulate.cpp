@@ -14,7 +14,6 @@
 #include "exact/orientation.hpp"
 #include "spatial/box_tree.hpp"
 #include "spatial/corner_grid.hpp"
-#include "spatial/nearest_points.hpp"
 
 namespace realmodel::arrangement {
 
@@ -164,19 +163,16 @@ bool EarClipping::hides(const LoopCorner& a, const LoopCorner& b, const LoopCorn
 
 /// Joins each hole to the nearest corner of the ring that its leftmost one touches or can see.
 void EarClipping::join_holes(std::span<const std::int32_t> holes) {
-    std::vector<PlanePosition> places;
-    std::vector<std::array<LoopCorner, 2>> edges;
+    std::vector<std::array<LoopCorner, 2>> edges;  // from each corner
     std::vector<spatial::Box> boxes;
     for (const Link& start : links_) {
-        places.push_back(start.corner.at);
         edges.push_back({start.corner, link(start.next).corner});
         boxes.emplace_back().include(start.corner.at);
         boxes.back().include(edges.back()[1].at);
     }
-    const spatial::NearestPoints corners(places);
     const spatial::BoxTree tree(std::move(boxes));
-    std::vector<std::array<LoopCorner, 2>> bridges;
-    std::vector<spatial::Neighbor> nearest;
+    std::vector<std::array<LoopCorner, 2>> bridges;  // from left to right, as the holes are
+    double widest = 0;                               // of the bridges
     for (const std::int32_t hole : holes) {
         if (progress_ != nullptr) progress_->check();
         const LoopCorner from = link(hole).corner;
@@ -187,30 +183,39 @@ void EarClipping::join_holes(std::span<const std::int32_t> holes) {
             const auto is_hidden_by = [&](const std::array<LoopCorner, 2>& edge) {
                 return hides(edge[0], edge[1], from, to);
             };
-            return std::ranges::none_of(bridges, is_hidden_by) &&
+            const auto near =
+                std::ranges::lower_bound(bridges, way.low[0] - 2 * widest, {},
+                                         [](const auto& bridge) { return bridge[0].at[0]; });
+            return std::none_of(near, bridges.end(), is_hidden_by) &&
                    !tree.any(way, [&](std::int32_t i) { return is_hidden_by(edges[index(i)]); });
         };
+        using Near = std::pair<double, std::int32_t>;  // squared distance, corner
         std::int32_t outer = kNone, nearest_in_ring = kNone;
-        for (std::size_t done = 0; outer == kNone && done < places.size(); done = nearest.size()) {
-            corners.find(from.at, std::min(places.size(), 4 * done + 8), nearest);
-            for (std::size_t k = done; outer == kNone && k < nearest.size(); ++k) {
-                for (std::int32_t i = nearest[k].point; i != kNone; i = link(i).again) {
-                    if (!link(i).is_in_ring) break;
-                    if (nearest_in_ring == kNone) nearest_in_ring = i;
-                    const bool fits = are_same(i, hole)
-                                          ? opens_towards(i, link(link(hole).next).corner)
-                                          : opens_towards(i, from) && sees(link(i).corner);
-                    if (!fits) continue;
-                    outer = i;
-                    break;
-                }
+        for (Near last{-1, kNone}; outer == kNone;) {
+            Near next{HUGE_VAL, kNone};
+            const auto visit = [&](std::int32_t corner) {
+                const Near near{squared_distance(at(corner), from.at), corner};
+                if (link(corner).is_in_ring && last < near && (next.second == kNone || near < next))
+                    next = near;
+            };
+            tree.approach(
+                {from.at[0], from.at[1], 0}, [&] { return next.first; }, visit);
+            if (next.second == kNone) break;
+            if (nearest_in_ring == kNone) nearest_in_ring = next.second;
+            for (std::int32_t i = next.second; outer == kNone && i != kNone; i = link(i).again) {
+                const bool fits = are_same(i, hole)
+                                      ? opens_towards(i, link(link(hole).next).corner)
+                                      : opens_towards(i, from) && sees(link(i).corner);
+                if (fits) outer = i;
             }
+            last = next;
         }
         if (outer == kNone) {  // rounding has put the hole over the outline
             is_clean_ = false;
             outer = nearest_in_ring;
         }
         bridges.push_back({from, link(outer).corner});
+        widest = std::max(widest, std::abs(from.at[0] - at(outer)[0]));
         join(hole, outer);
     }
 }
@@ -339,13 +344,18 @@ std::int32_t EarClipping::blocker_of(std::int32_t tip, EarTest test) {
         }
         return p;
     };
+    const std::array corners{at(a), at(tip), at(c)};
     std::int32_t blocker = kNone;
-    grid_->any_in_triangle(outward(a), outward(tip), outward(c),
-                           [&](const spatial::CornerGrid::Member& other) {
-                               if (!blocks(other.number, a, tip, c, test)) return false;
-                               blocker = other.number;
-                               return true;
-                           });
+    grid_->any_in_triangle(
+        outward(a), outward(tip), outward(c), [&](const spatial::CornerGrid::Member& other) {
+            for (std::size_t k = 0; is_exact() && k < 3; ++k) {  // most are surely beyond an edge
+                if (exact::orient2d_filter(corners[k], corners[(k + 1) % 3], other.position) == -1)
+                    return false;
+            }
+            if (!blocks(other.number, a, tip, c, test)) return false;
+            blocker = other.number;
+            return true;
+        });
     return blocker;
 }
 
@@ -354,7 +364,8 @@ void EarClipping::cut(std::int32_t tip) {
     triangles_.push_back({link(a).number, link(tip).number, link(c).number});
     remove(tip);
     for (const std::int32_t i : {a, c}) {
-        if (grid_ && is_exact() && turn_at(i) > 0) grid_->remove(i);
+        if (is_exact() && turn_at(i) <= 0) continue;  // no tip until something beside it is cut
+        if (grid_ && is_exact()) grid_->remove(i);
         enqueue(i);
     }
     for (std::int32_t w = link(tip).first_waiting; w != kNone; w = waiting_[index(w)][1]) {

@@ -23,8 +23,13 @@ void FlatMesh::link() {
     marks.assign(corners.size(), 0);
     for_each_edge([&](HalfEdge edge) {
         if (!twin(edge).is_none()) return;
-        for (const HalfEdge other : leaving[static_cast<std::size_t>(to(edge))]) {
-            if (to(other) != from(edge) || !twin(other).is_none()) continue;
+        const auto at_begin = leaving[static_cast<std::size_t>(from(edge))],
+                   at_end = leaving[static_cast<std::size_t>(to(edge))];
+        const bool from_end = at_end.size() <= at_begin.size();  // fans have many edges at one end
+        for (const HalfEdge around : from_end ? at_end : at_begin) {
+            const HalfEdge other = from_end ? around : around.prev();
+            if (from(other) != to(edge) || to(other) != from(edge) || !twin(other).is_none())
+                continue;
             join(edge, other);
             break;
         }
